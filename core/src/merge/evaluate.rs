@@ -6,7 +6,9 @@ use super::descent::descend::{Counters, Descent};
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
-use super::simple::{overlaps_at, simple_shells, simplicity, united_where_it_overlaps, Simplicity};
+use super::simple::{
+    overlaps_at, simple_shells, simplicity_and_pairs, united_where_it_overlaps, Simplicity, Unclear,
+};
 use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
@@ -59,7 +61,10 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let mut operands = solids.to_vec();
     loop {
         let sources = Sources::new(joint_table(&operands));
+        let is_open = |k: &usize| !operands[*k].is_reduced();
+        let doubted = (0..operands.len()).filter(is_open).collect();
         let descent = Descent::new(&sources, Rule::Positive, true, operands.len());
+        let descent = descent.doubting(doubted);
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let root = descent.run(expression.clone(), roots)?;
         let overlaps = descent.overlapping();
@@ -70,7 +75,6 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             let solid = solid.made_of(&operands);
             return Ok((solid, descent.counters));
         }
-        let is_open = |k: &usize| !operands[*k].is_reduced();
         let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
         if open.is_empty() {
             return Err(wrongly_reduced(&operands, &overlaps));
@@ -150,7 +154,7 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
 /// # Errors
 /// `Internal`.
 pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
-    if let Some(known) = found_simple(solid)? {
+    if let Some(known) = found_simple(solid)?.0 {
         return Ok(known);
     }
     if overlaps_at(solid, suspects) {
@@ -169,12 +173,16 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
         return Ok(solid.clone());
     }
     if rule != Rule::Positive {
-        return unite(solid, rule);
+        return unite(solid, rule, None);
     }
-    if let Some(known) = settled(solid)? {
-        return Ok(known);
+    if let Some(known) = solid.united().get() {
+        return Ok(known.clone());
     }
-    let united = unite(solid, rule)?;
+    let (simple, pairs) = found_simple(solid)?;
+    if simple == Some(true) {
+        return Ok(solid.clone());
+    }
+    let united = unite(solid, rule, pairs)?;
     Ok(solid.united().get_or_make(|| united).clone())
 }
 
@@ -187,46 +195,49 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     if let Some(known) = solid.united().get() {
         return Ok(Some(known.clone()));
     }
-    Ok((found_simple(solid)? == Some(true)).then(|| solid.clone()))
+    Ok((found_simple(solid)?.0 == Some(true)).then(|| solid.clone()))
 }
 
 /// Return whether a solid is simple, if that is known, or once the meshes that decide it have been
-/// checked.
-fn found_simple(solid: &Solid) -> Result<Option<bool>> {
+/// checked, and the pairs of its faces that may overlap, if they were looked for.
+fn found_simple(solid: &Solid) -> Result<(Option<bool>, Option<Unclear>)> {
     if let Some(known) = solid.simple().get() {
-        return Ok(Some(*known));
+        return Ok((Some(*known), None));
     }
     if solid.is_reduced() {
-        return Ok(Some(true));
+        return Ok((Some(true), None));
     }
     let Some(doubts) = solid.doubts() else {
         return checked(solid);
     };
     for mesh in doubts {
-        if checked(mesh)? != Some(true) {
-            return Ok(None);
+        if checked(mesh)?.0 != Some(true) {
+            return Ok((None, None));
         }
     }
-    Ok(Some(*solid.simple().get_or_make(|| true)))
+    Ok((Some(*solid.simple().get_or_make(|| true)), None))
 }
 
-/// Return whether a solid is simple, if that is known or it is one mesh.
-fn checked(solid: &Solid) -> Result<Option<bool>> {
+/// Return whether a solid is simple, if that is known or it is one mesh, and the pairs of its faces
+/// that may overlap, if they were looked for.
+fn checked(solid: &Solid) -> Result<(Option<bool>, Option<Unclear>)> {
     if let Some(known) = solid.simple().get() {
-        return Ok(Some(*known));
+        return Ok((Some(*known), None));
     }
     let sources = Sources::new(solid.sources().clone());
-    let simple = match simplicity(solid, &sources)? {
+    let (simplicity, pairs) = simplicity_and_pairs(solid, &sources)?;
+    let simple = match simplicity {
         Simplicity::Simple => true,
         Simplicity::Overlapping => false,
-        Simplicity::Unasked => return Ok(None),
+        Simplicity::Unasked => return Ok((None, None)),
     };
-    Ok(Some(*solid.simple().get_or_make(|| simple)))
+    Ok((Some(*solid.simple().get_or_make(|| simple)), pairs))
 }
 
-fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
+/// Unite a solid with itself, given the pairs of its faces that may overlap, if they are known.
+fn unite(solid: &Solid, rule: Rule, pairs: Option<Unclear>) -> Result<Solid> {
     let sources = Sources::new(solid.sources().clone());
-    let simple = checked(solid)?;
+    let (simple, found) = checked(solid)?;
     if simple == Some(true) {
         return Ok(solid.clone().with_reduced(true));
     }
@@ -238,7 +249,7 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     }
     if simple == Some(false)
         && rule == Rule::Positive
-        && let Some(root) = united_where_it_overlaps(solid, &sources)
+        && let Some(root) = united_where_it_overlaps(solid, &sources, pairs.or(found))
     {
         return Ok(Solid::new(
             root,

@@ -273,7 +273,7 @@ pub fn crosses_at(
 }
 
 /// Calls `meet` for the pairs of candidates of different parties that may meet, by their numbers.
-fn each_pair(candidates: &[Candidate], meet: impl FnMut(u32, u32)) {
+fn each_pair(candidates: &[Candidate], mut meet: impl FnMut(u32, u32)) {
     let corners = |k: u32| *candidates[k as usize].facing.triangle();
     let numbers = 0..as_number(candidates.len());
     let Some(image) = Image::of(numbers.len(), corners) else {
@@ -293,7 +293,10 @@ fn each_pair(candidates: &[Candidate], meet: impl FnMut(u32, u32)) {
             corners: Some(corners(k).map(|p| image.place(&p))),
         }
     };
-    pairs_of_many(numbers.map(boxed).collect(), swept, meet);
+    pairs_of_many(numbers.map(boxed).collect(), swept, |i, j| {
+        meet(i, j);
+        Some(())
+    });
 }
 
 #[cfg(test)]

@@ -110,6 +110,9 @@ pub struct Descent<'a> {
     /// For each operand whether a visited cell showed that it overlaps itself, or that what it made
     /// together with others does.
     pub overlaps: Vec<AtomicBool>,
+    /// The operands that are united with themselves, and all evaluated again, if they overlap
+    /// themselves.
+    pub doubted: Vec<usize>,
 }
 
 impl<'a> Descent<'a> {
@@ -121,7 +124,21 @@ impl<'a> Descent<'a> {
             share,
             counters: Counters::default(),
             overlaps: (0..operands).map(|_| AtomicBool::new(false)).collect(),
+            doubted: Vec::new(),
         }
+    }
+
+    /// The same, given the operands that are united with themselves if they overlap themselves.
+    #[must_use]
+    pub fn doubting(self, doubted: Vec<usize>) -> Self {
+        Self { doubted, ..self }
+    }
+
+    /// Return whether all that is doubted is known to overlap itself: nothing more can be learnt, and
+    /// the result is not used.
+    fn is_moot(&self) -> bool {
+        let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
+        !self.doubted.is_empty() && self.doubted.iter().all(seen)
     }
 
     /// The operands that a visited cell showed to overlap themselves, and those that others may have
@@ -176,6 +193,9 @@ impl<'a> Descent<'a> {
         round: Round,
     ) -> Result<Branch> {
         poll();
+        if self.is_moot() {
+            return Ok(Branch::uniform(cell, 0));
+        }
         self.counters.cells.fetch_add(1, Ordering::Relaxed);
         for (_, state) in &mut states {
             state.settle(&cell);
@@ -425,6 +445,7 @@ impl<'a> Descent<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::plane::Lattice;
     use crate::merge::expression::Term;
     use crate::merge::scenes::{both, cuboid, cuboids};
     use crate::tree::node::Node;
@@ -458,5 +479,22 @@ mod tests {
         let solids = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
         let (_, counters) = run(&solids, Term::Or);
         assert!(counters[3].0 == "kernels" && counters[3].1 >= 1);
+    }
+
+    #[test]
+    fn a_descent_ends_where_all_that_is_doubted_overlaps_itself() {
+        // Rows of boxes, of which two by two cross each other.
+        let pair = |low: Lattice| [0, 2].map(|by| [0, 5].map(|size| low.map(|x| x + by + size)));
+        let row = |first: i64| cuboids((0..64).flat_map(|i| pair([first + 9 * i, first, first])));
+        let solids = [row(0), row(1)];
+        let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
+        let cells = |doubted: Vec<usize>| {
+            let descent = Descent::new(&sources, Rule::Positive, true, 2).doubting(doubted);
+            let roots = solids.iter().map(|s| s.root().clone()).collect();
+            descent.run(both(Term::Or), roots).expect("not stopped");
+            assert_eq!(descent.overlapping(), [0, 1]);
+            descent.counters.named()[0].1
+        };
+        assert!(4 * cells(vec![0, 1]) < cells(Vec::new()));
     }
 }

@@ -70,12 +70,13 @@ pub struct Space {
 }
 
 /// Calls `meet` for all pairs of different operands whose boxes overlap, and `crowd` for elements
-/// that halving does not separate, with the space in which their pairs are still to be found.
+/// that halving does not separate, with the space in which their pairs are still to be found;
+/// gives up where one of them does.
 ///
 /// Elements of one operand follow each other.
 pub fn pairs(
     elements: Vec<Boxed>,
-    mut meet: impl FnMut(u32, u32),
+    mut meet: impl FnMut(u32, u32) -> Option<()>,
     mut crowd: impl FnMut(&[Boxed], &Space) -> Option<()>,
 ) -> Option<()> {
     let space = Space::around(&elements);
@@ -87,7 +88,7 @@ pub fn pairs(
             continue;
         }
         if task.elements.len() <= SOME {
-            compare_all(&task.elements, &task.space, &mut meet);
+            compare_all(&task.elements, &task.space, &mut meet)?;
         } else {
             crowd(&task.elements, &task.space)?;
         }
@@ -96,8 +97,12 @@ pub fn pairs(
 }
 
 /// Calls `meet` for the pairs that belong to a space, comparing all elements with all of other
-/// operands.
-pub fn compare_all(elements: &[Boxed], space: &Space, meet: &mut impl FnMut(u32, u32)) {
+/// operands; gives up where it does.
+pub fn compare_all(
+    elements: &[Boxed],
+    space: &Space,
+    meet: &mut impl FnMut(u32, u32) -> Option<()>,
+) -> Option<()> {
     let lanes = Lanes::of(elements);
     let mut end = 0;
     for run in elements.chunk_by(|a, b| a.operand == b.operand) {
@@ -105,14 +110,17 @@ pub fn compare_all(elements: &[Boxed], space: &Space, meet: &mut impl FnMut(u32,
         end += run.len();
         for one in &elements[start..end] {
             spend(1 + (elements.len() - end) / PAIRS);
+            let mut goes_on = Some(());
             Lanes::each_overlapping(&lanes, end, one, |at| {
                 let other = &elements[at];
-                if space.owns(one, other) {
-                    meet(one.number, other.number);
+                if goes_on.is_some() && space.owns(one, other) {
+                    goes_on = meet(one.number, other.number);
                 }
             });
+            goes_on?;
         }
     }
+    Some(())
 }
 
 /// Calls `meet` for the pairs of two groups that belong to a space, comparing all with all.

@@ -11,7 +11,7 @@ mod rim;
 mod sweep;
 mod view;
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use crate::geometry::plane::Lattice;
 use boxes::Space;
@@ -44,7 +44,11 @@ pub fn pairs(
 ) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    boxes::pairs(elements, found, |crowd, space| {
+    let go_on = |i: u32, j: u32| {
+        found(i, j);
+        Some(())
+    };
+    boxes::pairs(elements, go_on, |crowd, space| {
         let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
         if share_corner(&some) {
             return None;
@@ -58,7 +62,7 @@ pub fn pairs(
     })
 }
 
-/// As [`pairs`], for any number of operands with few elements each; never gives up.
+/// As [`pairs`], for any number of operands with few elements each; gives up only if `meet` does.
 ///
 /// # Cost
 /// A crowd that halving does not separate is divided between two groups of operands again and
@@ -77,14 +81,17 @@ pub fn pairs(
 ///     Swept { operand, low, high, corners: None }
 /// };
 /// let mut found = Vec::new();
-/// pairs_of_many((0..).zip(&boxes).map(boxed).collect(), swept, |a, b| found.push([a, b]));
+/// pairs_of_many((0..).zip(&boxes).map(boxed).collect(), swept, |a, b| {
+///     found.push([a, b]);
+///     Some(())
+/// });
 /// assert_eq!(found, [[0, 1]]);
 /// ```
 pub fn pairs_of_many(
     elements: Vec<Boxed>,
     swept: impl Fn(u32) -> Swept,
-    meet: impl FnMut(u32, u32),
-) {
+    meet: impl FnMut(u32, u32) -> Option<()>,
+) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
     boxes::pairs(elements, found, |crowd, space| {
@@ -93,23 +100,29 @@ pub fn pairs_of_many(
             let groups = (crowd.len() > boxes::SOME).then(|| divided(&crowd, &swept));
             if let Some(Groups { elements, middle }) = groups.flatten() {
                 let (first, second) = elements.split_at(middle);
-                sweep_groups((first, second), space, &swept, found);
+                sweep_groups((first, second), space, &swept, found)?;
                 open.extend([first.to_vec(), second.to_vec()]);
             } else {
-                boxes::compare_all(&crowd, space, &mut |i, j| found(i, j));
+                boxes::compare_all(&crowd, space, &mut |i, j| found(i, j))?;
             }
         }
         Some(())
-    });
+    })
 }
 
-/// Calls `meet` for the pairs of an element of one group and one of another.
+/// Calls `meet` for the pairs of an element of one group and one of another; gives up where it does.
 fn sweep_groups(
     (first, second): (&[Boxed], &[Boxed]),
     space: &Space,
     swept: &impl Fn(u32) -> Swept,
-    meet: impl Fn(u32, u32),
-) {
+    meet: impl Fn(u32, u32) -> Option<()>,
+) -> Option<()> {
+    let goes_on = Cell::new(true);
+    let meet = |i: u32, j: u32| {
+        if goes_on.get() {
+            goes_on.set(meet(i, j).is_some());
+        }
+    };
     let of = |operand: usize| {
         move |e: &Boxed| Swept {
             operand,
@@ -131,6 +144,7 @@ fn sweep_groups(
     if done.is_none() {
         boxes::compare_groups(first, second, space, meet);
     }
+    goes_on.get().then_some(())
 }
 
 #[cfg(test)]
@@ -257,6 +271,7 @@ mod tests {
         let one = |k: u32| elements[k as usize].clone();
         pairs_of_many(boxes, one, |i, j| {
             found.insert((i.min(j) as usize, i.max(j) as usize));
+            Some(())
         });
         found
     }

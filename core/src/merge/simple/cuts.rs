@@ -3,9 +3,12 @@
 use std::borrow::Cow;
 
 use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Point;
 use crate::geometry::polygon::{straddle, Polygon};
+use crate::geometry::side::Side;
 use crate::interrupt::poll;
-use crate::merge::kernels::general::Face;
+use crate::merge::kernels::general::{cut_up_by_any, Cutter, Cutting, Face};
 use crate::merge::kernels::trees::{disjoint, Fragment};
 use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
@@ -24,6 +27,16 @@ pub(super) struct Tangle<'a> {
 pub(super) struct CutUp {
     pub(super) fragment: Fragment,
     pub(super) pieces: Vec<Polygon>,
+    /// For each piece.
+    pub(super) known_by: Vec<KnownBy>,
+}
+
+/// The piece of a face whose winding numbers tell those of another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct KnownBy {
+    pub(super) piece: usize,
+    /// By how much the numbers of the other exceed its own.
+    pub(super) more: i32,
 }
 
 impl Tangle<'_> {
@@ -58,8 +71,8 @@ impl Tangle<'_> {
             group => disjoint(group.iter().map(fragment).collect()).0,
         });
         let cut = |fragment: Fragment| {
-            let pieces = self.pieces(&fragment);
-            CutUp { fragment, pieces }
+            let cutting = self.cut(&fragment);
+            CutUp::new(fragment, cutting)
         };
         fragments.map(cut).collect()
     }
@@ -88,44 +101,82 @@ impl Tangle<'_> {
         groups
     }
 
-    /// The pieces into which the faces that reach a fragment cut it.
-    fn pieces(&self, fragment: &Fragment) -> Vec<Polygon> {
+    /// The pieces into which the faces that have a line in common with a fragment cut it, the first
+    /// one first.
+    fn cut(&self, fragment: &Fragment) -> Cutting {
         let own = as_number(self.faces.partition_point(|f| *f < fragment.face.id));
         let first = self.pairs.partition_point(|p| p[0] < own);
         let others = self.pairs[first..].iter().take_while(|p| p[0] == own);
-        let mut pieces = vec![fragment.polygon.clone()];
-        for [_, other] in others {
-            poll();
-            let cut = |piece| halves(piece, &self.triangles[*other as usize]);
-            pieces = pieces.into_iter().flat_map(cut).collect();
+        let support = fragment.polygon.support();
+        let has_line = |face: &&Face| {
+            let sides = face.polygon.sides(support);
+            let on = sides.iter().filter(|s| **s == Side::On).count();
+            straddle(&sides) == (true, true) || on > 1
+        };
+        let cutter = |face| Cutter {
+            face,
+            operand: 0,
+            weight: 1,
+        };
+        let faces = others.map(|[_, other]| &self.triangles[*other as usize]);
+        let mut cutters: Vec<Cutter> = faces.filter(has_line).map(cutter).collect();
+        cutters.reverse();
+        cut_up_by_any(fragment.polygon.clone(), &cutters)
+    }
+}
+
+impl CutUp {
+    fn new(fragment: Fragment, cutting: Cutting) -> Self {
+        let known_by = known_by(&cutting);
+        Self {
+            fragment,
+            pieces: cutting.pieces,
+            known_by,
         }
-        pieces
     }
 }
 
-/// A piece, or its halves if a face reaches it.
-fn halves(piece: Polygon, other: &Face) -> Vec<Polygon> {
-    let plane = other.polygon.support();
-    let sides = piece.sides(plane);
-    if !boxes_meet(&piece, &other.polygon) || straddle(&sides) != (true, true) {
-        return vec![piece];
+/// For each piece the one whose numbers tell its own, the widest of those that ties connect.
+fn known_by(cutting: &Cutting) -> Vec<KnownBy> {
+    let count = cutting.pieces.len();
+    let mut neighbours = vec![Vec::new(); count];
+    for tie in &cutting.ties {
+        neighbours[tie.minus as usize].push((tie.plus as usize, tie.change));
+        neighbours[tie.plus as usize].push((tie.minus as usize, -tie.change));
     }
-    let chord = piece.chord(plane, &sides);
-    if !other.is_reached_by(&chord) {
-        return vec![piece];
+    let areas: Vec<f64> = cutting.pieces.iter().map(area).collect();
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by(|i, j| areas[*j].total_cmp(&areas[*i]));
+    let mut known = vec![None; count];
+    for piece in order {
+        let mut open = vec![(piece, 0)];
+        while let Some((at, more)) = open.pop() {
+            poll();
+            if known[at].is_none() {
+                known[at] = Some(KnownBy { piece, more });
+                open.extend(neighbours[at].iter().map(|(next, by)| (*next, more + by)));
+            }
+        }
     }
-    let (minus, plus) = piece.divided(plane, &sides, &chord);
-    vec![minus, plus]
+    known.into_iter().flatten().collect()
 }
 
-/// Return whether the boxes around two polygons meet; errs on yes.
-fn boxes_meet(a: &Polygon, b: &Polygon) -> bool {
-    let ((low, high), (others_low, others_high)) = (a.bounds(), b.bounds());
-    (0..3).all(|i| low[i] <= others_high[i] && others_low[i] <= high[i])
+/// About how large a polygon is, to tell wide ones from narrow ones.
+fn area(polygon: &Polygon) -> f64 {
+    let corners: Vec<Point> = polygon.corners().iter().map(|c| c.at.approx()).collect();
+    let from = |p: &Point| each_axis(|i| p[i] - corners[0][i]);
+    let mut normal = [0.0; 3];
+    for pair in corners[1..].windows(2) {
+        let (u, v) = (from(&pair[0]), from(&pair[1]));
+        let add = |i: usize| u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+        normal = each_axis(|i| normal[i] + add(i));
+    }
+    normal.iter().map(|x| x * x).sum()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::unclear::{Unclear, View};
     use super::*;
     use crate::merge::scenes::cuboids;
 
@@ -142,5 +193,33 @@ mod tests {
         assert_eq!(counts, [2, 2]);
         let twice = Tangle::new(source, &[[lid, FaceId(3)], [FaceId(3), lid]]).expect("a mesh");
         assert!(twice.cut_up(Slot(0)).iter().all(|c| c.pieces.len() == 1));
+    }
+
+    /// A plank and posts through it: however often its faces are cut, one piece tells the numbers
+    /// of all others.
+    #[test]
+    fn one_piece_tells_the_numbers_of_all_pieces_of_a_face() {
+        let told = |count: i64| {
+            let post = |i: i64| [[10 * i + 3, 2, -7], [10 * i + 7, 6, 11]];
+            let plank = [[0, 0, 0], [10 * count, 9, 5]];
+            let solid = cuboids([plank].into_iter().chain((0..count).map(post)));
+            let source = solid.sources().get(Slot(0));
+            let view = View::new(source, source.mesh().expect("a mesh"));
+            let faces: Vec<FaceId> = view.mesh.face_ids().collect();
+            let unclear = Unclear::among(&view, [faces.as_slice()]).expect("few pairs");
+            let tangle = Tangle::new(source, &unclear.pairs).expect("a mesh");
+            let cut = tangle.cut_up(Slot(0));
+            let tells = |cut: &CutUp| {
+                let all = cut.known_by.iter().enumerate();
+                all.filter(|(i, known)| known.piece == *i).count()
+            };
+            let pieces: usize = cut.iter().map(|c| c.pieces.len()).sum();
+            let alone: usize = cut.iter().map(tells).sum();
+            (cut.len(), alone, pieces)
+        };
+        for count in [4, 8] {
+            let (faces, alone, pieces) = told(count);
+            assert!(pieces > 2 * faces && alone == faces, "{alone} of {pieces}");
+        }
     }
 }

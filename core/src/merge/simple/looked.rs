@@ -1,11 +1,10 @@
 //! Quick looks at pairs of faces: most share a vertex or lie beyond each other's planes.
 
 use super::flats::doubles;
-use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::meeting::{meeting, Meeting};
-use crate::geometry::doubles::Triangle;
+use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Side;
 use crate::mesh::handle::{FaceId, VertexId};
@@ -14,7 +13,6 @@ use crate::mesh::triangles::TriangleMesh;
 
 /// A face prepared for quick looks at pairs.
 pub(super) struct Looked {
-    corners: [Lattice; 3],
     vertices: [VertexId; 3],
     low: Lattice,
     high: Lattice,
@@ -26,6 +24,7 @@ pub(super) struct Looked {
     size: f64,
     /// True if the face certainly has area.
     has_area: bool,
+    /// The corners, whose coordinates doubles hold.
     doubles: Triangle,
     /// The flat piece to which the face belongs, or `NONE`.
     piece: u32,
@@ -33,8 +32,8 @@ pub(super) struct Looked {
 
 impl Looked {
     pub(super) fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool], piece: u32) -> Self {
-        let corners = mesh.corners(face);
         let (low, high) = mesh.face_box(face);
+        let corners = doubles(mesh, face);
         let u = difference(&corners[1], &corners[0]);
         let v = difference(&corners[2], &corners[0]);
         let normal = [
@@ -45,7 +44,6 @@ impl Looked {
         let longest = |w: &[f64; 3]| w.iter().fold(0.0f64, |m, c| m.max(c.abs()));
         let size = longest(&u) * longest(&v);
         Self {
-            corners,
             vertices: mesh.vertices_of(face),
             low,
             high,
@@ -53,7 +51,7 @@ impl Looked {
             normal,
             size,
             has_area: longest(&normal) > 16.0 * f64::EPSILON * size,
-            doubles: doubles(mesh, face),
+            doubles: corners,
             piece,
         }
     }
@@ -66,14 +64,23 @@ impl Looked {
         if self.piece != NONE && self.piece == other.piece {
             return true;
         }
-        let shared = |p: &&Lattice| self.corners.contains(p);
-        match other.corners.iter().filter(shared).count() {
+        let theirs = self.shared_with(other);
+        match theirs.iter().filter(|shared| **shared).count() {
             0 | 1 => {
-                self.has_beyond(other) || other.has_beyond(self) || self.meets_in_points(other)
+                self.has_beyond(other, theirs)
+                    || other.has_beyond(self, other.shared_with(self))
+                    || self.meets_in_points(other)
             }
             2 => !self.shares_irregular_edge(other) && self.folds_away(other),
             _ => false,
         }
+    }
+
+    /// Return which corners of another face are corners of this one.
+    #[allow(clippy::float_cmp, reason = "doubles hold the coordinates")]
+    fn shared_with(&self, other: &Self) -> [bool; 3] {
+        let [a, b, c] = &self.doubles;
+        other.doubles.map(|p| p == *a || p == *b || p == *c)
     }
 
     /// Return whether two faces certainly have nothing but points in common. Surfaces cross along
@@ -87,19 +94,16 @@ impl Looked {
     /// although no two faces do. An edge whose ends are other vertices of the same places has two
     /// faces of its own.
     fn shares_irregular_edge(&self, other: &Self) -> bool {
-        let common = || (0..3).filter(|i| other.corners.contains(&self.corners[*i]));
+        let common = || (0..3).filter(|i| other.doubles.contains(&self.doubles[*i]));
         let is_twin = |i: usize| !other.vertices.contains(&self.vertices[i]);
         common().any(is_twin) || common().all(|i| self.irregular[i])
     }
 
     /// Return whether the other face's corners that are not shared lie strictly on one side of this
     /// plane.
-    fn has_beyond(&self, other: &Self) -> bool {
-        let mut sides = other
-            .corners
-            .iter()
-            .filter(|p| !self.corners.contains(p))
-            .map(|p| self.side(p));
+    fn has_beyond(&self, other: &Self, shared: [bool; 3]) -> bool {
+        let corners = other.doubles.iter().zip(shared);
+        let mut sides = corners.filter(|c| !c.1).map(|(p, _)| self.side(p));
         let Some(first) = sides.next() else {
             return false;
         };
@@ -109,7 +113,7 @@ impl Looked {
     /// Return whether two faces with a common edge lie in different planes, or flat beside each
     /// other.
     fn folds_away(&self, other: &Self) -> bool {
-        let apex = other.corners.iter().find(|p| !self.corners.contains(p));
+        let apex = other.doubles.iter().find(|p| !self.doubles.contains(p));
         let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
         let bound = 64.0 * f64::EPSILON * self.size * other.size;
         apex.is_some_and(|p| self.side(p).is_certain())
@@ -118,16 +122,16 @@ impl Looked {
 
     /// Return whether some edge of one face is an edge of the other, run backwards.
     fn runs_against(&self, other: &Self) -> bool {
-        let edge = |c: &[Lattice; 3], i: usize| (c[i], c[(i + 1) % 3]);
+        let edge = |c: &Triangle, i: usize| (c[i], c[(i + 1) % 3]);
         (0..3).any(|i| {
-            let (a, b) = edge(&self.corners, i);
-            (0..3).any(|j| edge(&other.corners, j) == (b, a))
+            let (a, b) = edge(&self.doubles, i);
+            (0..3).any(|j| edge(&other.doubles, j) == (b, a))
         })
     }
 
     /// The side of the face's plane on which a point lies, where doubles tell it.
-    fn side(&self, p: &Lattice) -> Filtered<Side> {
-        let w = difference(p, &self.corners[0]);
+    fn side(&self, p: &Point) -> Filtered<Side> {
+        let w = difference(p, &self.doubles[0]);
         let value: f64 = (0..3).map(|i| self.normal[i] * w[i]).sum();
         let reach: f64 = w.iter().map(|c| c.abs()).sum();
         let certain = value.abs() > 16.0 * f64::EPSILON * self.size * reach;
@@ -136,6 +140,6 @@ impl Looked {
 }
 
 /// a − b, rounded once at most: the difference may have 54 bits.
-fn difference(a: &Lattice, b: &Lattice) -> [f64; 3] {
-    each_axis(|i| as_double(a[i] - b[i]))
+fn difference(a: &Point, b: &Point) -> [f64; 3] {
+    each_axis(|i| a[i] - b[i])
 }

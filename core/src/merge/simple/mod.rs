@@ -11,10 +11,11 @@ mod looked;
 mod places;
 mod probes;
 pub(super) mod star;
+mod unclear;
 mod uniting;
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 use super::descent::choice::LEAF;
 use super::kernels::trees::LeafTree;
@@ -32,10 +33,11 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 use crate::tree::solid::Solid;
-use flats::flat_pieces;
 use looked::Looked;
 pub use places::overlaps_at;
 use star::is_star_shaped;
+pub use unclear::Unclear;
+use unclear::View;
 pub use uniting::united_where_it_overlaps;
 
 /// Lists at least this long are worth a task of their own.
@@ -50,12 +52,11 @@ const MOST_PAIRS: usize = 64;
 
 struct Check<'a> {
     sources: &'a Sources,
-    mesh: &'a TriangleMesh,
+    view: &'a View<'a>,
     shells: Vec<u32>,
-    /// By vertex, whether surfaces may meet there that pairs of faces do not show.
-    irregular: Vec<bool>,
-    /// By face, its flat piece.
-    pieces: Vec<u32>,
+    /// The faces that may overlap others; `None` if these are many, and cells are looked at one by
+    /// one.
+    unclear: Option<Unclear>,
     seen: Vec<AtomicBool>,
     overlap: AtomicBool,
 }
@@ -93,26 +94,42 @@ pub enum Simplicity {
 /// # Errors
 /// `Cancelled`.
 pub fn simplicity(solid: &Solid, sources: &Sources) -> Result<Simplicity> {
+    Ok(simplicity_and_pairs(solid, sources)?.0)
+}
+
+/// As [`simplicity`], and the pairs of faces that may overlap, if it had to look for them and they
+/// are not too many.
+///
+/// # Errors
+/// `Cancelled`.
+pub fn simplicity_and_pairs(
+    solid: &Solid,
+    sources: &Sources,
+) -> Result<(Simplicity, Option<Unclear>)> {
     let Some((leaf, source, mesh)) = only_mesh(solid) else {
-        return Ok(Simplicity::Unasked);
+        return Ok((Simplicity::Unasked, None));
     };
     let all = leaf.groups[0].faces.iter().copied().eq(mesh.face_ids());
     let closed = || source.open_vertices().is_empty();
     if all && closed() && is_star_shaped(mesh) {
-        return Ok(Simplicity::Simple);
+        return Ok((Simplicity::Simple, None));
     }
-    let mut check = Check::new(source, mesh, sources);
+    let view = View::new(source, mesh);
+    let unclear = Unclear::among(&view, [leaf.groups[0].faces.as_slice()]);
+    let shells = shells(source, mesh.faces.len());
+    let mut check = Check::new(sources, &view, shells, unclear);
     if let [alone] = check.seen.as_mut_slice() {
         // A single shell whose faces keep clear of each other has one number on either side of all
         // of them, and which is 0 is plain from the sign of its volume.
         *alone.get_mut() = is_outward(mesh, mesh.face_ids());
     }
     check.cell(solid.root().cell, List::open(leaf, solid.root(), sources));
-    Ok(if check.overlap.load(Ordering::Relaxed) {
+    let found = if check.overlap.load(Ordering::Relaxed) {
         Simplicity::Overlapping
     } else {
         Simplicity::Simple
-    })
+    };
+    Ok((found, check.unclear))
 }
 
 /// The leaf, the source and the mesh of a solid that lists faces of one mesh and nothing else.
@@ -143,11 +160,10 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
     if shells.iter().all(|shell| *shell == 0) {
         return None;
     }
-    let mut check = Check::with_shells(source, mesh, sources, shells);
-    let mut faces = vec![Vec::new(); check.seen.len()];
-    for (face, shell) in FaceId::all().zip(&check.shells) {
-        faces[*shell as usize].push(face);
-    }
+    let faces = faces_of(&shells);
+    let view = View::new(source, mesh);
+    let unclear = Unclear::among(&view, faces.iter().map(Vec::as_slice));
+    let mut check = Check::new(sources, &view, shells, unclear);
     for (seen, faces) in check.seen.iter_mut().zip(&faces) {
         *seen.get_mut() = is_outward(mesh, faces.iter().copied());
     }
@@ -216,83 +232,66 @@ fn shells(source: &Source, count: usize) -> Vec<u32> {
     shell
 }
 
-fn irregular(source: &Source, mesh: &TriangleMesh) -> Vec<bool> {
-    let mut marks = vec![false; mesh.vertices.len()];
-    for vertex in source.irregular_vertices() {
-        marks[vertex.place()] = true;
+/// For each shell its faces, ascending.
+fn faces_of(shells: &[u32]) -> Vec<Vec<FaceId>> {
+    let mut faces = vec![Vec::new(); count_of(shells)];
+    for (face, shell) in FaceId::all().zip(shells) {
+        faces[*shell as usize].push(face);
     }
-    marks
+    faces
+}
+
+/// Count the shells.
+fn count_of(shells: &[u32]) -> usize {
+    shells.iter().map(|s| *s as usize + 1).max().unwrap_or(0)
 }
 
 impl<'a> Check<'a> {
     /// A check in which no shell was labelled yet.
-    fn new(source: &Source, mesh: &'a TriangleMesh, sources: &'a Sources) -> Self {
-        let shells = shells(source, mesh.faces.len());
-        Self::with_shells(source, mesh, sources, shells)
-    }
-
-    fn with_shells(
-        source: &Source,
-        mesh: &'a TriangleMesh,
+    fn new(
         sources: &'a Sources,
+        view: &'a View<'a>,
         shells: Vec<u32>,
+        unclear: Option<Unclear>,
     ) -> Self {
-        let count = shells.iter().map(|s| *s as usize + 1).max().unwrap_or(0);
+        let count = count_of(&shells);
         Self {
             sources,
-            mesh,
+            view,
             shells,
-            irregular: irregular(source, mesh),
-            pieces: flat_pieces(source, mesh),
+            unclear,
             seen: (0..count).map(|_| AtomicBool::new(false)).collect(),
             overlap: AtomicBool::new(false),
         }
     }
 
-    /// Looks for overlaps in a cell.
+    /// Looks for overlaps in a cell, until one is found.
     fn cell(&self, cell: Cell, list: List) {
-        let look = |cell: &Cell, list: &List| self.leaf(cell, list);
-        self.small_cells(cell, list, &look);
-    }
-
-    /// Calls `look` with the small cells of a cell, until an overlap is found.
-    fn small_cells(&self, cell: Cell, list: List, look: &(impl Fn(&Cell, &List) + Sync)) {
         poll();
-        if self.overlap.load(Ordering::Relaxed) {
+        if self.overlap.load(Ordering::Relaxed) || self.is_settled(&list) {
             return;
         }
         let total = list.len();
         let stuck = || total <= STUCK && list.reaching_out(&cell) * 8 > total * 7;
         let cut = cell.cut().filter(|_| total > LEAF && !stuck());
         let Some(cut) = cut else {
-            look(&cell, &list);
+            self.leaf(&cell, &list);
             return;
         };
         let (minus, plus) = list.divide(&cell, cut, self.sources);
-        let below = || self.small_cells(cell.half(cut, Half::Minus), minus, look);
-        let above = || self.small_cells(cell.half(cut, Half::Plus), plus, look);
+        let below = || self.cell(cell.half(cut, Half::Minus), minus);
+        let above = || self.cell(cell.half(cut, Half::Plus), plus);
         both(total >= TASK, below, above);
     }
 
-    /// The pairs of faces that may overlap, each both ways, ascending; `None` if they are many.
-    fn unclear_pairs(self, (cell, list): (Cell, List)) -> Option<Vec<[FaceId; 2]>> {
-        let found = Mutex::new(Vec::new());
-        let most = MOST_PAIRS * self.mesh.faces.len();
-        let look = |_: &Cell, list: &List| {
-            let pairs = self.unclear(list);
-            if let Ok(mut found) = found.lock() {
-                found.extend(pairs);
-                self.overlap.fetch_or(found.len() > most, Ordering::Relaxed);
-            }
-        };
-        self.small_cells(cell, list, &look);
-        let mut pairs = found
-            .into_inner()
-            .ok()
-            .filter(|found| found.len() <= most)?;
-        pairs.sort_unstable();
-        pairs.dedup();
-        Some(pairs)
+    /// Return whether all faces of a list are known to be clear of each other, and their shells to
+    /// wind once around what they hold.
+    fn is_settled(&self, list: &List) -> bool {
+        let faces = || list.records.iter().map(|r| r.face);
+        let is_seen =
+            |f: FaceId| self.seen[self.shells[f.place()] as usize].load(Ordering::Relaxed);
+        let clear = |u: &Unclear| faces().filter(|f| u.holds(*f)).nth(1).is_none();
+        self.unclear.as_ref().is_some_and(clear) && faces().all(is_seen)
     }
 
     fn leaf(&self, cell: &Cell, list: &List) {
@@ -315,28 +314,13 @@ impl<'a> Check<'a> {
         }
     }
 
-    /// Return whether no two of the faces overlap, as far as a quick look can tell; errs on no.
+    /// Return whether no two of the faces overlap, as far as quick looks can tell; errs on no.
     fn is_clean(&self, faces: &[FaceId]) -> bool {
-        let looked = self.look_at(faces);
-        (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
-    }
-
-    /// The pairs of listed faces that may overlap, as far as a quick look can tell, each both ways.
-    fn unclear(&self, list: &List) -> Vec<[FaceId; 2]> {
-        let faces: Vec<FaceId> = list.records.iter().map(|r| r.face).collect();
-        let looked = self.look_at(&faces);
-        let mut pairs = Vec::new();
-        for i in 1..looked.len() {
-            for j in (0..i).filter(|j| !looked[i].is_clear_of(&looked[*j])) {
-                pairs.extend([[faces[i], faces[j]], [faces[j], faces[i]]]);
-            }
+        if let Some(unclear) = &self.unclear {
+            return unclear.is_clear(faces);
         }
-        pairs
-    }
-
-    fn look_at(&self, faces: &[FaceId]) -> Vec<Looked> {
         spend(faces.len());
-        let look = |f: &FaceId| Looked::at(self.mesh, *f, &self.irregular, self.pieces[f.place()]);
-        faces.iter().map(look).collect()
+        let looked: Vec<Looked> = faces.iter().map(|f| self.view.of(*f)).collect();
+        (1..looked.len()).all(|i| looked[..i].iter().all(|other| looked[i].is_clear_of(other)))
     }
 }

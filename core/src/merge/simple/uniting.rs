@@ -5,9 +5,10 @@
 //! front of them. The other faces are cut up by those that reach them. One count tells the number
 //! of a patch or of a piece, and with it whether that stays. What stays is one leaf again.
 
-use super::cuts::{CutUp, Tangle};
+use super::cuts::{CutUp, KnownBy, Tangle};
+use super::only_mesh;
 use super::probes::{sides, Probed, Sides};
-use super::{only_mesh, Check};
+use super::unclear::{Unclear, View};
 use crate::arith::convert::as_number;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::Orientation;
@@ -35,7 +36,13 @@ struct Patches {
 
 /// The root of a mesh united with itself; `None` if the solid is not one closed mesh, if too many
 /// faces may overlap, or if a piece is too thin to tell its winding number.
-pub fn united_where_it_overlaps(solid: &Solid, sources: &Sources) -> Option<Branch> {
+///
+/// The pairs of faces that may overlap are looked for, unless they are given.
+pub fn united_where_it_overlaps(
+    solid: &Solid,
+    sources: &Sources,
+    pairs: Option<Unclear>,
+) -> Option<Branch> {
     let (leaf, source, mesh) = only_mesh(solid)?;
     let root = solid.root();
     let whole = solid.whole_mesh().is_some() && !root.complement && root.outside == 0;
@@ -43,8 +50,10 @@ pub fn united_where_it_overlaps(solid: &Solid, sources: &Sources) -> Option<Bran
         return None;
     }
     let within = (root.cell, List::open(leaf, root, sources));
-    let pairs = Check::new(source, mesh, sources).unclear_pairs(within.clone())?;
-    let tangle = Tangle::new(source, &pairs)?;
+    let faces = leaf.groups[0].faces.as_slice();
+    let looked_for = || Unclear::among(&View::new(source, mesh), [faces]);
+    let unclear = pairs.or_else(looked_for)?;
+    let tangle = Tangle::new(source, &unclear.pairs)?;
     let patches = Patches::beside(&tangle.faces, source.topology()?.mates());
     let cut = tangle.cut_up(ONLY);
     let of_patch = |f: &FaceId| Polygon::triangle(&mesh.corners(*f), source.plane(*f));
@@ -56,7 +65,7 @@ pub fn united_where_it_overlaps(solid: &Solid, sources: &Sources) -> Option<Bran
     let mut kept: Vec<Kept> = patches.staying(of_patches).collect();
     let mut rest = of_pieces.iter();
     for cut in cut {
-        let sides: Vec<Sides> = rest.by_ref().take(cut.pieces.len()).copied().collect();
+        let sides = cut.sides(rest.by_ref())?;
         kept.extend(cut.kept(&sides));
     }
     let node = assemble(kept, 0, Work::Given, &root.cell, sources);
@@ -64,10 +73,23 @@ pub fn united_where_it_overlaps(solid: &Solid, sources: &Sources) -> Option<Bran
 }
 
 impl CutUp {
+    /// The pieces whose numbers tell those of all others.
     fn probed(&self) -> impl Iterator<Item = Probed<'_>> {
         let weight = self.fragment.weight;
         let probed = move |polygon| Probed { polygon, weight };
-        self.pieces.iter().map(probed)
+        let tells = |(i, known): (usize, &KnownBy)| known.piece == i;
+        let telling = self.known_by.iter().enumerate().filter(move |k| tells(*k));
+        telling.map(move |(i, _)| probed(&self.pieces[i]))
+    }
+
+    /// The numbers of all pieces, given the next ones of those that tell them.
+    fn sides<'a>(&self, told: &mut impl Iterator<Item = &'a Sides>) -> Option<Vec<Sides>> {
+        let tells = |i: usize| self.known_by[i].piece == i;
+        let own = (0..self.pieces.len()).map(|i| tells(i).then(|| told.next().copied()).flatten());
+        let own: Vec<Option<Sides>> = own.collect();
+        let all = self.known_by.iter();
+        all.map(|k| Some(own[k.piece]?.map(|w| w + k.more)))
+            .collect()
     }
 
     /// Keep the pieces of the fragment that bound the points inside, given their numbers.
@@ -144,7 +166,7 @@ mod tests {
     fn united(boxes: [[[i64; 3]; 2]; 2]) -> Option<(usize, usize)> {
         let solid = cuboids(boxes);
         let sources = Sources::new(solid.sources().clone());
-        united_where_it_overlaps(&solid, &sources).map(|root| counts(&root.node))
+        united_where_it_overlaps(&solid, &sources, None).map(|root| counts(&root.node))
     }
 
     #[test]

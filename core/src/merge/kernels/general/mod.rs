@@ -27,7 +27,7 @@ use super::kept::{assemble, Kept};
 use super::problem::{CellProblem, Kernel, Solution};
 use crate::merge::rule::Rule;
 use crate::tree::node::Work;
-pub(in crate::merge) use cutting::Face;
+pub(in crate::merge) use cutting::{cut_up_by_any, Cutter, Cutting, Face};
 use scene::Scene;
 
 /// More operands than this do not meet in one small cell, or are left to the local trees.
