@@ -37,7 +37,7 @@ use looked::Looked;
 pub use places::overlaps_at;
 use star::is_star_shaped;
 pub use unclear::Unclear;
-use unclear::View;
+use unclear::{Pairs, View};
 pub use uniting::united_where_it_overlaps;
 
 /// Lists at least this long are worth a task of their own.
@@ -115,7 +115,11 @@ pub fn simplicity_and_pairs(
         return Ok((Simplicity::Simple, None));
     }
     let view = View::new(source, mesh);
-    let unclear = Unclear::among(&view, [leaf.groups[0].faces.as_slice()]);
+    let unclear = match Unclear::unless_overlapping(&view, &leaf.groups[0].faces) {
+        Pairs::Overlap => return Ok((Simplicity::Overlapping, None)),
+        Pairs::Unclear(unclear) => Some(unclear),
+        Pairs::Many => None,
+    };
     let shells = shells(source, mesh.faces.len());
     let mut check = Check::new(sources, &view, shells, unclear);
     if let [alone] = check.seen.as_mut_slice() {

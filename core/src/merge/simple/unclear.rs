@@ -20,6 +20,9 @@ use crate::mesh::triangles::TriangleMesh;
 /// Pairs that are looked at together, by several threads where there are any.
 const BATCH: usize = 8 * CHUNK;
 
+/// As many are looked at first; then twice as many each time.
+const FIRST: usize = 256;
+
 /// A mesh as quick looks at its faces need it.
 pub(super) struct View<'a> {
     pub(super) mesh: &'a TriangleMesh,
@@ -37,13 +40,34 @@ pub struct Unclear {
     in_pairs: Vec<bool>,
 }
 
+/// An answer about all faces of some groups.
+pub(super) enum Pairs {
+    /// Two faces certainly overlap; no others were looked for.
+    Overlap,
+    /// The pairs that may overlap.
+    Unclear(Unclear),
+    /// They are many.
+    Many,
+}
+
+/// A reason to end a search.
+enum End {
+    Overlap,
+    Many,
+}
+
 /// A search for pairs.
 struct Search<'a> {
     view: &'a View<'a>,
+    /// True if two faces that certainly overlap end it.
+    until_overlap: bool,
+    /// So many pairs are looked at together: first few, since the search may end.
+    batch: usize,
     /// Pairs that are near each other and were not looked at yet.
     waiting: Vec<[FaceId; 2]>,
     found: Vec<[FaceId; 2]>,
     most: usize,
+    end: Option<End>,
 }
 
 impl Unclear {
@@ -52,25 +76,27 @@ impl Unclear {
         view: &View,
         groups: impl IntoIterator<Item = &'a [FaceId]>,
     ) -> Option<Self> {
-        let mut search = Search {
-            view,
-            waiting: Vec::new(),
-            found: Vec::new(),
-            most: MOST_PAIRS * view.mesh.faces.len(),
-        };
-        for faces in groups {
-            search.compare(faces)?;
+        match Search::new(view, false).of(groups) {
+            Pairs::Unclear(unclear) => Some(unclear),
+            Pairs::Overlap | Pairs::Many => None,
         }
-        let mut pairs = search.found;
+    }
+
+    /// As [`Self::among`], unless two faces certainly overlap.
+    pub(super) fn unless_overlapping(view: &View, faces: &[FaceId]) -> Pairs {
+        Search::new(view, true).of([faces])
+    }
+
+    fn of(mut pairs: Vec<[FaceId; 2]>, count: usize) -> Self {
         pairs.extend_from_within(..);
         let turned = pairs.len() / 2;
         pairs[turned..].iter_mut().for_each(|pair| pair.reverse());
         pairs.sort_unstable();
-        let mut in_pairs = vec![false; view.mesh.faces.len()];
+        let mut in_pairs = vec![false; count];
         for [face, _] in &pairs {
             in_pairs[face.place()] = true;
         }
-        Some(Self { pairs, in_pairs })
+        Self { pairs, in_pairs }
     }
 
     /// Return whether a face may overlap another.
@@ -132,8 +158,30 @@ impl<'a> View<'a> {
     }
 }
 
-impl Search<'_> {
-    /// Compares faces with each other; `None` if many pairs were found.
+impl<'a> Search<'a> {
+    fn new(view: &'a View<'a>, until_overlap: bool) -> Self {
+        Self {
+            view,
+            until_overlap,
+            batch: FIRST,
+            waiting: Vec::new(),
+            found: Vec::new(),
+            most: MOST_PAIRS * view.mesh.faces.len(),
+            end: None,
+        }
+    }
+
+    /// Compares the faces of each of some groups with each other.
+    fn of<'b>(mut self, groups: impl IntoIterator<Item = &'b [FaceId]>) -> Pairs {
+        let all = groups.into_iter().try_for_each(|faces| self.compare(faces));
+        match (all, self.end) {
+            (Some(()), None) => Pairs::Unclear(Unclear::of(self.found, self.view.mesh.faces.len())),
+            (_, Some(End::Overlap)) => Pairs::Overlap,
+            _ => Pairs::Many,
+        }
+    }
+
+    /// Compares faces with each other, until the search ends.
     fn compare(&mut self, faces: &[FaceId]) -> Option<()> {
         let view = self.view;
         let ends = || faces.iter().map(|f| view.mesh.face_box(*f));
@@ -157,18 +205,26 @@ impl Search<'_> {
 
     fn add(&mut self, pair: [FaceId; 2]) -> Option<()> {
         self.waiting.push(pair);
-        if self.waiting.len() < BATCH {
+        if self.waiting.len() < self.batch {
             return Some(());
         }
+        self.batch = BATCH.min(2 * self.batch);
         self.look()
     }
 
-    /// Looks at the pairs that wait; `None` if many were found.
+    /// Looks at the pairs that wait; `None` if the search ends.
     fn look(&mut self) -> Option<()> {
         let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
-        self.found.extend(found.into_iter().flatten());
         self.waiting.clear();
-        (self.found.len() <= self.most).then_some(())
+        let first = self.found.len();
+        self.found.extend(found.into_iter().flatten());
+        let overlap = |[a, b]: &[FaceId; 2]| self.view.of(*a).overlaps(&self.view.of(*b));
+        if self.until_overlap && self.found[first..].iter().any(overlap) {
+            self.end = Some(End::Overlap);
+        } else if self.found.len() > self.most {
+            self.end = Some(End::Many);
+        }
+        self.end.is_none().then_some(())
     }
 }
 

@@ -142,7 +142,7 @@ struct Crossing {
 /// `Simplicity`: no further digits settle it, only a way that needs no rule.
 pub(super) struct Special;
 
-/// Which faces divide a polygon.
+/// The faces that divide a polygon.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Faces {
     /// Those that truly cross it; what is special ends the cutting.
