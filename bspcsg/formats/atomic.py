@@ -6,7 +6,7 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any, BinaryIO, TypeAlias
+from typing import BinaryIO, TypeAlias, cast
 
 from ..errors import FormatError
 from ..parameters import file_path
@@ -107,7 +107,7 @@ def _write_and_prove(part: Path, stream: BinaryIO, chunks: Iterable[bytes], prov
     with part.open("rb", buffering=0) as back:
         growing = _Growing(stream, iter(chunks), back)
         try:
-            prove(io.BufferedReader(growing))
+            prove(cast(BinaryIO, growing))
         except Exception:
             if growing.failure is not None:
                 raise growing.failure from None
@@ -150,15 +150,13 @@ class _Growing(io.RawIOBase):
     def tell(self) -> int:
         return self._back.tell()
 
-    def readinto(self, buffer: Any, /) -> int | None:
-        end = self._back.tell() + len(buffer)
-        if self._size < end:
+    def read(self, size: int = -1, /) -> bytes:
+        """Return so many bytes, or all that are left."""
+        if size < 0:
+            self.finish()
+        elif self._size < (end := self._back.tell() + size):
             self._write(end)
-        return self._back.readinto(buffer)
-
-    def readall(self) -> bytes:
-        self.finish()
-        return self._back.readall()
+        return self._back.read(size)
 
     def finish(self) -> None:
         """Write all that is left."""

@@ -3,6 +3,7 @@
 Signals are heard between two steps of Python: one step over a million rows would take a second.
 """
 
+import itertools
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,3 +22,13 @@ def listed(values: npt.NDArray[Any]) -> Iterator[Any]:
     """Yield the rows of an array as numbers, or lists of numbers, of Python."""
     for block in blocks(len(values)):
         yield from values[block].tolist()
+
+
+#: Lines of text that are handed on together: some hundred thousand bytes.
+_LINES = 1 << 12
+
+
+def encoded_lines(lines: Iterator[str]) -> Iterator[bytes]:
+    """Yield lines of text, many at a time."""
+    while together := "".join(itertools.islice(lines, _LINES)):
+        yield together.encode()

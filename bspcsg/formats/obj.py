@@ -14,7 +14,7 @@ from ..attributes.attributes import Attributes, Kind, Values
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from . import mtl
-from .blocks import listed
+from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
 from .said import chosen, is_color, said_of
 from .source import Source, quoted, whole
@@ -309,8 +309,7 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
         for point in listed(np.concatenate([mesh.vertices, said.vertex["color"]], axis=1)):
             yield "v {!r} {!r} {!r} {!r} {!r} {!r}\n".format(*point).encode()
     else:
-        for point in listed(mesh.vertices):
-            yield "v {!r} {!r} {!r}\n".format(*point).encode()
+        yield from encoded_lines(f"v {x!r} {y!r} {z!r}\n" for x, y, z in listed(mesh.vertices))
     if said is not None:
         yield from _text_with_attributes(mesh, said)
         return
@@ -318,8 +317,8 @@ def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     for name, faces in parts:
         if name or len(parts) > 1:
             yield f"o {called(name)}\n".encode()
-        for face in listed(faces + np.int64(1)):
-            yield "f {} {} {}\n".format(*face).encode()
+        corners = listed(faces + np.int64(1))
+        yield from encoded_lines(f"f {a} {b} {c}\n" for a, b, c in corners)
 
 
 def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:

@@ -9,7 +9,7 @@ import numpy as np
 from ..attributes.attributes import Attributes, Kind, Values
 from ..errors import Finding
 from ..mesh.mesh import Mesh
-from .blocks import listed
+from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
 from .said import as_bytes, chosen, is_color, said_of
 from .source import Source, quoted, whole
@@ -158,15 +158,19 @@ def _extra_lines(lines: list[_Line]) -> tuple[Finding, ...]:
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
     said = said_of(mesh)
-    points = _words(said.vertex if said else {}, len(mesh.vertices))
-    faces = _words(said.face if said else {}, len(mesh.faces))
     keyword = b"COFF\n" if said and said.vertex else b"OFF\n"
     yield keyword + (EMPTY_SET if says_empty_set(mesh) else b"")
     yield f"{len(mesh.vertices)} {len(mesh.faces)} 0\n".encode()
-    for point, words in zip(listed(mesh.vertices), points, strict=True):
-        yield "{!r} {!r} {!r}{}\n".format(*point, words).encode()
-    for face, words in zip(listed(mesh.faces), faces, strict=True):
-        yield "3 {} {} {}{}\n".format(*face, words).encode()
+    points = _words(said.vertex if said else {}, len(mesh.vertices))
+    faces = _words(said.face if said else {}, len(mesh.faces))
+    yield from encoded_lines(_data(mesh, points, faces))
+
+
+def _data(mesh: Mesh | RawMesh, points: Iterable[str], faces: Iterable[str]) -> Iterator[str]:
+    for (x, y, z), words in zip(listed(mesh.vertices), points, strict=True):
+        yield f"{x!r} {y!r} {z!r}{words}\n"
+    for (a, b, c), words in zip(listed(mesh.faces), faces, strict=True):
+        yield f"3 {a} {b} {c}{words}\n"
 
 
 def _words(attributes: Mapping[str, Values], count: int) -> Iterable[str]:

@@ -26,6 +26,9 @@ _OTHER = ("vertex", "line")
 #: Size that the packed data of a file may unpack to, in bytes.
 _LARGEST = 1 << 31
 
+#: Bytes of a file that are handed on together: they stay in a processor's cache.
+_PIECE = 1 << 17
+
 #: Files of nothing, which meshio neither writes nor reads.
 EMPTY = {
     ".vtk": (
@@ -182,4 +185,6 @@ def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"mesh{suffix}"
         grid.write(path, binary=True)
-        yield path.read_bytes()
+        with path.open("rb", buffering=0) as written:
+            while piece := written.read(_PIECE):
+                yield piece

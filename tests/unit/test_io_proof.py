@@ -115,6 +115,43 @@ def test_faults_are_found(
     assert path.read_bytes() == b"as it was" and list(tmp_path.iterdir()) == [path]
 
 
+class Watched(io.BytesIO):
+    """A file that remembers how much of it was read at once."""
+
+    def __init__(self, data: bytes) -> None:
+        super().__init__(data)
+        self.pieces: list[int] = []
+
+    def read(self, count: int | None = -1, /) -> bytes:
+        data = super().read(count)
+        self.pieces.append(len(data))
+        return data
+
+
+@pytest.mark.parametrize("more", [b"7", b"f 1 2 3\n", b"3 0 1 2\n"])
+@pytest.mark.parametrize(("suffix", "text"), FORMS)
+def test_files_end_where_the_mesh_ends(suffix: str, text: bool, more: bytes) -> None:
+    made = encoded(assembly(), "x", suffix, text)
+    data = b"".join(made.chunks)
+    if suffix in (".3mf", ".glb"):  # which say themselves where they end
+        made.prove(io.BytesIO(data + more))
+        return
+    with pytest.raises(FormatError) as caught:
+        made.prove(io.BytesIO(data + more))
+    assert caught.value.code == "write_mismatch"
+
+
+@pytest.mark.parametrize("suffix", [".off", ".ply"])
+def test_text_is_read_once_and_in_pieces(suffix: str) -> None:
+    """A file that is compared while it is written never lies in memory as a whole."""
+    made = encoded(RawMesh(*icosphere(6)), "x", suffix, text=True)
+    file = Watched(b"".join(made.chunks))
+    made.prove(file)
+    size = file.seek(0, io.SEEK_END)
+    assert size < sum(file.pieces) < size + 2 * max(file.pieces)
+    assert max(file.pieces) < size / 8
+
+
 @pytest.mark.parametrize(("suffix", "text"), NAMED)
 def test_objects_that_change_places_are_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, suffix: str, text: bool
@@ -152,19 +189,6 @@ def test_every_byte_of_the_triangles_is_read(suffix: str, text: bool) -> None:
     assert found > len(data) // 7 * {".stl": 0.6, ".glb": 0.4, ".vtk": 0.4, ".vtu": 0.3}.get(
         suffix, 0.7
     )
-
-
-class Watched(io.BytesIO):
-    """A file that remembers how much of it was read at once."""
-
-    def __init__(self, data: bytes) -> None:
-        super().__init__(data)
-        self.pieces: list[int] = []
-
-    def read(self, count: int | None = -1, /) -> bytes:
-        data = super().read(count)
-        self.pieces.append(len(data))
-        return data
 
 
 @pytest.mark.parametrize("suffix", [".ply", ".vtk"])

@@ -2,7 +2,7 @@
 
 import os
 from dataclasses import dataclass
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -45,8 +45,28 @@ class Held:
         return self
 
 
+class RowsInFile(Protocol):
+    """Rows of three numbers in a file, which are read when they are asked for."""
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+
+    @property
+    def dtype(self) -> "np.dtype[Any]":
+        """The type of one number."""
+
+    def are(self, expected: npt.NDArray[Any]) -> bool:
+        """Say whether the rows are these."""
+
+    def everything(self) -> npt.NDArray[Any]:
+        """Return all rows."""
+
+    def check_last(self) -> None:
+        """Refuse a file that does not end with them."""
+
+
 class Rows:
-    """Rows of three numbers in a file, which are read when they are asked for.
+    """Numbers in records of one size.
 
     Blocks that stay in a processor's cache are read and compared in a fifth of the time that a
     file takes in fresh memory.
@@ -82,10 +102,10 @@ class Rows:
         """The first byte behind them."""
         return self._start + self._count * int(self._row.itemsize)
 
-    def check_end(self, end: int | None) -> None:
-        """Refuse a file of another size, if there is one that it must have."""
-        if end is not None and size_of(self._file) != end:
-            raise ValueError(f"it has not the {end} bytes that its header tells of")
+    def check_last(self) -> None:
+        """Refuse a file that does not end with them."""
+        if size_of(self._file) != self.end:
+            raise ValueError(f"it has not the {self.end} bytes that its header tells of")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows are these."""
@@ -98,6 +118,10 @@ class Rows:
     def numbers(self, block: slice) -> npt.NDArray[Any]:
         """Return the rows of a block."""
         return np.frombuffer(self.data(block), self._row)
+
+    def everything(self) -> npt.NDArray[Any]:
+        """Return all rows."""
+        return self.numbers(slice(None))
 
     def data(self, block: slice) -> bytes:
         """Return the bytes of a block."""
@@ -112,16 +136,16 @@ class HeldRows:
 
     Parameters
     ----------
-    vertices, faces : Rows
+    vertices, faces : RowsInFile
     name : str
-    end : int, optional
-        The size that the file must have, which is asked for behind all numbers.
+    ends : bool
+        True if nothing may follow the faces.
     """
 
-    vertices: Rows
-    faces: Rows
+    vertices: RowsInFile
+    faces: RowsInFile
     name: str = ""
-    end: int | None = None
+    ends: bool = False
 
     @property
     def count(self) -> int:
@@ -138,14 +162,14 @@ class HeldRows:
 
     def loaded(self) -> Held:
         """Return it with all of its numbers in memory."""
-        everything = slice(None)
-        vertices, faces = self.vertices.numbers(everything), self.faces.numbers(everything)
+        vertices, faces = self.vertices.everything(), self.faces.everything()
         self.check_end()
         return Held(vertices, faces, self.name)
 
     def check_end(self) -> None:
-        """Refuse a file that is longer or shorter than it says."""
-        self.faces.check_end(self.end)
+        """Refuse a file that goes on where it should end."""
+        if self.ends:
+            self.faces.check_last()
 
 
 def piece(file: BinaryIO, start: int, count: int) -> bytes:
@@ -166,10 +190,10 @@ def size_of(file: BinaryIO) -> int:
 _LINES = 1 << 12
 
 
-def text_at(file: BinaryIO, start: int) -> bytes:
-    """Return bytes of a file, among which are all lines before the next block of numbers."""
+def text_at(file: BinaryIO, start: int, count: int = _LINES) -> bytes:
+    """Return bytes of a file: unless told, enough for all lines before the next numbers."""
     file.seek(start)
-    return file.read(_LINES)
+    return file.read(count)
 
 
 def header_of(file: BinaryIO) -> bytes:

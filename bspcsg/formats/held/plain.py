@@ -1,23 +1,23 @@
 """The content of files of STL, OBJ, OFF and PLY."""
 
+import io
 import re
 from typing import Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
 
-from ..._core import are_points, are_triangles, numbers_in
+from ..._core import are_points, are_triangles
 from .layout import (
-    OF_NUMBERS,
     Held,
     HeldRows,
     Rows,
     after,
-    check_layout,
     header_of,
     rows_of,
     whole_numbers,
 )
+from .lines import Lines, Reader
 
 
 def binary_stl(file: BinaryIO) -> list[Held]:
@@ -51,45 +51,56 @@ _FACET = (
 )
 
 
-def obj(file: BinaryIO) -> list[Held]:
+def obj(file: BinaryIO) -> list[Held] | list[HeldRows]:
     """Return the objects; all have the same vertices."""
     data = file.read()
-    if data.startswith(b"#"):
-        data = data[data.index(b"\n") + 1 :]
-    end = _first(data, 0)
-    vertices = rows_of(data[:end], b"v 0 0 0\n", 3)
+    start = data.index(b"\n") + 1 if data.startswith(b"#") else 0
+    end = _first(data, start, b"fo")
+    vertices = _lines(data, start, end, _points)
     found = []
     while end < len(data):
         start, name = end, ""
         if data.startswith(b"o ", start):
             start = data.index(b"\n", start) + 1
             name = after(b"o ", data[end : start - 1])
-        stop = data.find(b"\no ", start - 1) + 1
-        end = stop or len(data)
-        faces = rows_of(data[start:end], b"f 0 0 0\n", 3) - 1
-        found.append(Held(vertices, whole_numbers(faces), name))
-    return found
+        end = _first(data, start, b"o")
+        found.append(HeldRows(vertices, _lines(data, start, end, _named_faces), name))
+    if len(found) == 1:
+        return found
+    points = vertices.everything()
+    return [Held(points, one.faces.everything(), one.name) for one in found]
 
 
-def _first(data: bytes, start: int) -> int:
-    """Return where the first line begins that is no vertex."""
-    found = [data.find(key, start) + 1 for key in (b"\nf ", b"\no ")]
-    if data.startswith((b"f ", b"o ")):
-        return start
-    return min(filter(None, found), default=len(data))
+def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
+    """Return the lines between two places, of which the last must end."""
+    if start < end and data[end - 1 : end] != b"\n":
+        raise ValueError(f"it ends within a line at byte {end}")
+    return Lines(io.BytesIO(data), lambda: start, data.count(b"\n", start, end), read)
 
 
-def off(file: BinaryIO) -> list[Held]:
+def _points(text: bytes) -> npt.NDArray[Any]:
+    return rows_of(text, b"v 0 0 0\n", 3)
+
+
+def _named_faces(text: bytes) -> npt.NDArray[Any]:
+    return whole_numbers(rows_of(text, b"f 0 0 0\n", 3)) - 1
+
+
+def _first(data: bytes, start: int, letters: bytes) -> int:
+    """Return where one of these letters comes first, which no number has and no other line."""
+    found = [data.find(letter, start) for letter in letters]
+    return min((at for at in found if at >= 0), default=len(data))
+
+
+def off(file: BinaryIO) -> list[HeldRows]:
     """Return the faces between the vertices."""
-    data = file.read()
-    head = re.match(rb"OFF\n(?:#[^\n]*\n)?(\d+) (\d+) 0\n", data)
-    return [_table(data, head)]
+    head = re.match(rb"OFF\n(?:#[^\n]*\n)?(\d+) (\d+) 0\n", header_of(file))
+    return [_table(file, head)]
 
 
-def text_ply(file: BinaryIO) -> list[Held]:
+def text_ply(file: BinaryIO) -> list[HeldRows]:
     """Return the faces after the vertices."""
-    data = file.read()
-    return [_table(data, _PLY.match(data))]
+    return [_table(file, _PLY.match(header_of(file)))]
 
 
 _PLY = re.compile(
@@ -106,10 +117,7 @@ def binary_ply(file: BinaryIO) -> list[HeldRows]:
         raise ValueError("its header is another one")
     vertices = _Points(file, head.end(), "3<f8", int(head[1]))
     faces = _Faces(file, vertices.end, "u1,3<i4", int(head[2]))
-    held = HeldRows(vertices, faces, end=faces.end)
-    if not held.count:
-        held.check_end()
-    return [held]
+    return [_complete(HeldRows(vertices, faces, ends=True))]
 
 
 class _Points(Rows):
@@ -133,16 +141,28 @@ class _Faces(Rows):
         return corners
 
 
-def _table(data: bytes, head: re.Match[bytes] | None) -> Held:
+def _table(file: BinaryIO, head: re.Match[bytes] | None) -> HeldRows:
     """Return the vertices and faces that follow a header that counts them."""
     if head is None:
         raise ValueError("its header is another one")
-    points, count = int(head[1]), int(head[2])
-    body = data[head.end() :]
-    expected = b"  \n" * points + b"   \n" * count
-    check_layout(body.translate(None, OF_NUMBERS), expected)
-    numbers = numbers_in(body)
-    rows = numbers[3 * points :].reshape(count, 4)
+    vertices = Lines(file, head.end, int(head[1]), _bare_points)
+    faces = Lines(file, vertices.end, int(head[2]), _counted_faces)
+    return _complete(HeldRows(vertices, faces, ends=True))
+
+
+def _bare_points(text: bytes) -> npt.NDArray[Any]:
+    return rows_of(text, b"0 0 0\n", 3)
+
+
+def _counted_faces(text: bytes) -> npt.NDArray[Any]:
+    rows = rows_of(text, b"3 0 0 0\n", 4)
     if not (rows[:, 0] == 3).all():
         raise ValueError("a face has not three corners")
-    return Held(numbers[: 3 * points].reshape(points, 3), whole_numbers(rows[:, 1:]))
+    return whole_numbers(rows[:, 1:])
+
+
+def _complete(held: HeldRows) -> HeldRows:
+    """Return what is held, looked at in full if it has no faces: nobody will compare it."""
+    if not held.count:
+        held.loaded()
+    return held

@@ -11,7 +11,7 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
-from ..blocks import TOGETHER, blocks, listed
+from ..blocks import TOGETHER, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, quoted, whole
@@ -393,13 +393,17 @@ def _little(values: Values) -> "np.dtype[Any]":
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the ASCII form; every coordinate reads back as the same double."""
     yield _header(mesh, "ascii")
+    yield from encoded_lines(_lines(mesh))
+
+
+def _lines(mesh: Mesh | RawMesh) -> Iterator[str]:
     vertex, face, lists = _columns(mesh)
     further = _words(vertex, len(mesh.vertices))
-    for point, words in zip(listed(mesh.vertices), further, strict=True):
-        yield "{!r} {!r} {!r}{}\n".format(*point, words).encode()
+    for (x, y, z), words in zip(listed(mesh.vertices), further, strict=True):
+        yield f"{x!r} {y!r} {z!r}{words}\n"
     further = _words([*face, *lists], len(mesh.faces))
-    for corners, words in zip(listed(mesh.faces), further, strict=True):
-        yield "3 {} {} {}{}\n".format(*corners, words).encode()
+    for (a, b, c), words in zip(listed(mesh.faces), further, strict=True):
+        yield f"3 {a} {b} {c}{words}\n"
 
 
 def _words(columns: _Columns, count: int) -> Iterable[str]:

@@ -1,0 +1,88 @@
+"""Numbers in lines of text."""
+
+from collections.abc import Callable, Iterator
+from typing import Any, BinaryIO, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .layout import size_of, text_at
+
+#: Returns the rows of three numbers in whole lines; raises an exception where they have others.
+Reader: TypeAlias = Callable[[bytes], npt.NDArray[Any]]
+
+#: Bytes that are read together: they fit into a processor's cache with the numbers in them.
+_TOGETHER = 1 << 18
+
+
+class Lines:
+    """Rows of three numbers, each in a line of text.
+
+    Parameters
+    ----------
+    file : binary file
+    start : callable
+        Returns where the first line begins.
+    count : int
+    read : callable
+    """
+
+    def __init__(self, file: BinaryIO, start: Callable[[], int], count: int, read: Reader) -> None:
+        self._file = file
+        self._start = start
+        self._count = count
+        self._read = read
+        self._end: int | None = None
+
+    def __len__(self) -> int:
+        """Return the number of lines."""
+        return self._count
+
+    @property
+    def dtype(self) -> "np.dtype[Any]":
+        """The type of one number."""
+        return self._read(b"").dtype
+
+    def end(self) -> int:
+        """Return where the last line ends; all are read for it, unless they were."""
+        if self._end is None:
+            self._end = self._start() + sum(map(len, self._texts()))
+        return self._end
+
+    def check_last(self) -> None:
+        """Refuse a file that does not end with them."""
+        if size_of(self._file) != self.end():
+            raise ValueError("something follows its last line")
+
+    def are(self, expected: npt.NDArray[Any]) -> bool:
+        """Say whether the lines hold these rows."""
+        row, end = 0, self._start()
+        for text in self._texts():
+            found = self._read(text)
+            if not (found == expected[row : row + len(found)]).all():
+                return False
+            row, end = row + len(found), end + len(text)
+        self._end = end
+        return True
+
+    def everything(self) -> npt.NDArray[Any]:
+        """Return the rows of all lines."""
+        return np.concatenate([self._read(b""), *map(self._read, self._texts())])
+
+    def _texts(self) -> Iterator[bytes]:
+        """Yield all lines, many at a time."""
+        at, left = self._start(), self._count
+        while left:
+            text, count = _first_lines(text_at(self._file, at, _TOGETHER), left)
+            if not count:
+                raise ValueError(f"it ends at byte {at}")
+            yield text
+            at, left = at + len(text), left - count
+
+
+def _first_lines(text: bytes, most: int) -> tuple[bytes, int]:
+    """Return the whole lines that a text begins with, so many at most, and their number."""
+    count = text.count(b"\n")
+    if count > most:
+        return text[: -len(text.split(b"\n", most)[most])], most
+    return text[: text.rfind(b"\n") + 1], count
