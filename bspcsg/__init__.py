@@ -11,19 +11,22 @@ Examples
 820.0
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from .cli.entry import Quietly as _Quietly
 
-try:
-    import_module("._core", __name__)
-except ModuleNotFoundError:
-    raise ImportError(
-        f"{__path__[0]} holds the sources of bspcsg, without the compiled core. To use what is"
-        " installed, run Python in another folder; to compile the core here, run scripts/setup."
-    ) from None
+with _Quietly():
+    from importlib import import_module
+    from typing import TYPE_CHECKING, Any
 
-from .conveniences import attach as _attach
-from .tracebacks import shortened as _shortened
+    try:
+        import_module("._core", __name__)
+    except ModuleNotFoundError:
+        raise ImportError(
+            f"{__path__[0]} holds the sources of bspcsg, without the compiled core. To use what is"
+            " installed, run Python in another folder; to compile the core here, run scripts/setup."
+        ) from None
+
+    from .conveniences import attach as _attach
+    from .tracebacks import shortened as _shortened
 
 if TYPE_CHECKING:
     from ._core import __version__

@@ -13,6 +13,7 @@ _BAD_MOMENTS = ("<frozen importlib._bootstrap>", "npy_ctypes_check")
 _AGAIN = 0.01
 
 try:
+    import contextlib
     import signal
     import sys
     import time
@@ -63,6 +64,25 @@ def _replace(old: object, new: object) -> None:
     """Put one way to heed Ctrl-C in place of another; who started the process may have chosen."""
     if signal.getsignal(signal.SIGINT) is old:
         signal.signal(signal.SIGINT, new)  # type: ignore[arg-type]
+
+
+class Quietly:
+    """Lets Ctrl-C end the process quietly while the package is imported for the command line."""
+
+    def __enter__(self) -> None:
+        # While a package is imported for `-m`, this stands for the name of the program.
+        program = os.path.basename((getattr(sys, "argv", None) or [""])[0])
+        if program == "-m" or program.removesuffix(".exe") == "bspcsg":
+            _replace_in_main_thread(signal.default_int_handler, _end_quietly)
+
+    def __exit__(self, *_: object) -> None:
+        _replace_in_main_thread(_end_quietly, signal.default_int_handler)
+
+
+def _replace_in_main_thread(old: object, new: object) -> None:
+    """Do as `_replace`, and nothing in threads that may not."""
+    with contextlib.suppress(ValueError):
+        _replace(old, new)
 
 
 def main() -> None:

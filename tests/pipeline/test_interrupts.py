@@ -68,6 +68,22 @@ except KeyboardInterrupt:
     print("interrupted")
 """
 
+#: Interrupts itself when a module is looked for, in a program of some name.
+AT_AN_IMPORT = """
+import signal, sys
+program, name = sys.argv[1:]
+sys.argv[0] = program
+class Finder:
+    @staticmethod
+    def find_spec(found, path, target=None):
+        if found == name:
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Finder)
+import bspcsg.cli.entry
+assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+print("imported")
+"""
+
 SLOW = "import time\ntime.sleep(60)\n"
 
 
@@ -98,6 +114,28 @@ def test_interrupts_are_quiet_at_any_moment(tmp_path: Path, delay: float) -> Non
     assert b"Traceback" not in err and len(err.splitlines()) <= 1
     assert code == 130 or (code == 0 and target.exists())
     assert [path.name for path in tmp_path.iterdir() if path.suffix == ".part"] == []
+
+
+@pytest.mark.parametrize("program", ["/usr/bin/bspcsg", "bspcsg.exe", "-m", "other.py"])
+@pytest.mark.parametrize(
+    "name", ["bspcsg._core", "bspcsg.conveniences", "bspcsg.errors", "dataclasses", "nothing"]
+)
+def test_interrupts_are_quiet_while_the_package_is_imported(program: str, name: str) -> None:
+    """As long as it is imported for the command line; other programs are told."""
+    done = subprocess.run(
+        [sys.executable, "-c", AT_AN_IMPORT, program, name],
+        env={**os.environ, "PYTHONPATH": str(Path(b.__file__).parent.parent)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    if name == "nothing":
+        assert (done.returncode, done.stdout, done.stderr) == (0, "imported\n", "")
+    elif program == "other.py":
+        assert done.stderr.endswith("KeyboardInterrupt\n") and not done.stdout
+    else:
+        assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")

@@ -75,8 +75,8 @@ def test_importing_the_package_needs_no_numpy() -> None:
 
 
 def test_sources_that_are_not_compiled_say_so(tmp_path: Path) -> None:
-    (tmp_path / "bspcsg").mkdir()
-    shutil.copy(b.__file__, tmp_path / "bspcsg")
+    compiled = shutil.ignore_patterns("_core.*", "__pycache__", "assets")
+    shutil.copytree(Path(b.__file__).parent, tmp_path / "bspcsg", ignore=compiled)
     command = [sys.executable, "-c", "import bspcsg"]
     done = subprocess.run(
         command, cwd=tmp_path, capture_output=True, text=True, timeout=100, check=False
