@@ -3,6 +3,8 @@
 `scripts/probes` runs the same functions at full counts.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -58,10 +60,19 @@ def test_shares_of_proofs_are_told_of_each_form() -> None:
     assert all(0 <= share < 1 for share in shares.values())
 
 
-def test_a_share_beyond_the_bound_is_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_shares_of_checks_are_told_of_each_format() -> None:
+    failed, shares = measures.shares_of_checks(500, turns=1)
+    assert failed == [] and {"stl", "ply", "glb"} < set(shares)
+    assert all(0 <= share < 1 for share in shares.values())
+
+
+@pytest.mark.parametrize("measure", [measures.shares_of_proofs, measures.shares_of_checks])
+def test_a_share_beyond_the_bound_is_a_failure(
+    monkeypatch: pytest.MonkeyPatch, measure: Callable[..., measures.Measured]
+) -> None:
     monkeypatch.setattr(measures, "LARGE", 0)
     monkeypatch.setattr(measures, "SHARE", -1.0)
-    failed, shares = measures.shares_of_proofs(500, turns=1)
+    failed, shares = measure(500, turns=1)
     assert len(failed) == len(shares)
 
 

@@ -115,3 +115,19 @@ def test_a_process_writes_few_reports(folder: Path) -> None:
         with pytest.raises(b.InternalError), core_errors():
             _core.fail_on_purpose(False, 0)
     assert len(os.listdir(folder)) == 16
+
+
+def test_no_result_depends_on_a_defect() -> None:
+    """Only what makes an error, or words for one, knows that it is about a defect."""
+    core = Path(__file__).resolve().parents[2] / "core" / "src"
+    asking = {
+        path.relative_to(core).as_posix()
+        for path in core.rglob("*.rs")
+        if "ErrorKind::Internal" in path.read_text("utf-8")
+    }
+    assert asking == {
+        "error.rs",
+        "interrupt.rs",
+        "merge/evaluate.rs",
+        "python/calls/errors.rs",
+    }

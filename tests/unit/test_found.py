@@ -29,7 +29,7 @@ def is_there(test: str) -> bool:
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row[0]} {row[1]}")
 def test_what_was_found_has_tests(row: list[str]) -> None:
     who, what, tests = row
-    assert re.match(r"(R|U|L|C\d*|later)\b", who) and what
+    assert re.match(r"(R|U|L|C\d*|H|later)\b", who) and what
     named = re.findall(r"`([^`]+\.(?:py|rs)::\w+)`", tests)
     assert bool(named) != tests.startswith("—: ")
     assert [test for test in named if not is_there(test)] == []
@@ -37,7 +37,7 @@ def test_what_was_found_has_tests(row: list[str]) -> None:
 
 def test_everything_that_was_found_is_in_the_table() -> None:
     known = [f"R A{k}" for k in range(1, 14)] + [f"L {k}" for k in range(1, 8)]
-    known += [f"C{k}" for k in range(1, 11)] + ["R B", "U", "L", "C"]
+    known += [f"C{k}" for k in range(1, 11)] + ["R B", "U", "L", "C", "H"]
     told = {name.strip() for who, *_ in ROWS for name in who.split(",")}
     assert set(known) <= told
 
