@@ -76,12 +76,11 @@ impl Looked {
         }
     }
 
-    /// Return whether two faces with at most a corner in common certainly cross or overlap.
+    /// Return whether two faces certainly cross or overlap.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
-        let shared = self.shared_with(other).into_iter().filter(|s| *s).count();
         let meet = || meeting(&self.doubles, &other.doubles);
         let have_area = self.has_area && other.has_area;
-        have_area && shared < 2 && matches!(meet(), Meeting::Crossing | Meeting::Overlap)
+        have_area && matches!(meet(), Meeting::Crossing | Meeting::Overlap)
     }
 
     /// Return which corners of another face are corners of this one.
