@@ -110,7 +110,7 @@ def test_faults_of_a_wheel_are_named(tmp_path: Path, fault: str) -> None:
             f"at {HOMES[0]}/.cargo/registry/src/i/a.rs:1".encode(),
             f"{HOMES[0]}/.cargo/registry/src/i/a.rs",
         ),
-        (f"\0{HOMES[1]}/work/lib.rs\0".encode(), f"{HOMES[1]}/work/lib.rs"),
+        (f"\0{HOMES[1]}/crate/lib.rs\0".encode(), f"{HOMES[1]}/crate/lib.rs"),
         (f"{WINDOWS_HOME}\\.cargo\\a.rs".encode(), f"{WINDOWS_HOME}\\.cargo\\a.rs"),
         (f"{REGISTRY}/src/index/a.rs".encode(), f"{REGISTRY}/src/index/a.rs"),
         (rb"crates/index.crates.io-1/rayon/src/a.rs", None),
