@@ -70,10 +70,23 @@ pub struct Task {
     call: u64,
 }
 
-/// The caller of work on this thread, who knows whether to stop and cannot say so by himself.
+/// Work that a caller may give to other threads: it is done once.
+pub type Share<'a> = &'a mut (dyn FnMut() + Send);
+
+/// The abilities of a caller who works himself.
+#[derive(Clone, Copy)]
+pub struct Means {
+    /// Return whether to stop; the work cannot know by itself.
+    pub wants_to_stop: fn() -> bool,
+    /// Have threads of a pool do a share of the work for a task's call, and wait; do nothing if the
+    /// system starts none.
+    pub hand_over: fn(Task, Share<'_>),
+}
+
+/// The caller of work on this thread.
 #[derive(Clone, Copy)]
 struct Caller {
-    wants_to_stop: fn() -> bool,
+    means: Means,
     asked: Instant,
 }
 
@@ -88,11 +101,13 @@ impl Call {
 
     /// Makes the work of the call end at its next polls.
     pub fn stop(&self) {
-        let mut stopped = STOPPED.lock().unwrap_or_else(PoisonError::into_inner);
-        if !stopped.contains(&self.number) {
-            stopped.push(self.number);
-            STOPPING.store(stopped.len(), Ordering::Release);
-        }
+        self.task().stop();
+    }
+
+    /// The task of those who work for the call.
+    #[must_use]
+    pub fn task(&self) -> Task {
+        Task { call: self.number }
     }
 
     /// Does the call's work.
@@ -100,24 +115,17 @@ impl Call {
     /// # Errors
     /// Those of the work; `Cancelled`; `Internal` for a panic.
     pub fn run<T>(&self, work: impl FnOnce() -> Result<T>) -> Result<T> {
-        let task = Task { call: self.number };
-        caught(|| task.run(work))
+        caught(|| self.task().run(work))
     }
 
-    /// Does the call's work on the caller's own thread, who is asked now and then.
+    /// Does the call's work on the caller's own thread, who is asked now and then whether to stop,
+    /// and to have large shares done in a pool.
     ///
     /// # Errors
     /// Those of the work; `Cancelled`.
-    pub fn run_asking<T>(
-        &self,
-        wants_to_stop: fn() -> bool,
-        work: impl FnOnce() -> Result<T>,
-    ) -> Result<T> {
+    pub fn run_here<T>(&self, means: Means, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let asked = Instant::now();
-        let caller = Caller {
-            wants_to_stop,
-            asked,
-        };
+        let caller = Caller { means, asked };
         let _before = Restored::new(&CALLER, Some(caller));
         self.run(work)
     }
@@ -145,6 +153,15 @@ impl Task {
     #[must_use]
     pub fn current() -> Self {
         CURRENT.get()
+    }
+
+    /// Makes the work of the call end at its next polls.
+    pub fn stop(self) {
+        let mut stopped = STOPPED.lock().unwrap_or_else(PoisonError::into_inner);
+        if !stopped.contains(&self.call) {
+            stopped.push(self.call);
+            STOPPING.store(stopped.len(), Ordering::Release);
+        }
     }
 
     /// Works for this task's call, unless that has been stopped; on any thread.
@@ -232,7 +249,26 @@ fn caller_wants_to_stop() -> bool {
         asked: now,
         ..caller
     }));
-    (caller.wants_to_stop)()
+    (caller.means.wants_to_stop)()
+}
+
+/// Do a share of the work in a pool if the call's caller works himself and has one.
+///
+/// # Errors
+/// What the work needs, where nobody has done it.
+pub fn handed_over<W: Send, T: Send>(needs: W, work: impl Fn(W) -> T + Sync) -> Result<T, W> {
+    let Some(caller) = CALLER.get() else {
+        return Err(needs);
+    };
+    let (mut needs, mut value) = (Some(needs), None);
+    let mut share = || value = needs.take().map(&work);
+    (caller.means.hand_over)(Task::current(), &mut share);
+    match (value, needs) {
+        (Some(value), _) => Ok(value),
+        (None, Some(needs)) => Err(needs),
+        // Who began the share gave it up with the call.
+        (None, None) => end(),
+    }
 }
 
 #[cfg(test)]
@@ -293,9 +329,31 @@ mod tests {
         assert!(Call::new().run(passes).is_ok());
     }
 
+    /// A caller who does shares himself, and wants to stop.
+    const IMPATIENT: Means = Means {
+        wants_to_stop: || true,
+        hand_over: |task, share| task.run(share),
+    };
+
+    /// A caller whose system starts no threads.
+    const ALONE: Means = Means {
+        wants_to_stop: || false,
+        hand_over: |_, _| (),
+    };
+
     #[test]
     fn the_caller_is_asked() {
-        assert!(Call::new().run_asking(|| true, endless).is_err());
+        assert!(Call::new().run_here(IMPATIENT, endless).is_err());
+    }
+
+    #[test]
+    fn shares_are_handed_over_once_or_given_back() {
+        let shared = |means| {
+            let work = || Ok(handed_over(20, |n| n + 1));
+            Call::new().run_here(means, work).expect("not stopped")
+        };
+        assert_eq!([shared(IMPATIENT), shared(ALONE)], [Ok(21), Err(20)]);
+        assert_eq!(handed_over(20, |n| n + 1), Err(20), "nobody called");
     }
 
     #[test]

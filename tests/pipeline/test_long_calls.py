@@ -53,6 +53,10 @@ CALLS = {
         "b.intersection(*cuts).tree",
     ),
     "turned cubes at one place": ("cubes = turned(500)", "b.union(*cubes).tree"),
+    "crowds of few faces": (
+        "cubes = turned(60)",
+        "[b.union(*cubes[k:]).tree for k in range(30) for _ in range(9)]",
+    ),
     "turned cubes in one mesh": ("mesh = arrays(turned(500))", "b.Solid(*mesh).volume"),
     "boxes in one mesh": ("mesh = arrays(many_boxes(15_000))", "b.Solid(*mesh).volume"),
     "a mesh that is there two hundred times": (

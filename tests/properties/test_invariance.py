@@ -69,6 +69,17 @@ def test_same_bytes_for_any_number_of_threads(pair: int, operation: str) -> None
     assert len(seen) == 1
 
 
+def test_crowds_of_few_faces_have_the_same_bytes_for_any_number_of_threads() -> None:
+    rng = np.random.default_rng(12)
+    cubes = [turned(cube(2), random_rotation(rng)) for _ in range(30)]
+    seen = set()
+    for threads in (1, 2, 8, 2, 1):
+        b.set_threads(threads)
+        mesh = b.union(*[b.Solid(*shape) for shape in cubes]).to_mesh()
+        seen.add((mesh.vertices.tobytes(), mesh.faces.tobytes(), mesh.source.tobytes()))
+    assert len(seen) == 1
+
+
 @pytest.mark.parametrize("pair", range(len(PAIRS)))
 def test_faces_in_any_order_bound_the_same_set(pair: int) -> None:
     rng = np.random.default_rng(11)

@@ -112,6 +112,28 @@ def fork() -> None:
     assert same(job(1), expected[1]), "the parent goes on"
 
 
+def crowd_of_cubes() -> b.Solid:
+    """Return a solid of few faces, of which so many meet in one place that threads share them."""
+    cubes = [b.cube(2, center=True).rotate((31 * k, 17 * k, 7 * k)) for k in range(1, 31)]
+    return b.union(*cubes)
+
+
+def crowd() -> None:
+    """A small operation starts no threads, and a crowd of few faces does; a child has its own."""
+
+    def threads_of_process() -> int:
+        return len(list(Path("/proc/self/task").iterdir()))
+
+    before = threads_of_process()
+    small_job(0).to_mesh()
+    assert threads_of_process() == before
+    expected = crowd_of_cubes()
+    expected.to_mesh()
+    assert threads_of_process() > before
+    answer(crowd_of_cubes, "child")
+    assert same(pickle.loads(Path("child").read_bytes()), expected)
+
+
 def method(name: str) -> Callable[[], None]:
     """Return a program that shares jobs among processes begun in one way."""
 
@@ -322,6 +344,7 @@ def memory(count: int = 100_000) -> None:
 
 PROGRAMS: dict[str, Callable[..., None]] = {
     "fork": fork,
+    "crowd": crowd,
     "with-fork": method("fork"),
     "with-spawn": method("spawn"),
     "with-forkserver": method("forkserver"),

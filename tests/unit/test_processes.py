@@ -40,6 +40,11 @@ def test_one_thread_is_a_pool_too(tmp_path: Path) -> None:
     ran("fork", tmp_path, RAYON_NUM_THREADS="1")
 
 
+@linux
+def test_threads_are_started_where_many_faces_meet(tmp_path: Path) -> None:
+    ran("crowd", tmp_path, RAYON_NUM_THREADS="2")
+
+
 @pytest.mark.parametrize("name", ["with-spawn", "joblib"])
 def test_solids_go_to_new_processes_and_come_back(name: str, tmp_path: Path) -> None:
     ran(name, tmp_path)

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::interrupt::{spend, Task};
+use crate::interrupt::{handed_over, spend, Task};
 
 /// Elements of one task: some 50 µs of work, far above what handing it over costs.
 pub const CHUNK: usize = 1 << 14;
@@ -58,17 +58,41 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     chunks.enumerate().map(value).collect()
 }
 
+/// The worth of sharing work among threads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worth {
+    /// Less than handing it over costs.
+    Nothing,
+    /// Enough for a task in a pool.
+    Task,
+    /// Enough to wake the threads of a pool.
+    Pool,
+}
+
+impl Worth {
+    /// A task, or nothing.
+    #[must_use]
+    pub const fn task_if(pays: bool) -> Self {
+        if pays {
+            Self::Task
+        } else {
+            Self::Nothing
+        }
+    }
+}
+
 /// Two values, made at the same time where that pays.
 pub fn both<A: Send, B: Send>(
-    pays: bool,
+    worth: Worth,
     a: impl FnOnce() -> A + Send,
     b: impl FnOnce() -> B + Send,
 ) -> (A, B) {
-    if pays && in_pool() {
-        let task = Task::current();
-        rayon::join(|| task.run(a), || task.run(b))
-    } else {
-        (a(), b())
+    let task = Task::current();
+    let at_once = |(a, b)| rayon::join(|| task.run(a), || task.run(b));
+    match worth {
+        Worth::Task | Worth::Pool if in_pool() => at_once((a, b)),
+        Worth::Nothing | Worth::Task => (a(), b()),
+        Worth::Pool => handed_over((a, b), at_once).unwrap_or_else(|(a, b)| (a(), b())),
     }
 }
 

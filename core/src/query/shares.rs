@@ -16,7 +16,7 @@ use crate::extract::mesh::ExactMesh;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::both;
+use crate::mesh::tasks::{both, Worth};
 use crate::tree::solid::Solid;
 
 /// Sums whose denominators have at most this many bits are brought to lowest terms: later the divisor
@@ -163,9 +163,9 @@ impl Shares {
                 open: share.points.iter().map(|p| (*p, 1)).collect(),
             }),
             _ => {
-                let pays = shares.len() >= TASK;
+                let worth = Worth::task_if(shares.len() >= TASK);
                 let (low, high) = halves(shares);
-                let (low, high) = both(pays, || self.partial(low), || self.partial(high));
+                let (low, high) = both(worth, || self.partial(low), || self.partial(high));
                 self.joined(low, high)
             }
         }

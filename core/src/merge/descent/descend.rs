@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::choice::{is_crowded, is_overcrowded, Round, CROWD, GROUPED, LEAF, ORTHOGONAL, STUCK};
 use super::join;
-use super::state::{find, has_constant, has_surface, nested, State, States, MANY, TASK};
+use super::state::{find, has_constant, has_surface, nested, worth, State, States, MANY};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
@@ -305,7 +305,7 @@ impl<'a> Descent<'a> {
         let (first, second): (States, States) = states.into_iter().partition(is_ours);
         let [left, right] = halves;
         let (left, right) = both(
-            total >= TASK,
+            worth(total),
             || self.group(cell, &left, first, depth),
             || self.group(cell, &right, second, depth),
         );
@@ -393,7 +393,7 @@ impl<'a> Descent<'a> {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };
         let (minus, plus) = both(
-            total >= TASK,
+            worth(total),
             || visit(Half::Minus, below),
             || visit(Half::Plus, above),
         );

@@ -9,10 +9,25 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::merge::lists::bins::Bins;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::mesh::tasks::Worth;
 use crate::tree::node::{Branch, Node, Work};
 
-/// Lists at least this long are worth a task of their own.
-pub const TASK: usize = 512;
+/// Cells of at least so many elements are worth a task of their own: a kernel takes some 20 µs for
+/// half as many, and a task costs less than one.
+const TASK: usize = 64;
+
+/// Cells of at least so many elements are worth waking a pool, which takes some 50 µs: kernels alone
+/// take ten times as long.
+const POOL: usize = 256;
+
+/// The worth of sharing the work in a cell of so many elements.
+pub const fn worth(elements: usize) -> Worth {
+    match elements {
+        ..TASK => Worth::Nothing,
+        TASK..POOL => Worth::Task,
+        POOL.. => Worth::Pool,
+    }
+}
 
 /// Deferred leaves at least this long are sorted into bins instead of being halved.
 pub const MANY: usize = 1024;

@@ -28,7 +28,7 @@ use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::Source;
-use crate::mesh::tasks::both;
+use crate::mesh::tasks::{both, Worth};
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
@@ -285,7 +285,7 @@ impl<'a> Check<'a> {
         let (minus, plus) = list.divide(&cell, cut, self.sources);
         let below = || self.cell(cell.half(cut, Half::Minus), minus);
         let above = || self.cell(cell.half(cut, Half::Plus), plus);
-        both(total >= TASK, below, above);
+        both(Worth::task_if(total >= TASK), below, above);
     }
 
     /// Return whether all faces of a list are known to be clear of each other, and their shells to

@@ -1,7 +1,7 @@
 //! Calls into the core: the GIL released, signals polled, panics caught.
 
 use std::cell::{Cell, RefCell};
-use std::sync::mpsc;
+use std::sync::{mpsc, Arc};
 use std::time::Duration;
 
 use pyo3::prelude::*;
@@ -11,14 +11,23 @@ use super::errors::to_python;
 use super::pool::pool;
 use crate::error::panics::caught;
 use crate::error::{Error, Result};
-use crate::interrupt::Call;
+use crate::interrupt::{Call, Means, Share, Task};
 
-/// Work on fewer elements than this is done at once, on the caller's thread.
+/// Work on fewer elements than this begins on the caller's thread.
 pub const SMALL: usize = 2000;
+
+/// The abilities of a caller's thread.
+const MEANS: Means = Means {
+    wants_to_stop: signal_raised,
+    hand_over,
+};
 
 const POLL: Duration = Duration::from_millis(50);
 
 thread_local! {
+    /// The pool that does shares of this thread's call, and for how many threads it was asked.
+    static HELPERS: RefCell<(usize, Option<Arc<ThreadPool>>)> = const { RefCell::new((0, None)) };
+
     /// The exception that a signal handler raised while this thread waited or worked.
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
 
@@ -52,7 +61,10 @@ pub fn run<T: Send>(
     RAISED.set(None);
     let call = Call::new();
     let result = if size < SMALL {
-        py.detach(|| call.run_asking(signal_raised, work))
+        let before = HELPERS.replace((threads, None));
+        let result = py.detach(|| call.run_here(MEANS, work));
+        HELPERS.set(before);
+        result
     } else {
         let pool = pool(py, threads).map_err(|e| to_python(py, &e))?;
         py.detach(|| shared(&pool, &call, work))
@@ -71,26 +83,48 @@ pub fn here<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult<T> 
     caught(work).map_err(|error| to_python(py, &error))
 }
 
-/// Has a pool do the work of a call and waits for it; stops it when a signal's handler raises.
+/// Has a pool do the work of a call and waits for it.
 fn shared<T: Send>(
     pool: &ThreadPool,
     call: &Call,
     work: impl FnOnce() -> Result<T> + Send,
 ) -> Result<T> {
+    let none = || Err(Error::internal("the work ended without an answer"));
+    awaited(pool, call.task(), || call.run(work)).unwrap_or_else(none)
+}
+
+/// Has the call's pool do a share of its work and waits for it.
+fn hand_over(task: Task, share: Share<'_>) {
+    if let Some(pool) = helpers() {
+        awaited(&pool, task, || task.run(share));
+    }
+}
+
+/// The pool for this thread's call; `None` if it has one thread, or the system starts none.
+fn helpers() -> Option<Arc<ThreadPool>> {
+    HELPERS.with_borrow_mut(|(threads, found)| {
+        let ask = || Python::attach(|py| pool(py, *threads).ok());
+        *found = found.take().or_else(ask);
+        let several = |pool: &&Arc<ThreadPool>| pool.current_num_threads() > 1;
+        found.as_ref().filter(several).map(Arc::clone)
+    })
+}
+
+/// Has a pool do some work of a call and waits for it; stops it when a signal's handler raises.
+/// `None`, or the panic, if the work panicked.
+fn awaited<T: Send>(pool: &ThreadPool, task: Task, work: impl FnOnce() -> T + Send) -> Option<T> {
     let (done, wait) = mpsc::channel();
     pool.in_place_scope(|scope| {
         scope.spawn(move |_| {
-            let _ = done.send(call.run(work));
+            let _ = done.send(work());
         });
         loop {
             match wait.recv_timeout(POLL) {
-                Ok(result) => return result,
-                Err(mpsc::RecvTimeoutError::Disconnected) => {
-                    return Err(Error::internal("the work ended without an answer"));
-                }
+                Ok(value) => return Some(value),
+                Err(mpsc::RecvTimeoutError::Disconnected) => return None,
                 Err(mpsc::RecvTimeoutError::Timeout) => {
                     if signal_raised() {
-                        call.stop();
+                        task.stop();
                     }
                 }
             }
