@@ -322,9 +322,7 @@ class Assembly:
 
 def moved(solid: Solid, factors: Factors) -> Solid:
     """Return a solid moved by factors, outermost first."""
-    for factor in reversed(factors):
-        solid = solid.transform(factor.matrix)
-    return solid
+    return solid._moved(factors)
 
 
 def _children(content: Any) -> tuple[Assembly, ...]:

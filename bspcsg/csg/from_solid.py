@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import UnboundedError
-from ..geometry.transform import Factor, Factors
+from ..geometry.chain import UNMOVED, FactorChain
+from ..geometry.transform import Factor
 from ..parameters import truth_value
 from ..solid import expression
 from ..solid.counting import uncounted
@@ -101,7 +102,7 @@ class _Reading:
     def __init__(self) -> None:
         self._known: dict[expression.ExpressionNode, _Body | None] = {}
 
-    def body(self, root: expression.ExpressionNode, factors: Factors) -> _Body | None:
+    def body(self, root: expression.ExpressionNode, factors: FactorChain) -> _Body | None:
         """Return the body of a node under a transform; None if it cannot be written."""
         waiting: list[tuple[expression.ExpressionNode, Plan | None]] = [(root, None)]
         while waiting:
@@ -142,7 +143,7 @@ def _plan_of(node: expression.ExpressionNode) -> Plan | None:
         return None
     record = content.record
     return Plan(
-        record.program, [Placed(expression.ExpressionNode(leaf), ()) for leaf in record.leaves]
+        record.program, [Placed(expression.ExpressionNode(leaf), UNMOVED) for leaf in record.leaves]
     )
 
 
@@ -153,11 +154,11 @@ def _leaf(node: expression.ExpressionNode) -> _Body | None:
     return None if isinstance(content, PlaneLeaf) else _polyhedron(from_node(node))
 
 
-def _moved(body: _Body | None, factors: Factors) -> _Body | None:
+def _moved(body: _Body | None, factors: FactorChain) -> _Body | None:
     if body is None or body.node is None:
         return body
     node = body.node
-    for factor in reversed(factors):
+    for factor in reversed(list(factors)):
         node = Node("multmatrix", (_matrix(factor),), (node,))
     return body._replace(node=node)
 

@@ -1,8 +1,9 @@
 """Transforms as lists of factors, and the exact motions among them.
 
-A solid carries its transform as a tuple of 4x4 factors, outermost first: ``(F1, F2)`` maps a point
-x to F1 (F2 x). Factors are never multiplied before they are applied, and never inverted, so that
-what two solids were moved by *together* can be recognised bit by bit and taken out.
+A transform is a list of 4x4 factors, outermost first: ``(F1, F2)`` maps a point x to F1 (F2 x). A
+solid carries it as a chain (`bspcsg/geometry/chain.py`). Factors are never multiplied before they
+are applied, and never inverted, so that what two solids were moved by *together* can be recognised
+bit by bit and taken out.
 
 A factor whose linear part only permutes and mirrors axes, and which shifts by whole lattice steps,
 is a lattice motion: it acts on planes and lattice points without rounding.
@@ -36,13 +37,14 @@ class Factor:
         Last row 0, 0, 0, 1; invertible.
     """
 
-    __slots__ = ("key", "matrix")
+    __slots__ = ("_mirrors", "key", "matrix")
 
     def __init__(self, matrix: FloatArray) -> None:
         # Adding zero turns -0.0 into 0.0, so that equal maps have equal bits.
         self.matrix: FloatArray = np.array(matrix, dtype=np.float64) + 0.0
         self.matrix.flags.writeable = False
         self.key = self.matrix.tobytes()
+        self._mirrors: bool | None = None
 
     def __eq__(self, other: object) -> bool:
         """Say whether both matrices agree in every bit."""
@@ -64,6 +66,13 @@ class Factor:
     def is_identity(self) -> bool:
         """True if the map moves nothing."""
         return self.key == _IDENTITY_KEY
+
+    @property
+    def mirrors(self) -> bool:
+        """True if the map turns right hands into left ones; found once."""
+        if self._mirrors is None:
+            self._mirrors = determinant_sign(self.matrix) < 0
+        return self._mirrors
 
 
 _IDENTITY_KEY = np.eye(4).tobytes()
@@ -167,30 +176,24 @@ def _cos_sin_in_quarter(angle: float) -> tuple[float, float]:
     return math.cos(math.radians(angle)), sine
 
 
-def common_prefix(transforms: Sequence[Factors]) -> Factors:
-    """Return the longest list of outermost factors that all transforms share."""
-    first = transforms[0]
-    length = min(len(transform) for transform in transforms)
-    for position in range(length):
-        if any(transform[position] != first[position] for transform in transforms):
-            return first[:position]
-    return first[:length]
-
-
 def product(factors: Factors) -> FloatArray:
     """Return the product of the factors, each entry of each product rounded once."""
-    if len(factors) == 1:
-        return factors[0].matrix
-    result = np.eye(4)
-    for factor in factors:
-        columns = factor.matrix.T.tolist()
-        rows = result.tolist()
-        result = np.array([[_dot(row, column) for column in columns] for row in rows])
-    return result
+    return multiplied([factor.matrix for factor in factors])
+
+
+def multiplied(matrices: Sequence[FloatArray]) -> FloatArray:
+    """Return the product of (4, 4) matrices, from the first to the last."""
+    if len(matrices) == 1:
+        return matrices[0]
+    rows = np.eye(4).tolist()
+    for matrix in matrices:
+        columns = matrix.T.tolist()
+        rows = [[_dot(row, column) for column in columns] for row in rows]
+    return np.array(rows)
 
 
 def _dot(a: list[float], b: list[float]) -> float:
-    return math.fsum(x * y for x, y in zip(a, b, strict=True))
+    return math.fsum((a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]))
 
 
 def apply(matrix: FloatArray, points: FloatArray) -> FloatArray:
@@ -278,7 +281,9 @@ def permuting_run(factors: Factors) -> Factors:
     return factors
 
 
-def lattice_motion(factors: Factors, pitch: int) -> LatticeMotion | None:
+def lattice_motion(
+    factors: Factors, pitch: int, motion: LatticeMotion | None = LatticeMotion()
+) -> LatticeMotion | None:
     """Return the exact motion that the factors are at this pitch, or None if they are not one.
 
     Parameters
@@ -286,11 +291,12 @@ def lattice_motion(factors: Factors, pitch: int) -> LatticeMotion | None:
     factors : tuple of Factor
     pitch : int
         The lattice step is ``10**pitch`` model units.
+    motion : LatticeMotion or None
+        The motion inside of the factors, if it is one.
     """
-    motion = LatticeMotion()
     for factor in reversed(factors):
         step = _motion_of(factor, pitch)
-        if step is None:
+        if step is None or motion is None:
             return None
         motion = step.after(motion)
     return motion

@@ -29,6 +29,7 @@ from collections.abc import Callable, Sequence
 from types import TracebackType
 
 from ..errors import InvalidMeshError, invalid_parameter
+from ..geometry.chain import UNMOVED
 from ..solid import counting
 from ..solid.expression import ExpressionNode
 from ..solid.leaf import ConstantLeaf
@@ -107,7 +108,7 @@ class Unfilled(Solid):
     __slots__ = ("_combined", "_open")
 
     def __init__(self, combined: Callable[[Sequence[Solid]], Solid], full: bool = False) -> None:
-        self._set(ExpressionNode(ConstantLeaf(full)), ())
+        self._set(ExpressionNode(ConstantLeaf(full)), UNMOVED)
         self._combined = combined
         self._open: list[Block] = []
 

@@ -20,7 +20,7 @@ from types import ModuleType
 from typing import Any, TypeAlias
 
 from ..errors import BspcsgError, FormatError
-from ..geometry.transform import Factors
+from ..geometry.chain import FactorChain
 from ..operations.setops import union
 from ..parameters import file_path
 from ..solid.counting import counted, uncounted
@@ -40,7 +40,7 @@ _SERVE = (
 )
 
 #: A solid; of the result of an operation that, and the transform on it, for its pickle forgets it.
-_Made: TypeAlias = Solid | tuple[LastOperation, Factors]
+_Made: TypeAlias = Solid | tuple[LastOperation, FactorChain]
 
 _shown: list[Solid] = []
 

@@ -4,13 +4,13 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry.transform import Factors
+from ..geometry.chain import FactorChain
 from ..mesh.mesh import Mesh
 from .expression import ExpressionNode, Pending, make_plan
 from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
 
 
-def describe(node: ExpressionNode, factors: Factors, mesh: Mesh | None) -> str:
+def describe(node: ExpressionNode, factors: FactorChain, mesh: Mesh | None) -> str:
     """Return a few words on an expression under a transform, without evaluating it."""
     content = node.content
     moved = ", transformed" if factors else ""

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from .._types import ProgramLine
 from ..errors import internal
-from ..geometry.transform import Factors
+from ..geometry.chain import UNMOVED, FactorChain
 from .leaf import ExpressionLeaf, Record, TreeLeaf, run
 from .program import Operator
 
@@ -21,7 +21,7 @@ class Placed(NamedTuple):
     """A node under a transform."""
 
     node: "ExpressionNode"
-    factors: Factors
+    factors: FactorChain
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,9 +50,9 @@ def complement(placed: Placed) -> Placed:
     content = placed.node.content
     if isinstance(content, Pending) and content.operator == "not":
         inner = content.operands[0]
-        return Placed(inner.node, placed.factors + inner.factors)
+        return Placed(inner.node, placed.factors.around(inner.factors))
     # The transform moves outside: M(not X) and not M(X) are the same set.
-    return Placed(ExpressionNode(Pending("not", (Placed(placed.node, ()),))), placed.factors)
+    return Placed(ExpressionNode(Pending("not", (Placed(placed.node, UNMOVED),))), placed.factors)
 
 
 def operation(operator: Operator, operands: Sequence[Placed]) -> ExpressionNode:
@@ -66,8 +66,8 @@ def _settled(placed: Placed) -> Placed:
     if not placed.factors or not isinstance(content, Pending) or content.operator != "not":
         return placed
     inner = content.operands[0]
-    below = Placed(inner.node, placed.factors + inner.factors)
-    return Placed(ExpressionNode(Pending("not", (below,))), ())
+    below = Placed(inner.node, placed.factors.around(inner.factors))
+    return Placed(ExpressionNode(Pending("not", (below,))), UNMOVED)
 
 
 def evaluate(root: ExpressionNode) -> ExpressionLeaf:
@@ -111,7 +111,7 @@ def make_plan(root: ExpressionNode) -> Plan:
     uses = _count_uses(root)
     plan = Plan()
     lines: dict[Placed, int] = {}
-    waiting: list[tuple[Placed, list[Placed] | None]] = [(Placed(root, ()), None)]
+    waiting: list[tuple[Placed, list[Placed] | None]] = [(Placed(root, UNMOVED), None)]
     while waiting:
         placed, arguments = waiting.pop()
         if placed in lines:

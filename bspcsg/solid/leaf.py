@@ -5,12 +5,12 @@ A leaf answers with its tree at a pitch, and can be placed by a transform. Placi
 acts on the leaf's coordinates in one rounding, before they are snapped to the lattice again.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TypeAlias
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -20,8 +20,8 @@ from ..attributes.attributes import Attributes, Given, Later, array_of
 from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
 from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
+from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
-from ..geometry.transform import Factors
 from .program import COMPLEMENT, Algebra
 
 
@@ -103,11 +103,11 @@ class MeshLeaf:
         """Return the tree on the lattice of this pitch."""
         return at_pitch(self.grown(), pitch)
 
-    def placed(self, factors: Factors) -> "ExpressionLeaf":
+    def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
         return _place(self, factors)
 
-    def transformed(self, factors: Factors) -> "MeshLeaf":
+    def transformed(self, factors: FactorChain) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
         vertices, faces = transformed_arrays(*self.arrays(), factors)
         # Rounding may make faces cross, so the word given for the original no longer counts.
@@ -166,13 +166,13 @@ class TreeLeaf:
         """Return the tree on the lattice of this pitch."""
         return at_pitch(self.result, pitch)
 
-    def placed(self, factors: Factors) -> "ExpressionLeaf":
+    def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
         if self.result.is_empty or self.result.is_full:
             return self
         return _place(self, factors)
 
-    def transformed(self, factors: Factors) -> "ExpressionLeaf":
+    def transformed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf of the output mesh, moved as a whole: shared vertices stay shared.
 
         Raises
@@ -206,7 +206,7 @@ class TreeLeaf:
     def _is_bounded(self) -> bool:
         return self.result.is_bounded if self.extent is None else self.extent
 
-    def _moved_operands(self, factors: Factors) -> "ExpressionLeaf":
+    def _moved_operands(self, factors: FactorChain) -> "ExpressionLeaf":
         if self.record is None:
             raise UnboundedError(
                 "This solid and its complement both reach to infinity, so there is no mesh that"
@@ -230,6 +230,9 @@ class PlaneLeaf:
     pitch: int | None = field(default=None, init=False)
     extent: "Extent" = field(default=None, init=False)
     sayings: "Sayings" = field(default=(), init=False)
+    _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
+        default_factory=WeakKeyDictionary, init=False, repr=False
+    )
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
@@ -237,23 +240,28 @@ class PlaneLeaf:
         with core_errors():
             return Tree.half_space(plane.row, pitch, plane.note)
 
-    def placed(self, factors: Factors) -> "ExpressionLeaf":
+    def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the half-space moved by the factors, outermost first, in exact numbers."""
-        plane = self.plane
-        for factor in reversed(factors):
-            plane = _moved_plane(plane, factor)
-        return PlaneLeaf(plane)
+        return PlaneLeaf(factors.fold(self.plane, _moved_plane, self._images))
 
 
 def _moved_plane(plane: Hyperplane, factor: transform.Factor) -> Hyperplane:
     """Return the image of a plane; cofactors map its normal, so that no matrix is inverted."""
-    linear = _linear_part(factor)
-    determinant = transform.determinant(linear)
+    cofactors, determinant, shift = _exact_parts(factor)
     old = [entry if determinant > 0 else -entry for entry in map(Fraction, plane.normal)]
-    normal = [transform.exact_dot(row, old) for row in transform.cofactors(linear)]
-    shift = [exact_number(entry) for entry in factor.matrix[:3, 3].tolist()]
+    normal = [transform.exact_dot(row, old) for row in cofactors]
     offset = abs(determinant) * plane.offset + transform.exact_dot(normal, shift)
     return Hyperplane.of(normal, offset, plane.exact).shortened()
+
+
+@lru_cache(maxsize=2 * BLOCK)
+def _exact_parts(
+    factor: transform.Factor,
+) -> tuple[list[list[Fraction]], Fraction, list[Fraction]]:
+    """Return the cofactors and the determinant of the linear part, and the shift."""
+    linear = _linear_part(factor)
+    shift = [exact_number(entry) for entry in factor.matrix[:3, 3].tolist()]
+    return transform.cofactors(linear), transform.determinant(linear), shift
 
 
 def _linear_part(factor: transform.Factor) -> list[list[Fraction]]:
@@ -281,7 +289,7 @@ class ConstantLeaf:
         with core_errors():
             return Tree.full(pitch) if self.full else Tree.empty(pitch)
 
-    def placed(self, factors: Factors) -> "ExpressionLeaf":
+    def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the same set."""
         del factors
         return self
@@ -354,10 +362,10 @@ def tagged(
     return said if more is None else replace(said, face={**said.face, **more.face})
 
 
-def moved_attributes(attributes: Attributes, factors: Factors) -> Attributes:
+def moved_attributes(attributes: Attributes, factors: FactorChain) -> Attributes:
     """Return attributes over a mesh that was moved as by `transformed_arrays`."""
-    turned = attributes.turned(transform.product(factors)[:3, :3])
-    return turned.reordered([2, 1, 0]) if _mirror(factors) else turned
+    turned = attributes.turned(factors.product[:3, :3])
+    return turned.reordered([2, 1, 0]) if factors.mirrors else turned
 
 
 def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
@@ -403,19 +411,14 @@ _EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)
 
 
 def transformed_arrays(
-    vertices: FloatArray, faces: IndexArray, factors: Factors
+    vertices: FloatArray, faces: IndexArray, factors: FactorChain
 ) -> tuple[FloatArray, IndexArray]:
     """Return the mesh moved by the product of the factors, its outside still outside."""
-    moved = transform.apply(transform.product(factors), vertices)
-    return moved, np.ascontiguousarray(faces[:, ::-1]) if _mirror(factors) else faces
+    moved = transform.apply(factors.product, vertices)
+    return moved, np.ascontiguousarray(faces[:, ::-1]) if factors.mirrors else faces
 
 
-def _mirror(factors: Factors) -> bool:
-    """Say whether a transform turns right hands into left ones."""
-    return math.prod(transform.determinant_sign(factor.matrix) for factor in factors) < 0
-
-
-def _moved_output(leaf: TreeLeaf, factors: Factors) -> MeshLeaf:
+def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     tree = leaf.shown
     with core_errors():
         vertices, faces = tree.to_mesh()
@@ -426,15 +429,14 @@ def _moved_output(leaf: TreeLeaf, factors: Factors) -> MeshLeaf:
     return MeshLeaf(*arrays, attributes=moved)
 
 
-def _place(leaf: MeshLeaf | TreeLeaf, factors: Factors) -> ExpressionLeaf:
+def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
     """Move a leaf: exactly by the outer factors that allow it, by coordinates for the rest."""
-    outer = transform.permuting_run(factors)
-    inner = factors[len(outer) :]
+    inner = factors.inner
     base = leaf.transformed(inner) if inner else leaf
-    if not outer:
+    if len(inner) == len(factors):
         return base
     tree = tree_of(base)
-    motion = transform.lattice_motion(outer, tree.pitch)
+    motion = factors.outer_motion(tree.pitch)
     if motion is None:
         return leaf.transformed(factors)
     try:

@@ -19,7 +19,8 @@ from ..above import above
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
 from ..errors import BspcsgError, core_errors
-from ..geometry.transform import Factors, common_prefix
+from ..geometry.chain import UNMOVED, FactorChain, common_prefix
+from ..geometry.transform import Factors
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
 from ..parameters import not_negative, of_kind, optional_pitch, positive, truth_value, winding_rule
@@ -145,10 +146,10 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         # Errors in a mesh belong to the line that gave it, not to the first query.
         leaf.grown()
         leaf.let_go()
-        self._set(ExpressionNode(leaf), ())
+        self._set(ExpressionNode(leaf), UNMOVED)
         count(self)
 
-    def _set(self, node: ExpressionNode, factors: Factors) -> None:
+    def _set(self, node: ExpressionNode, factors: FactorChain) -> None:
         self._node = node
         self._factors = factors
         self._placed: ExpressionLeaf | None = None
@@ -156,7 +157,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         self._reduced: Solid | None = None
 
     @classmethod
-    def _of(cls, node: ExpressionNode, factors: Factors = ()) -> "Solid":
+    def _of(cls, node: ExpressionNode, factors: FactorChain = UNMOVED) -> "Solid":
         solid = cls.__new__(cls)
         solid._set(node, factors)
         return solid
@@ -289,7 +290,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     @counted
     def _moved(self, factors: Factors) -> "Solid":
         kept = tuple(factor for factor in factors if not factor.is_identity)
-        return from_node(self._node, kept + self._factors) if kept else self
+        return from_node(self._node, self._factors.under(kept)) if kept else self
 
     # Results
 
@@ -452,7 +453,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         mesh = self._mesh_at_hand()
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, mesh)})"
-        return f"Solid({describe(ExpressionNode(self._placed), (), mesh)})"
+        return f"Solid({describe(ExpressionNode(self._placed), UNMOVED, mesh)})"
 
     def _mesh_at_hand(self) -> Mesh | None:
         """Return the mesh if it is known, or if a small result only has to be written out."""
@@ -489,7 +490,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         content = evaluate(self._node)
         if content.extent is None:
             return _restored, (self.tree.dump(), (), *_if_any(self._sayings))
-        return _restored, (tree_of(content).dump(), self._factors, *_if_any(content.sayings))
+        return _restored, (tree_of(content).dump(), tuple(self._factors), *_if_any(content.sayings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -511,7 +512,7 @@ class LastOperation:
     result: Solid
 
 
-def from_node(node: ExpressionNode, factors: Factors = ()) -> Solid:
+def from_node(node: ExpressionNode, factors: FactorChain = UNMOVED) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
 
@@ -547,7 +548,7 @@ def expression_of(solid: Solid) -> Placed:
     return Placed(solid._node, solid._factors)
 
 
-def with_record(last: LastOperation, factors: Factors) -> Solid:
+def with_record(last: LastOperation, factors: FactorChain) -> Solid:
     """Return the solid of an operation under a transform.
 
     It knows the operation, which pickling it leaves out.
@@ -561,7 +562,7 @@ def with_record(last: LastOperation, factors: Factors) -> Solid:
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     """Return the lazy combination of solids; the transform they share goes to the result."""
     prefix = common_prefix([solid._factors for solid in solids])
-    operands = [Placed(solid._node, solid._factors[len(prefix) :]) for solid in solids]
+    operands = [Placed(solid._node, solid._factors.without(len(prefix))) for solid in solids]
     return from_node(operation(operator, operands), prefix)
 
 
@@ -576,4 +577,4 @@ def _if_any(sayings: Sayings) -> tuple[Sayings, ...]:
 def _restored(data: bytes, factors: Factors, sayings: Sayings = ()) -> Solid:
     with core_errors():
         leaf = TreeLeaf(Tree.load(data), sayings=sayings)
-        return from_node(ExpressionNode(leaf), factors)
+        return from_node(ExpressionNode(leaf), FactorChain.of(factors))

@@ -140,8 +140,8 @@ def test_a_chain_of_general_transforms_keeps_values_with_their_places() -> None:
     factors = [np.eye(4)]
     one = b.cube(1)
     for moved in (one.rotate(20, (1, 1, 0)), one.translate(0.1, 0, 0), one.rotate(-7, "y")):
-        factors.insert(0, moved._factors[0].matrix)
-    factors.insert(0, one.mirror((0, 1, 1))._factors[0].matrix)
+        factors.insert(0, moved._factors.product)
+    factors.insert(0, one.mirror((0, 1, 1))._factors.product)
     matrix = np.linalg.multi_dot(factors)
     image = told[known] @ matrix[:3, :3].T + matrix[:3, 3]
     assert np.allclose(image, mesh.vertices[mesh.faces[known]], atol=1e-8)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import bspcsg as b
 from bspcsg.geometry import transform
+from bspcsg.geometry.chain import FactorChain, common_prefix
 from bspcsg.geometry.transform import Factor, LatticeMotion
 
 PITCH = -9
@@ -124,10 +125,15 @@ def test_composed_motions_agree_with_the_product(choice: list[int]) -> None:
 
 def test_common_prefix_is_the_outermost_equal_part() -> None:
     m, t, s = (transform.translation((k, 0, 0)) for k in (1, 2, 3))
-    assert transform.common_prefix([(m, t), (m, s)]) == (m,)
-    assert transform.common_prefix([(m, t), (m, t)]) == (m, t)
-    assert transform.common_prefix([(m, t), ()]) == ()
-    assert transform.common_prefix([(t, m), (s, m)]) == ()
+
+    def common(*lists: tuple[Factor, ...]) -> tuple[Factor, ...]:
+        return tuple(common_prefix([FactorChain.of(factors) for factors in lists]))
+
+    assert common((m, t), (m, s)) == (m,)
+    assert common((m, t), (m, t)) == (m, t)
+    assert common((m, t), ()) == ()
+    assert common((t, m), (s, m)) == ()
+    assert common((m, t, *[s] * 99), (m, t, *[s] * 40, m)) == (m, t, *[s] * 40)
 
 
 def test_factors_are_equal_bit_by_bit_but_for_the_sign_of_zero() -> None:

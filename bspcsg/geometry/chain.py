@@ -1,0 +1,227 @@
+"""Transforms of any number of factors, at the cost of the factors that a step adds."""
+
+from collections.abc import Callable, Iterator, MutableMapping, Sequence
+from functools import reduce
+from typing import TypeVar
+
+from .._types import FloatArray
+from .transform import Factor, Factors, LatticeMotion, lattice_motion, multiplied, permuting_run
+
+Value = TypeVar("Value")
+
+#: Factors in a block: transforms of no more are multiplied from the outside, like any `product`.
+BLOCK = 32
+
+
+class FactorChain:
+    """The factors that move a solid, outermost first; immutable.
+
+    Blocks of the innermost factors know what they come to. A chain that goes on shares them, so
+    that n steps, each with a look at the result, multiply a multiple of n matrices and not n².
+
+    Parameters
+    ----------
+    head : tuple of Factor
+        The outermost factors, at most `BLOCK`.
+    rest : FactorBlock, optional
+        The factors inside of them.
+    """
+
+    __slots__ = ("_head", "_rest")
+
+    def __init__(self, head: Factors = (), rest: "FactorBlock | None" = None) -> None:
+        self._head = head
+        self._rest = rest
+
+    @classmethod
+    def of(cls, factors: Sequence[Factor]) -> "FactorChain":
+        """Return the chain of factors, outermost first."""
+        return cls().under(factors)
+
+    def under(self, factors: Sequence[Factor]) -> "FactorChain":
+        """Return the chain with more factors outside, outermost first."""
+        head, rest = self._head, self._rest
+        for factor in reversed(factors):
+            if len(head) == BLOCK:
+                head, rest = (), FactorBlock(head, rest)
+            head = (factor, *head)
+        return FactorChain(head, rest)
+
+    def around(self, inner: "FactorChain") -> "FactorChain":
+        """Return the chain with another one inside of it."""
+        return inner.under(tuple(self)) if inner else self
+
+    def fold(
+        self,
+        start: Value,
+        step: Callable[[Value, Factor], Value],
+        known: MutableMapping["FactorBlock", Value],
+    ) -> Value:
+        """Return what the factors make of a value, the innermost first.
+
+        Parameters
+        ----------
+        start : object
+        step : callable
+            The value and a factor to the next value.
+        known : mutable mapping
+            The values of this start at blocks; they are looked up here and added.
+        """
+        waiting, block = [], self._rest
+        while block is not None and block not in known:
+            waiting.append(block)
+            block = block.rest
+        value = start if block is None else known[block]
+        for block in reversed(waiting):
+            value = known[block] = reduce(step, reversed(block.factors), value)
+        return reduce(step, reversed(self._head), value)
+
+    def without(self, count: int) -> "FactorChain":
+        """Return the chain without so many of its outermost factors."""
+        head, rest = self._head, self._rest
+        while count >= len(head) and rest is not None:
+            count -= len(head)
+            head, rest = rest.factors, rest.rest
+        return FactorChain(head[count:], rest)
+
+    def __len__(self) -> int:
+        """Count the factors."""
+        return len(self._head) + _length(self._rest)
+
+    def __iter__(self) -> Iterator[Factor]:
+        """Yield the factors, outermost first."""
+        yield from self._head
+        block = self._rest
+        while block is not None:
+            yield from block.factors
+            block = block.rest
+
+    def __eq__(self, other: object) -> bool:
+        """Say whether all factors agree in every bit."""
+        return isinstance(other, FactorChain) and len(self) == len(other) == _agreeing(self, other)
+
+    def __hash__(self) -> int:
+        """Hash of all factors."""
+        return _hashed(self._head, self._rest)
+
+    def __reduce__(self) -> tuple[Callable[[Factors], "FactorChain"], tuple[Factors]]:
+        """Pickle the factors only: blocks lie in one another."""
+        return FactorChain.of, (tuple(self),)
+
+    @property
+    def product(self) -> FloatArray:
+        """The product of the factors, each entry of each product rounded once."""
+        return _product(self._head, self._rest)
+
+    @property
+    def mirrors(self) -> bool:
+        """True if the transform turns right hands into left ones."""
+        return _mirrors(self._head, self._rest)
+
+    @property
+    def inner(self) -> "FactorChain":
+        """The chain without the outermost factors that permute and mirror axes only."""
+        return _inner(self._head, self._rest)
+
+    def outer_motion(self, pitch: int) -> LatticeMotion | None:
+        """Return the motion that the factors outside of `inner` are, or None if it is not exact."""
+        run = permuting_run(self._head)
+        if self._rest is None or len(run) < len(self._head):
+            return lattice_motion(run, pitch)
+        return lattice_motion(run, pitch, self._rest.outer_motion(pitch))
+
+
+#: The chain that moves nothing.
+UNMOVED = FactorChain()
+
+
+class FactorBlock:
+    """The innermost factors of a chain, and what they come to.
+
+    Parameters
+    ----------
+    factors : tuple of Factor
+        The outermost of them, as many as `BLOCK`.
+    rest : FactorBlock, optional
+    """
+
+    __slots__ = (
+        "__weakref__",
+        "_motions",
+        "factors",
+        "hashed",
+        "inner",
+        "length",
+        "mirrors",
+        "product",
+        "rest",
+    )
+
+    def __init__(self, factors: Factors, rest: "FactorBlock | None") -> None:
+        # All at once: to ask for it later would recurse as deep as there are blocks.
+        self.factors = factors
+        self.rest = rest
+        self.length = len(factors) + _length(rest)
+        self.hashed = _hashed(factors, rest)
+        self.product = _product(factors, rest)
+        self.mirrors = _mirrors(factors, rest)
+        self.inner = _inner(factors, rest)
+        self._motions: dict[int, LatticeMotion | None] = {}
+
+    def outer_motion(self, pitch: int) -> LatticeMotion | None:
+        """Return the motion as `FactorChain.outer_motion` does."""
+        waiting: list[FactorBlock] = []
+        block: FactorBlock | None = self
+        while block is not None and pitch not in block._motions:
+            waiting.append(block)
+            block = block.rest if len(permuting_run(block.factors)) == BLOCK else None
+        motion = LatticeMotion() if block is None else block._motions[pitch]
+        for block in reversed(waiting):
+            motion = lattice_motion(permuting_run(block.factors), pitch, motion)
+            block._motions[pitch] = motion
+        return motion
+
+
+def common_prefix(chains: Sequence[FactorChain]) -> FactorChain:
+    """Return the longest chain of outermost factors that all chains share."""
+    first = chains[0]
+    length = min(_agreeing(first, chain) for chain in chains)
+    if length == len(first):
+        return first
+    return FactorChain.of([factor for _, factor in zip(range(length), first, strict=False)])
+
+
+def _agreeing(one: FactorChain, other: FactorChain) -> int:
+    """Count the outermost factors that two chains share."""
+    if one is other:
+        return len(one)
+    count = 0
+    for count, (a, b) in enumerate(zip(one, other, strict=False), start=1):
+        if a != b:
+            return count - 1
+    return count
+
+
+def _length(block: FactorBlock | None) -> int:
+    return 0 if block is None else block.length
+
+
+def _hashed(factors: Factors, rest: FactorBlock | None) -> int:
+    return hash((factors, 0 if rest is None else rest.hashed))
+
+
+def _product(factors: Factors, rest: FactorBlock | None) -> FloatArray:
+    inner = [] if rest is None else [rest.product]
+    return multiplied([factor.matrix for factor in factors] + inner)
+
+
+def _mirrors(factors: Factors, rest: FactorBlock | None) -> bool:
+    inner = rest is not None and rest.mirrors
+    return (sum(factor.mirrors for factor in factors) + inner) % 2 == 1
+
+
+def _inner(factors: Factors, rest: FactorBlock | None) -> FactorChain:
+    run = len(permuting_run(factors))
+    if run < len(factors):
+        return FactorChain(factors[run:], rest)
+    return UNMOVED if rest is None else rest.inner
