@@ -5,11 +5,11 @@ A leaf answers with its tree at a pitch, and can be placed by a transform. Placi
 acts on the leaf's coordinates in one rounding, before they are snapped to the lattice again.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import TypeAlias
+from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -168,23 +168,18 @@ class TreeLeaf:
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
-        if self.result.is_empty or self.result.is_full:
-            return self
-        return _place(self, factors)
+        return self if self.is_constant else _place(self, factors)
 
-    def transformed(self, factors: FactorChain) -> "ExpressionLeaf":
+    def transformed(self, factors: FactorChain) -> "ExpressionLeaf | None":
         """Return the leaf of the output mesh, moved as a whole: shared vertices stay shared.
 
-        Raises
-        ------
-        UnboundedError
-            If neither the solid nor its complement has an output mesh.
+        None if neither the solid nor its complement has an output mesh.
         """
         if self._is_bounded():
             return _moved_output(self, factors)
         outside = run(Record(COMPLEMENT, (self,)))
         if not outside._is_bounded():
-            return self._moved_operands(factors)
+            return None
         moved = run(Record(COMPLEMENT, (_moved_output(outside, factors),)))
         return TreeLeaf(moved.result, extent=False, sayings=moved.sayings)
 
@@ -203,18 +198,13 @@ class TreeLeaf:
         """The tree as it is made into a mesh."""
         return patched(self.result, self.sayings)
 
+    @property
+    def is_constant(self) -> bool:
+        """True for the empty set and for all of space, which no transform changes."""
+        return self.result.is_empty or self.result.is_full
+
     def _is_bounded(self) -> bool:
         return self.result.is_bounded if self.extent is None else self.extent
-
-    def _moved_operands(self, factors: FactorChain) -> "ExpressionLeaf":
-        if self.record is None:
-            raise UnboundedError(
-                "This solid and its complement both reach to infinity, so there is no mesh that"
-                " the transform could act on; transform its operands instead.",
-                "unbounded",
-            )
-        leaves = tuple(leaf.placed(factors) for leaf in self.record.leaves)
-        return run(Record(self.record.program, leaves))
 
 
 @dataclass(frozen=True, eq=False)
@@ -429,16 +419,40 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     return MeshLeaf(*arrays, attributes=moved)
 
 
+#: Something that is being moved: it asks for leaves under factors, and is sent them where they go.
+_Moving: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "ExpressionLeaf", Any]
+
+
 def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
+    """Move a leaf, and operands of operands in its stead, however deep these lie."""
+    waiting = [_placing(leaf, factors)]
+    answer: Any = None
+    while waiting:
+        try:
+            operand, under = waiting[-1].send(answer)
+        except StopIteration as ended:
+            waiting.pop()
+            answer = ended.value
+            continue
+        if isinstance(operand, TreeLeaf) and not operand.is_constant:
+            waiting.append(_placing(operand, under))
+            answer = None
+        else:
+            answer = operand.placed(under)
+    moved: ExpressionLeaf = answer
+    return moved
+
+
+def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     """Move a leaf: exactly by the outer factors that allow it, by coordinates for the rest."""
     inner = factors.inner
-    base = leaf.transformed(inner) if inner else leaf
+    base = (yield from _transforming(leaf, inner)) if inner else leaf
     if len(inner) == len(factors):
         return base
     tree = tree_of(base)
     motion = factors.outer_motion(tree.pitch)
     if motion is None:
-        return leaf.transformed(factors)
+        return (yield from _transforming(leaf, factors))
     try:
         with core_errors():
             moved = tree.moved(list(motion.axes), list(motion.shift))
@@ -446,7 +460,24 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
     except (LimitError, UnboundedError):
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
         # off by the border of the universe, which does not move with it.
-        return leaf.transformed(factors)
+        return (yield from _transforming(leaf, factors))
+
+
+def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+    """Move the mesh of a leaf, or its operands if it has none."""
+    moved = leaf.transformed(factors)
+    if moved is not None:
+        return moved
+    if not isinstance(leaf, TreeLeaf) or leaf.record is None:
+        raise UnboundedError(
+            "This solid and its complement both reach to infinity, so there is no mesh that"
+            " the transform could act on; transform its operands instead.",
+            "unbounded",
+        )
+    leaves = []
+    for operand in leaf.record.leaves:
+        leaves.append((yield operand, factors))
+    return run(Record(leaf.record.program, tuple(leaves)))
 
 
 def _after(motion: transform.LatticeMotion, sayings: Sayings) -> Sayings:

@@ -159,3 +159,12 @@ def test_the_last_operation_leaves_a_common_transform_out() -> None:
     assert operation is not None
     assert operation.result.bounds is not None
     assert np.array_equal(operation.result.bounds, [[0, 0, 0], [2, 2, 2]])
+
+
+def test_operands_of_unbounded_sets_move_at_any_depth() -> None:
+    """What was made of half-spaces has no mesh: it moves by its operands, and those by theirs."""
+    solid = plane = b.half_space((1, 2, 3), 0.5)
+    for _ in range(250):
+        solid, plane = ~solid.rotate(1), plane.rotate(1)
+        assert not solid.is_empty
+    assert solid == plane
