@@ -14,6 +14,7 @@
 //! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
 //! verification of geometric structures*, 1999. The ray tells one covering from several.
 
+use crate::arith::bounds::REACH;
 use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
@@ -27,8 +28,23 @@ pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     let Some(eye) = mean(&mesh.vertices) else {
         return false;
     };
-    let mut corners = mesh.face_ids().map(|f| mesh.corners(f));
-    corners.all(|c| is_behind(&eye, &c)) && faces_ahead(mesh, &eye) == Some(1)
+    let ray = Segment {
+        from: eye.map(|c| 2 * c),
+        axis: 0,
+        to: 2 * REACH,
+    };
+    let mut change = 0;
+    for face in mesh.face_ids() {
+        let corners = mesh.corners(face);
+        let seen = corners.map(|corner| each_axis(|i| corner[i] - eye[i]));
+        if !is_ahead(&seen) {
+            return false;
+        }
+        if !is_beside(&seen, 1) && !is_beside(&seen, 2) {
+            change += triangle_change(&corners, &ray);
+        }
+    }
+    change == -1
 }
 
 /// The mean of points, each coordinate rounded down.
@@ -41,22 +57,18 @@ fn mean(points: &[Lattice]) -> Option<Lattice> {
     Some(sum.map(|s| s.div_euclid(count) as i64))
 }
 
-/// Return whether a point lies strictly behind a face's plane; errs on no.
-fn is_behind(point: &Lattice, corners: &[Lattice; 3]) -> bool {
-    let [a, b, c] = corners.map(|corner| each_axis(|i| corner[i] - point[i]));
-    near_determinant(&a, &b, &c) == Filtered::Certain(Sign::Positive)
+/// Return whether the origin lies strictly behind a face's plane; errs on no.
+fn is_ahead([a, b, c]: &[Lattice; 3]) -> bool {
+    near_determinant(a, b, c) == Filtered::Certain(Sign::Positive)
 }
 
-/// Count the faces that a ray along x meets, beside a point that lies behind all of them.
-fn faces_ahead(mesh: &TriangleMesh, eye: &Lattice) -> Option<i32> {
-    let (_, high) = mesh.bounds()?;
-    let ray = Segment {
-        from: eye.map(|c| 2 * c),
-        axis: 0,
-        to: 2 * high[0] + 1,
-    };
-    let change = |face| triangle_change(&mesh.corners(face), &ray);
-    Some(-mesh.face_ids().map(change).sum::<i32>())
+/// Return whether all corners lie on one side of the origin along an axis.
+///
+/// No line across the axis near the origin meets such a face. Signs follow one another in no order
+/// that a processor could guess, so their bits are combined without a branch.
+fn is_beside(corners: &[Lattice; 3], axis: usize) -> bool {
+    let [a, b, c] = corners.map(|corner| corner[axis]);
+    (a & b & c | -a & -b & -c) < 0
 }
 
 #[cfg(test)]
@@ -104,6 +116,22 @@ mod tests {
         let mut mesh = tetrahedron();
         mesh.faces.iter_mut().for_each(|f| f.swap(1, 2));
         assert!(!is_star_shaped(&mesh));
+    }
+
+    #[test]
+    fn no_ray_meets_a_face_beside_it() {
+        let digit = |n: i64, at: u32| n / 3i64.pow(at) % 3 - 1;
+        let ray = Segment {
+            from: [0; 3],
+            axis: 0,
+            to: 2 * REACH,
+        };
+        for n in 0..3i64.pow(9) {
+            let corners = [0, 3, 6].map(|k| [0, 1, 2].map(|i| digit(n, k + i)));
+            if is_beside(&corners, 1) || is_beside(&corners, 2) {
+                assert_eq!(triangle_change(&corners, &ray), 0, "{corners:?}");
+            }
+        }
     }
 
     /// Convex at every edge and around the eye, but wound twice or thrice around two vertices.
