@@ -305,6 +305,28 @@ def test_what_is_thinner_than_single_precision_keeps_a_volume(
     assert vanishing >= len(THIN)
 
 
+TOUCHING = {
+    "an edge along a part of an edge": b.box((2, 2, 2)).translate(4, 4, 1),
+    "a tip on a face": b.cone(r=1, h=2, segments=8).mirror("z").translate(2, 2, 6),
+}
+
+
+@pytest.mark.parametrize("is_asked", [False, True])
+@pytest.mark.parametrize("other", TOUCHING.values(), ids=TOUCHING)
+def test_pieces_that_touch_do_not_cross_once_they_are_turned(
+    other: "b.Solid", is_asked: bool
+) -> None:
+    """Each corner is rounded by itself, also those that lay on what has no corner there."""
+    rng = np.random.default_rng(1)
+    pair = b.box((4, 4, 4)) | other
+    assert not is_asked or pair.volume > 64
+    for _ in range(100 if DEEP else 20):
+        turned = pair.rotate(rng.uniform(0, 360), rng.normal(size=3)).normalized()
+        mesh = turned.to_mesh()
+        assert mesh.certificate.ok and not any(faults(mesh))
+        assert abs(turned.volume - pair.volume) < 1e-6
+
+
 def has_volume(mesh: "b.Mesh", expected: Fraction, most: float) -> bool:
     """Say whether a mesh has a volume within a bound, in fractions where doubles err."""
     return (

@@ -1,5 +1,7 @@
 //! From exact vertices to doubles: the only rounding, and what it did.
 
+use rustc_hash::FxHashMap as HashMap;
+
 use super::mend::Precision;
 use super::places::places;
 use super::settle::{settle, Rounded, Settled};
@@ -14,10 +16,12 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
 use crate::merge::lists::list::Sources;
+use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::snap_point;
 use crate::mesh::handle::{OrientedFace, VertexId};
 use crate::mesh::tasks::fill_chunks;
+use crate::mesh::topology::NONE;
 use crate::tree::solid::Solid;
 
 /// The mesh of a bounded solid, each vertex at the nearest double.
@@ -107,12 +111,13 @@ fn origins(faces: &[OrientedFace], sources: &Sources) -> Vec<[u32; 2]> {
 /// Mends the crossings that rounding made.
 ///
 /// Triangles that are not as they came are compared with all near them, and faces of different
-/// inputs with each other: on the lattice they do not cross, but their given doubles may. Where they
+/// parties with each other: on the lattice they do not cross, but their given doubles may. Where they
 /// do cross on the lattice, because an input overlaps itself, the mesh stays as it is.
 fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Settled> {
     let mut changed = at_blurred(solid, exact);
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
-    let party = |t: u32| exact.faces[t as usize].slot().0;
+    let parties = parties(mesh, exact);
+    let party = |t: u32| parties[t as usize];
     let corner = |v: VertexId| exact.vertices.get(v.place());
     let on_lattice = |v: VertexId| match corner(v) {
         Some(Corner::Source(slot, vertex)) => {
@@ -150,6 +155,32 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Sett
     mesh.vertices = rounded.vertices;
     mesh.triangles = rounded.triangles;
     Ok(settled)
+}
+
+/// The party of each triangle: the faces of one input in one piece of the mesh.
+///
+/// Pieces of an input may touch where one has no vertex, and a transform rounds each by itself.
+fn parties(mesh: &Mesh, exact: &ExactMesh) -> Vec<u32> {
+    let mut pieces = DisjointSets::of_one(mesh.vertices.len());
+    for [a, b, c] in &mesh.triangles {
+        pieces.join(a.0, b.0);
+        pieces.join(a.0, c.0);
+    }
+    let mut numbers: HashMap<(u32, u32), u32> = HashMap::default();
+    let mut last = ((NONE, NONE), 0);
+    let number = |(triangle, face): (&[VertexId; 3], &OrientedFace)| {
+        let key = (face.slot().0, pieces.least(triangle[0].0));
+        if key != last.0 {
+            let next = as_number(numbers.len());
+            last = (key, *numbers.entry(key).or_insert(next));
+        }
+        last.1
+    };
+    mesh.triangles
+        .iter()
+        .zip(&exact.faces)
+        .map(number)
+        .collect()
 }
 
 /// The triangles that are faces as they came, but for a corner that was welded with one of other
