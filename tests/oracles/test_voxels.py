@@ -3,7 +3,9 @@
 Everything is coplanar with everything, and every answer is known without geometry.
 """
 
+from fractions import Fraction
 from itertools import product
+from math import factorial, prod
 from operator import and_, or_, sub, xor
 
 import numpy as np
@@ -117,3 +119,48 @@ def test_boxes_of_one_mesh_that_meet_in_edges_of_both(seed: int) -> None:
     united = solid.normalized()
     assert united.volume == united.to_mesh().volume == (numbers > 0).sum()
     assert united.equals(solid)
+
+
+RULES = {
+    "positive": lambda numbers: numbers > 0,
+    "nonzero": lambda numbers: numbers != 0,
+    "even-odd": lambda numbers: numbers % 2 == 1,
+}
+
+
+def volume_below(grid: Grid, normal: list[int], offset: int) -> Fraction:
+    """Return the volume of the cells where ``normal . x <= offset``, by corners of the cube."""
+    sizes = [abs(entry) for entry in normal if entry]
+    lowest = sum(min(entry, 0) for entry in normal)
+    total = 0
+    for value in (np.argwhere(grid) @ normal).tolist():
+        for ends in product((0, 1), repeat=len(sizes)):
+            left = offset - value - lowest - sum(map(int.__mul__, sizes, ends))
+            total += (-1) ** sum(ends) * max(left, 0) ** len(sizes)
+    return Fraction(total, factorial(len(sizes)) * prod(sizes))
+
+
+@pytest.mark.parametrize("seed", range(1000 if DEEP else 60))
+def test_boxes_that_share_edges_are_cut_by_oblique_planes(seed: int) -> None:
+    rng = np.random.default_rng([3, seed])
+    numbers = np.zeros((8, 8, 8), dtype=np.int64)
+    boxes = []
+    for weight in rng.choice((1, 1, 1, -1), size=int(rng.integers(1, 5))):
+        ends = [np.sort(rng.choice(5, 2, replace=False)) * 2 for _ in range(3)]
+        low, high = np.transpose(ends).tolist()
+        numbers[tuple(slice(low[i], high[i]) for i in range(3))] += weight
+        box = box_of_squares(low, high)
+        boxes.append(box if weight > 0 else flipped(box))
+    rule = list(RULES)[seed % 3]
+    solid = b.Solid(*joined(*boxes), winding=rule)  # type: ignore[arg-type]
+    grid = RULES[rule](numbers)
+    normal = rng.integers(-2, 3, 3).tolist()
+    if not any(normal):
+        normal = [1, 1, 0]
+    offset = int(rng.integers(-4, 14))
+    below, rest = solid.split(normal, offset)
+    expected = volume_below(grid, normal, offset)
+    assert below.volume_exact == expected
+    assert rest.volume_exact == int(grid.sum()) - expected
+    assert (below | rest).equals(solid)
+    assert (solid & b.half_space(normal, offset)).equals(below)
