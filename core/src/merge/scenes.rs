@@ -33,6 +33,14 @@ pub fn tetrahedron(corners: [Lattice; 4]) -> Solid {
     solid(corners.to_vec(), faces.to_vec())
 }
 
+/// The pyramid over a polygon that turns left as seen from the apex.
+pub fn pyramid(apex: Lattice, base: &[Lattice]) -> Solid {
+    let top = as_number(base.len());
+    let sides = (0..top).map(|i| [i, (i + 1) % top, top]);
+    let bottom = (1..top - 1).map(|i| [0, i + 1, i]);
+    solid([base, &[apex]].concat(), sides.chain(bottom).collect())
+}
+
 /// The box between two points.
 pub fn cuboid(low: Lattice, high: Lattice) -> Solid {
     cuboids([[low, high]])

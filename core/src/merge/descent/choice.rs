@@ -87,7 +87,7 @@ impl Round {
         ..Self::START
     };
 
-    /// After a halving of a cell with so many elements into two with some.
+    /// After a halving of a cell with so many elements.
     #[must_use]
     pub fn next(self, total: usize) -> Self {
         if self.depth + 1 < ROUND {

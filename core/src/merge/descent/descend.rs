@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::choice::{is_crowded, is_overcrowded, Round, CROWD, GROUPED, LEAF, ORTHOGONAL, STUCK};
 use super::join;
-use super::state::{find, has_constant, has_surface, nested, worth, State, States, MANY};
+use super::state::{find, has_constant, nested, worth, State, States, MANY};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
@@ -383,12 +383,7 @@ impl<'a> Descent<'a> {
             below.push((k, minus));
             above.push((k, plus));
         }
-        // Cutting off what is empty tells nothing about how the rest separates.
-        let round = if has_surface(&below) && has_surface(&above) {
-            round.next(total)
-        } else {
-            round
-        };
+        let round = round.next(total);
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };
@@ -447,7 +442,8 @@ mod tests {
     use super::*;
     use crate::geometry::plane::Lattice;
     use crate::merge::expression::Term;
-    use crate::merge::scenes::{both, cuboid, cuboids};
+    use crate::arith::convert::as_whole;
+    use crate::merge::scenes::{both, cuboid, cuboids, pyramid};
     use crate::tree::node::Node;
     use crate::tree::solid::Solid;
 
@@ -479,6 +475,21 @@ mod tests {
         let solids = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
         let (_, counters) = run(&solids, Term::Or);
         assert!(counters[3].0 == "kernels" && counters[3].1 >= 1);
+    }
+
+    #[test]
+    fn around_a_shared_corner_halving_soon_ends() {
+        // Above the apex halving only cuts off what is empty.
+        let cone = |width: f64, depth: f64| {
+            let corner = |k: u32| {
+                let (y, x) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
+                [width * x, depth * y, -1e12].map(|c| as_whole(c.round()))
+            };
+            pyramid([0; 3], &(0..24).map(corner).collect::<Vec<_>>())
+        };
+        let solids = [cone(9e11, 5e11), cone(5e11, 9e11)];
+        let (_, counters) = run(&solids, Term::And);
+        assert!(counters[0].1 < 200, "{} cells", counters[0].1);
     }
 
     #[test]
