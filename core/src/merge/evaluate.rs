@@ -59,12 +59,14 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let merged = without_twins(expression, solids);
     let expression = merged.as_ref().unwrap_or(expression);
     let mut operands = solids.to_vec();
+    let mut is_first = true;
     loop {
         let sources = Sources::new(joint_table(&operands));
         let is_open = |k: &usize| !operands[*k].is_reduced();
         let doubted = (0..operands.len()).filter(is_open).collect();
         let descent = Descent::new(&sources, Rule::Positive, true, operands.len());
-        let descent = descent.doubting(doubted);
+        // Mostly one operand overlaps itself. Where many do, each would cost a descent of its own.
+        let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let root = descent.run(expression.clone(), roots)?;
         let overlaps = descent.overlapping();

@@ -23,8 +23,49 @@ use crate::merge::kernels::problem::{CellProblem, Kernel, Listed};
 use crate::merge::kernels::ALL;
 use crate::merge::lists::list::Sources;
 use crate::merge::rule::Rule;
-use crate::mesh::tasks::{both, in_pool};
+use crate::mesh::tasks::{both, in_pool, Worth};
 use crate::tree::node::Branch;
+
+/// Why a descent ends before its end.
+enum End {
+    /// It failed.
+    Failed(Error),
+    /// This operand overlaps itself, and is to be united with itself first.
+    Overlap(u32),
+    /// What comes before it has ended.
+    Before,
+}
+
+impl From<Error> for End {
+    fn from(error: Error) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// What a descent makes of a cell.
+type Visited = std::result::Result<Branch, End>;
+
+/// Two results, made at the same time where that pays; nothing begins after an end before it.
+fn both_in_turn(
+    worth: Worth,
+    first: impl FnOnce() -> Visited + Send,
+    second: impl FnOnce() -> Visited + Send,
+) -> std::result::Result<(Branch, Branch), End> {
+    let ended = AtomicBool::new(false);
+    let first = || {
+        let visited = first();
+        ended.store(visited.is_err(), Ordering::Relaxed);
+        visited
+    };
+    let second = || {
+        if ended.load(Ordering::Relaxed) {
+            return Err(End::Before);
+        }
+        second()
+    };
+    let (first, second) = both(worth, first, second);
+    Ok((first?, second?))
+}
 
 /// Groups of groups, at most: 2³² operands in halves, and as many levels of alternating operations.
 const DEEPEST: u32 = 64;
@@ -113,6 +154,8 @@ pub struct Descent<'a> {
     /// The operands that are united with themselves, and all evaluated again, if they overlap
     /// themselves.
     pub doubted: Vec<usize>,
+    /// True if the first of these that is seen to overlap itself ends the descent.
+    impatient: bool,
 }
 
 impl<'a> Descent<'a> {
@@ -125,20 +168,27 @@ impl<'a> Descent<'a> {
             counters: Counters::default(),
             overlaps: (0..operands).map(|_| AtomicBool::new(false)).collect(),
             doubted: Vec::new(),
+            impatient: false,
         }
     }
 
-    /// The same, given the operands that are united with themselves if they overlap themselves.
+    /// The same, given the operands that are united with themselves if they overlap themselves, and
+    /// whether the first of these that is seen to do so, in the order of the cells, ends the descent.
     #[must_use]
-    pub fn doubting(self, doubted: Vec<usize>) -> Self {
-        Self { doubted, ..self }
+    pub fn doubting(self, doubted: Vec<usize>, impatient: bool) -> Self {
+        Self {
+            doubted,
+            impatient,
+            ..self
+        }
     }
 
     /// Return whether all that is doubted is known to overlap itself: nothing more can be learnt, and
     /// the result is not used.
     fn is_moot(&self) -> bool {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
-        !self.doubted.is_empty() && self.doubted.iter().all(seen)
+        // What other threads saw must not end a part in which a first one is still to be seen.
+        !self.impatient && !self.doubted.is_empty() && self.doubted.iter().all(seen)
     }
 
     /// The operands that a visited cell showed to overlap themselves, and those that others may have
@@ -170,11 +220,24 @@ impl<'a> Descent<'a> {
         } else {
             Residual::Open(Arc::new(expression))
         };
-        let branch = self.resolve(cell, residual, states, round)?;
+        let branch = match self.resolve(cell, residual, states, round) {
+            Ok(branch) => branch,
+            Err(End::Failed(error)) => return Err(error),
+            Err(End::Overlap(operand)) => return Ok(self.ended_by(operand, cell)),
+            Err(End::Before) => return Err(Error::internal("an end with nothing before it")),
+        };
         Ok(match branch.constant() {
             Some(w) => Branch::uniform(branch.cell, w),
             None => join::around(cell, branch, i32::from(outside)),
         })
+    }
+
+    /// The result of a descent that an operand has ended: what other threads saw depends on time.
+    fn ended_by(&self, operand: u32, cell: Cell) -> Branch {
+        for (k, seen) in (0..).zip(&self.overlaps) {
+            seen.store(k == operand, Ordering::Relaxed);
+        }
+        Branch::uniform(cell, 0)
     }
 
     fn residual(&self, expression: &Expression, states: &States) -> Residual {
@@ -191,7 +254,7 @@ impl<'a> Descent<'a> {
         expression: Arc<Expression>,
         mut states: States,
         round: Round,
-    ) -> Result<Branch> {
+    ) -> Visited {
         poll();
         if self.is_moot() {
             return Ok(Branch::uniform(cell, 0));
@@ -208,20 +271,16 @@ impl<'a> Descent<'a> {
         self.resolve(cell, residual, states, round)
     }
 
-    fn resolve(
-        &self,
-        cell: Cell,
-        residual: Residual,
-        mut states: States,
-        round: Round,
-    ) -> Result<Branch> {
+    fn resolve(&self, cell: Cell, residual: Residual, mut states: States, round: Round) -> Visited {
         match residual {
             Residual::Constant(v) => Ok(Branch::uniform(cell, i32::from(v))),
             Residual::Literal(k, negate) if self.share => {
                 let at = states.iter().position(|s| s.0 == k).unwrap_or(0);
                 Ok(states.swap_remove(at).1.shared(cell, negate, self.sources))
             }
-            Residual::Literal(..) => Err(Error::internal("a literal where nothing is shared")),
+            Residual::Literal(..) => {
+                Err(Error::internal("a literal where nothing is shared").into())
+            }
             Residual::Open(expression) => {
                 let support = expression.operands();
                 states.retain(|s| support.binary_search(&s.0).is_ok());
@@ -237,7 +296,7 @@ impl<'a> Descent<'a> {
         expression: Arc<Expression>,
         states: States,
         round: Round,
-    ) -> Result<Branch> {
+    ) -> Visited {
         if let Some(inner) = nested(&cell, &states) {
             let outside = self.value_outside(&expression, &states);
             let branch = self.cell(inner, expression, states, round)?;
@@ -248,19 +307,20 @@ impl<'a> Descent<'a> {
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
         let states = self.opened(&cell, states, opening);
+        self.note_corners(&states)?;
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
         let mut round = round;
         let stuck = round.is_stuck(&cell, &states, total);
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
         let small = total <= LEAF || stuck && total <= STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
-            let solved = self.solved(cell, &expression, &states, total, &ALL);
-            return solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"));
+            let solved = self.solved(cell, &expression, &states, total, &ALL)?;
+            return Ok(solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"))?);
         };
         let flat = || states.iter().all(|s| s.1.is_orthogonal(self.sources));
         if total <= (ORTHOGONAL * states.len()).min(CROWD)
             && flat()
-            && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])
+            && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])?
         {
             return Ok(branch);
         }
@@ -277,7 +337,7 @@ impl<'a> Descent<'a> {
             } else {
                 &GeneralPosition::FIRST
             };
-            if let Some(branch) = self.solved(cell, &expression, &states, total, &[kernel]) {
+            if let Some(branch) = self.solved(cell, &expression, &states, total, &[kernel])? {
                 return Ok(branch);
             }
             round.refused(total);
@@ -296,7 +356,7 @@ impl<'a> Descent<'a> {
     }
 
     /// The result in a cell from those of two groups of operands.
-    fn grouped(&self, cell: Cell, parted: Parted, states: States, depth: u32) -> Result<Branch> {
+    fn grouped(&self, cell: Cell, parted: Parted, states: States, depth: u32) -> Visited {
         poll();
         let Parted { halves, whole } = parted;
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
@@ -304,37 +364,47 @@ impl<'a> Descent<'a> {
         let is_ours = |s: &(u32, State)| ours.binary_search(&s.0).is_ok();
         let (first, second): (States, States) = states.into_iter().partition(is_ours);
         let [left, right] = halves;
-        let (left, right) = both(
+        let (left, right) = both_in_turn(
             worth(total),
             || self.group(cell, &left, first, depth),
             || self.group(cell, &right, second, depth),
-        );
-        let states = vec![(0, State::Tree(left?)), (1, State::Tree(right?))];
+        )?;
+        let states = vec![(0, State::Tree(left)), (1, State::Tree(right))];
         let pair = Self::new(self.sources, self.rule, self.share, states.len());
         let result = pair.cell(cell, Arc::new(whole), states, Round::OF_GROUPS);
         self.counters.add(&pair.counters);
         for (group, overlaps) in [ours, theirs].iter().zip(&pair.overlaps) {
             if overlaps.load(Ordering::Relaxed) {
-                for k in group {
-                    self.note_overlap(*k);
-                }
+                self.note_overlaps(group)?;
             }
         }
         result
     }
 
-    fn note_overlap(&self, operand: u32) {
-        self.overlaps[operand as usize].store(true, Ordering::Relaxed);
+    /// Remembers that operands overlap themselves; the first that is doubted may end the descent.
+    fn note_overlaps(&self, operands: &[u32]) -> std::result::Result<(), End> {
+        for k in operands {
+            self.overlaps[*k as usize].store(true, Ordering::Relaxed);
+        }
+        let is_doubted = |k: &&u32| self.doubted.contains(&(**k as usize));
+        match operands.iter().find(is_doubted) {
+            Some(k) if self.impatient => Err(End::Overlap(*k)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Remembers operands that wind around the cell's corner neither once nor not at all.
+    fn note_corners(&self, states: &States) -> std::result::Result<(), End> {
+        let winds = |s: &&(u32, State)| match &s.1 {
+            State::List(list) => !(0..=1).contains(&list.corner),
+            State::Constant(_) | State::Tree(_) | State::Bins(_) => false,
+        };
+        let found: Vec<u32> = states.iter().filter(winds).map(|s| s.0).collect();
+        self.note_overlaps(&found)
     }
 
     /// The result of a group of operands in a cell.
-    fn group(
-        &self,
-        cell: Cell,
-        expression: &Expression,
-        states: States,
-        depth: u32,
-    ) -> Result<Branch> {
+    fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> Visited {
         if states.len() >= GROUPED
             && depth < DEEPEST
             && let Some(parted) = expression.parted()
@@ -371,7 +441,7 @@ impl<'a> Descent<'a> {
         states: States,
         round: Round,
         total: usize,
-    ) -> Result<Branch> {
+    ) -> Visited {
         let halved = states.iter().map(|s| s.1.listed()).sum::<usize>();
         self.counters
             .halved
@@ -387,12 +457,12 @@ impl<'a> Descent<'a> {
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };
-        let (minus, plus) = both(
+        let (minus, plus) = both_in_turn(
             worth(total),
             || visit(Half::Minus, below),
             || visit(Half::Plus, above),
-        );
-        Ok(join::branch(cell, cut, minus?, plus?, self.sources))
+        )?;
+        Ok(join::branch(cell, cut, minus, plus, self.sources))
     }
 
     fn count_leaf(&self, total: usize) {
@@ -420,29 +490,32 @@ impl<'a> Descent<'a> {
         states: &States,
         total: usize,
         kernels: &[&dyn Kernel],
-    ) -> Option<Branch> {
+    ) -> std::result::Result<Option<Branch>, End> {
+        let Some(operands) = self.listed(&cell, states) else {
+            return Ok(None);
+        };
         let problem = CellProblem {
             cell: &cell,
             expression,
             rule: self.rule,
-            operands: self.listed(&cell, states)?,
+            operands,
             sources: self.sources,
         };
-        let solution = problem.solve_by(kernels)?;
+        let Some(solution) = problem.solve_by(kernels) else {
+            return Ok(None);
+        };
         self.count_leaf(total);
-        for operand in solution.overlapping {
-            self.note_overlap(operand);
-        }
-        Some(Branch::of_node(cell, solution.node))
+        self.note_overlaps(&solution.overlapping)?;
+        Ok(Some(Branch::of_node(cell, solution.node)))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arith::convert::as_whole;
     use crate::geometry::plane::Lattice;
     use crate::merge::expression::Term;
-    use crate::arith::convert::as_whole;
     use crate::merge::scenes::{both, cuboid, cuboids, pyramid};
     use crate::tree::node::Node;
     use crate::tree::solid::Solid;
@@ -500,12 +573,34 @@ mod tests {
         let solids = [row(0), row(1)];
         let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
         let cells = |doubted: Vec<usize>| {
-            let descent = Descent::new(&sources, Rule::Positive, true, 2).doubting(doubted);
+            let descent = Descent::new(&sources, Rule::Positive, true, 2).doubting(doubted, false);
             let roots = solids.iter().map(|s| s.root().clone()).collect();
             descent.run(both(Term::Or), roots).expect("not stopped");
             assert_eq!(descent.overlapping(), [0, 1]);
             descent.counters.named()[0].1
         };
         assert!(4 * cells(vec![0, 1]) < cells(Vec::new()));
+    }
+
+    #[test]
+    fn the_first_that_overlaps_itself_ends_an_impatient_descent() {
+        // Boxes that hold each other: no faces meet, and a corner of a cell tells.
+        let nested = |first: i64| {
+            let shells = (0..8).map(move |i| [[first + i; 3], [first + 99 - i; 3]]);
+            cuboids(shells)
+        };
+        let solids = [nested(0), nested(50)];
+        let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
+        let seen = || {
+            let descent = Descent::new(&sources, Rule::Positive, true, 2);
+            let descent = descent.doubting(vec![0, 1], true);
+            let roots = solids.iter().map(|s| s.root().clone()).collect();
+            let root = descent.run(both(Term::Or), roots).expect("not stopped");
+            assert_eq!(root.constant(), Some(0));
+            descent.overlapping()
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+        assert_eq!(seen(), [0]);
+        assert_eq!(pool.expect("two threads").install(seen), [0]);
     }
 }
