@@ -160,7 +160,7 @@ fn built(mesh: &Arrays) -> Solid {
     Solid::of_source(Arc::new(source), false)
 }
 
-/// Two bundles of thin tetrahedra side by side, across each other.
+/// The same thin tetrahedra side by side twice, with their corners in another order.
 fn bundles(count: i64) -> [Solid; 2] {
     let [x, y, z] = [[UNIT / 20, 0, 0], [0, UNIT / 20, 0], [0, 0, 20 * UNIT]];
     [[x, y, z], [y, z, x]].map(|along| {

@@ -276,14 +276,16 @@ impl Pair {
             operands: (0..).zip(&self.lists).map(listed).collect(),
             sources: &self.sources,
         };
-        let answer = LocalTrees.solve(&problem).expect("trees take every cell");
-        self.check(op, "trees", answer.node);
-        match GeneralPosition::LAST
-            .solve(&problem)
-            .filter(|_| self.is_simple())
-        {
+        let seen = &mut Vec::new();
+        let answer = LocalTrees.solve(&problem, seen);
+        self.check(op, "trees", answer.expect("trees take every cell"));
+        // What general position sees, trees see, too.
+        let also = &mut Vec::new();
+        let answer = GeneralPosition::LAST.solve(&problem, also);
+        assert!(also.iter().all(|k| seen.contains(k)), "{:?}", self.shapes);
+        match answer.filter(|_| self.is_simple()) {
             Some(answer) => {
-                self.check(op, "general position", answer.node);
+                self.check(op, "general position", answer);
                 true
             }
             None => false,

@@ -501,12 +501,13 @@ impl<'a> Descent<'a> {
             operands,
             sources: self.sources,
         };
-        let Some(solution) = problem.solve_by(kernels) else {
-            return Ok(None);
-        };
-        self.count_leaf(total);
-        self.note_overlaps(&solution.overlapping)?;
-        Ok(Some(Branch::of_node(cell, solution.node)))
+        let mut overlapping = Vec::new();
+        let node = problem.solve_by(kernels, &mut overlapping);
+        self.note_overlaps(&overlapping)?;
+        Ok(node.map(|node| {
+            self.count_leaf(total);
+            Branch::of_node(cell, node)
+        }))
     }
 }
 

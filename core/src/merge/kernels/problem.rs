@@ -1,4 +1,4 @@
-//! The problem that a kernel is asked, its solution, and the order in which kernels are asked.
+//! The problem that a kernel is asked, and the order in which kernels are asked.
 
 use std::borrow::Cow;
 
@@ -32,15 +32,6 @@ pub struct Listed<'a> {
     pub list: Cow<'a, List>,
 }
 
-/// The tree that an expression leaves in a cell.
-#[derive(Debug)]
-pub struct Solution {
-    /// The boundary that stays.
-    pub node: Node,
-    /// The operands that were seen to overlap themselves.
-    pub overlapping: Vec<u32>,
-}
-
 /// A way to evaluate an expression in a cell.
 ///
 /// All kernels leave the same set. Each has positions that it does not know; a cell that one
@@ -50,7 +41,7 @@ pub struct Solution {
 /// ```
 /// use bspcsg::geometry::cell::Cell;
 /// use bspcsg::merge::expression::{Expression, Term};
-/// use bspcsg::merge::kernels::problem::{CellProblem, Kernel, Solution};
+/// use bspcsg::merge::kernels::problem::{CellProblem, Kernel};
 /// use bspcsg::merge::kernels::ALL;
 /// use bspcsg::merge::lists::list::Sources;
 /// use bspcsg::merge::rule::Rule;
@@ -60,8 +51,8 @@ pub struct Solution {
 /// struct Empty;
 ///
 /// impl Kernel for Empty {
-///     fn solve(&self, problem: &CellProblem) -> Option<Solution> {
-///         problem.operands.is_empty().then(|| Node::Leaf(0).into())
+///     fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
+///         problem.operands.is_empty().then(|| Node::Leaf(0))
 ///     }
 /// }
 ///
@@ -72,29 +63,21 @@ pub struct Solution {
 ///     operands: Vec::new(),
 ///     sources: &Sources::new(Default::default()),
 /// };
-/// let solution = problem.solve_by(&[&Empty, ALL[0]]);
-/// assert!(matches!(solution.map(|s| s.node), Some(Node::Leaf(0))));
+/// let left = problem.solve_by(&[&Empty, ALL[0]], &mut Vec::new());
+/// assert!(matches!(left, Some(Node::Leaf(0))));
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub trait Kernel {
     /// Return what the expression leaves in the cell; `None` if the cell is not for this kernel.
-    fn solve(&self, problem: &CellProblem) -> Option<Solution>;
+    /// In either case adds the operands that it saw to overlap themselves.
+    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node>;
 }
 
 impl CellProblem<'_> {
     /// The answer of the first of some kernels that has one.
-    pub fn solve_by(&self, kernels: &[&dyn Kernel]) -> Option<Solution> {
-        kernels.iter().find_map(|kernel| kernel.solve(self))
-    }
-}
-
-impl From<Node> for Solution {
-    /// The answer of a kernel that saw no operand overlap itself.
-    fn from(node: Node) -> Self {
-        Self {
-            node,
-            overlapping: Vec::new(),
-        }
+    pub fn solve_by(&self, kernels: &[&dyn Kernel], overlapping: &mut Vec<u32>) -> Option<Node> {
+        let mut answers = kernels.iter().map(|kernel| kernel.solve(self, overlapping));
+        answers.find_map(|answer| answer)
     }
 }
 
@@ -109,14 +92,15 @@ mod tests {
     struct Answers(i32);
 
     impl Kernel for Refuses {
-        fn solve(&self, _: &CellProblem) -> Option<Solution> {
+        fn solve(&self, _: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
+            overlapping.push(1);
             None
         }
     }
 
     impl Kernel for Answers {
-        fn solve(&self, _: &CellProblem) -> Option<Solution> {
-            Some(Node::Leaf(self.0).into())
+        fn solve(&self, _: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
+            Some(Node::Leaf(self.0))
         }
     }
 
@@ -124,8 +108,11 @@ mod tests {
     fn the_first_kernel_that_takes_a_cell_answers() {
         let (scene, expression) = (crossing(), both(Term::And));
         let problem = scene.problem(&expression);
-        let solution = problem.solve_by(&[&Refuses, &Answers(1), &Answers(0)]);
-        assert!(matches!(solution.expect("answered").node, Node::Leaf(1)));
-        assert!(problem.solve_by(&[&Refuses]).is_none());
+        let mut seen = Vec::new();
+        let left = problem.solve_by(&[&Refuses, &Answers(1), &Answers(0)], &mut seen);
+        assert!(matches!(left, Some(Node::Leaf(1))));
+        // What is seen is kept even where the cell is not solved.
+        assert!(problem.solve_by(&[&Refuses], &mut seen).is_none());
+        assert_eq!(seen, [1, 1]);
     }
 }

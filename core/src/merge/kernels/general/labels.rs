@@ -133,6 +133,7 @@ impl Scene<'_> {
                 w += element.weight * change;
             }
             if !(0..=1).contains(&w) {
+                self.overlapping.get_or_init(|| operand);
                 return None;
             }
             labels |= Labels::from(w == 1) << operand;

@@ -24,9 +24,9 @@ mod walls;
 use smallvec::SmallVec;
 
 use super::kept::{assemble, Kept};
-use super::problem::{CellProblem, Kernel, Solution};
+use super::problem::{CellProblem, Kernel};
 use crate::merge::rule::Rule;
-use crate::tree::node::Work;
+use crate::tree::node::{Node, Work};
 pub(in crate::merge) use cutting::{cut_up_by_any, Cutter, Cutting, Face};
 use scene::Scene;
 
@@ -63,25 +63,30 @@ impl GeneralPosition {
 }
 
 impl Kernel for GeneralPosition {
-    fn solve(&self, problem: &CellProblem) -> Option<Solution> {
-        if problem.rule != Rule::Positive {
+    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
+        let operands = &problem.operands;
+        let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
+        let some = (2..=MOST).contains(&operands.len());
+        if problem.rule != Rule::Positive || !simple || !some {
             return None;
         }
-        let (kept, corner) = kept_and_corner(problem, self.cutters)?;
+        let scene = Scene::new(problem.cell, operands, problem.sources);
+        let found = kept_and_corner(&scene, problem, self.cutters);
+        overlapping.extend(scene.overlapping.get().map(|k| operands[*k].number));
+        let (kept, corner) = found?;
         let before = problem.operands.iter().map(|l| l.list.work()).max();
         let work = before.unwrap_or_default().max(Work::General);
-        Some(assemble(kept, corner, work, problem.cell, problem.sources).into())
+        Some(assemble(kept, corner, work, problem.cell, problem.sources))
     }
 }
 
 /// Return what stays of the operands' boundaries, and the value at the cell's corner.
-fn kept_and_corner(problem: &CellProblem, cutters: usize) -> Option<(Vec<Kept>, i32)> {
+fn kept_and_corner(
+    scene: &Scene,
+    problem: &CellProblem,
+    cutters: usize,
+) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
-    let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
-    if !simple || operands.len() < 2 || operands.len() > MOST {
-        return None;
-    }
-    let scene = Scene::new(problem.cell, operands, problem.sources);
     let fates = scene.fates(cutters)?;
     let labels = scene.labels(&fates)?;
     let place = |number: u32| operands.partition_point(|l| l.number < number);
@@ -96,8 +101,8 @@ fn kept_and_corner(problem: &CellProblem, cutters: usize) -> Option<(Vec<Kept>, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::merge::expression::Term;
-    use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
+    use crate::merge::expression::{Expression, Term};
+    use crate::merge::scenes::{both, counts, crossing, cuboid, cuboids, tetrahedra, Shared};
 
     /// Three faces of the second solid and one of the first cross.
     #[test]
@@ -105,8 +110,8 @@ mod tests {
         let scene = crossing();
         let left = |combined| {
             let expression = both(combined);
-            let solution = GeneralPosition::LAST.solve(&scene.problem(&expression));
-            counts(&solution.expect("general position").node)
+            let node = GeneralPosition::LAST.solve(&scene.problem(&expression), &mut Vec::new());
+            counts(&node.expect("general position"))
         };
         assert_eq!(left(Term::And), (0, 4));
         assert_eq!(left(Term::Or), (4, 4));
@@ -118,6 +123,25 @@ mod tests {
         let scene = Shared::of(&boxes.map(|[low, high]| cuboid(low, high)));
         let expression = both(Term::Or);
         let problem = scene.problem(&expression);
-        assert!(GeneralPosition::LAST.solve(&problem).is_none());
+        let mut seen = Vec::new();
+        assert!(GeneralPosition::LAST.solve(&problem, &mut seen).is_none());
+        assert!(seen.is_empty());
+    }
+
+    #[test]
+    fn an_operand_that_winds_twice_around_a_vertex_of_another_overlaps_itself() {
+        let [a, b] = tetrahedra();
+        let boxes = [
+            [[-30, -37, -23], [60, 61, 63]],
+            [[-20, -27, -13], [50, 51, 53]],
+        ];
+        let around = cuboids(boxes);
+        let scene = Shared::of(&[a, b, around]);
+        let terms = (0..3).map(Term::Operand).chain([Term::Or(vec![0, 1, 2])]);
+        let expression = Expression::new(terms.collect()).expect("well formed");
+        let mut seen = Vec::new();
+        let problem = scene.problem(&expression);
+        assert!(GeneralPosition::LAST.solve(&problem, &mut seen).is_none());
+        assert_eq!(seen, [2]);
     }
 }

@@ -35,6 +35,8 @@ pub(super) struct Scene<'a> {
     pub(super) boxes: Vec<[Lattice; 2]>,
     /// The parts that pieces belong to, and the slots of their sources.
     pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
+    /// An operand that winds around some point neither once nor not at all.
+    pub(super) overlapping: OnceCell<usize>,
 }
 
 /// A whole face or a convex piece of a part.
@@ -77,6 +79,7 @@ impl<'a> Scene<'a> {
             ends: Vec::with_capacity(operands.len()),
             boxes: Vec::with_capacity(operands.len()),
             parts: Vec::new(),
+            overlapping: OnceCell::new(),
         };
         for (operand, listed) in operands.iter().enumerate() {
             let list = &*listed.list;

@@ -12,9 +12,9 @@ mod labels;
 mod pieces;
 
 use super::kept::{assemble, Kept};
-use super::problem::{CellProblem, Kernel, Listed, Solution};
+use super::problem::{CellProblem, Kernel, Listed};
 use crate::merge::expression::Expression;
-use crate::tree::node::Work;
+use crate::tree::node::{Node, Work};
 use extent::Extent;
 use facet::Facets;
 use grid::Grid;
@@ -31,10 +31,10 @@ const MOST: usize = 1 << 18;
 pub struct Orthogonal;
 
 impl Kernel for Orthogonal {
-    fn solve(&self, problem: &CellProblem) -> Option<Solution> {
+    fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
         let CellProblem { cell, sources, .. } = *problem;
         let (kept, corner) = kept_and_corner(problem)?;
-        Some(assemble(kept, corner, Work::Trees, cell, sources).into())
+        Some(assemble(kept, corner, Work::Trees, cell, sources))
     }
 }
 
@@ -110,8 +110,8 @@ mod tests {
         let scene = Shared::of(&boxes.map(|[low, high]| cuboid(low, high)));
         let left = |combined| {
             let expression = both(combined);
-            let solution = Orthogonal.solve(&scene.problem(&expression));
-            counts(&solution.expect("upright faces").node)
+            let node = Orthogonal.solve(&scene.problem(&expression), &mut Vec::new());
+            counts(&node.expect("upright faces"))
         };
         assert_eq!(left(Term::Or), (20, 0));
         assert_eq!(left(Term::And), (0, 0));
@@ -120,6 +120,7 @@ mod tests {
     #[test]
     fn slanted_faces_are_left_to_others() {
         let (scene, expression) = (crossing(), both(Term::Or));
-        assert!(Orthogonal.solve(&scene.problem(&expression)).is_none());
+        let problem = scene.problem(&expression);
+        assert!(Orthogonal.solve(&problem, &mut Vec::new()).is_none());
     }
 }

@@ -10,13 +10,13 @@ mod operand;
 mod overlay;
 
 use super::kept::{assemble, Kept};
-use super::problem::{CellProblem, Kernel, Listed, Solution};
+use super::problem::{CellProblem, Kernel, Listed};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::merge::expression::Expression;
 use crate::merge::rule::Rule;
-use crate::tree::node::Work;
+use crate::tree::node::{Node, Work};
 use local_tree::LocalTree;
 pub use operand::LeafTree;
 use operand::Operand;
@@ -36,15 +36,14 @@ pub(in crate::merge) struct Piece {
 }
 
 impl Kernel for LocalTrees {
-    fn solve(&self, problem: &CellProblem) -> Option<Solution> {
+    fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
         let CellProblem { cell, sources, .. } = *problem;
         let operand = |l: &Listed| Operand::new(l.number, &l.list, cell, sources);
         let operands: Vec<Operand> = problem.operands.iter().map(operand).collect();
         let overlaps = |o: &&Operand| !o.simple;
-        let overlapping = operands.iter().filter(overlaps).map(|o| o.number).collect();
+        overlapping.extend(operands.iter().filter(overlaps).map(|o| o.number));
         let (kept, corner) = keep_all(&operands, problem.expression, problem.rule);
-        let node = assemble(kept, corner, Work::Trees, cell, sources);
-        Some(Solution { node, overlapping })
+        Some(assemble(kept, corner, Work::Trees, cell, sources))
     }
 }
 
@@ -159,15 +158,14 @@ mod tests {
     use crate::merge::expression::Term;
     use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
     use crate::mesh::handle::Slot;
-    use crate::tree::node::Node;
 
     #[test]
     fn every_cell_is_taken() {
         let scene = crossing();
         let left = |combined| {
             let expression = both(combined);
-            let solution = LocalTrees.solve(&scene.problem(&expression));
-            counts(&solution.expect("every cell").node)
+            let node = LocalTrees.solve(&scene.problem(&expression), &mut Vec::new());
+            counts(&node.expect("every cell"))
         };
         assert_eq!(left(Term::And), (0, 4));
         assert_eq!(left(Term::Or), (4, 4));
@@ -179,9 +177,8 @@ mod tests {
         let solve = |combined| {
             let expression = both(combined);
             LocalTrees
-                .solve(&scene.problem(&expression))
+                .solve(&scene.problem(&expression), &mut Vec::new())
                 .expect("every cell")
-                .node
         };
         assert!(matches!(solve(Term::Xor), Node::Leaf(0)));
         let Node::Deferred(leaf) = solve(Term::And) else {
