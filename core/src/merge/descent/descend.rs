@@ -26,13 +26,13 @@ use crate::merge::rule::Rule;
 use crate::mesh::tasks::{both, in_pool, Worth};
 use crate::tree::node::Branch;
 
-/// Why a descent ends before its end.
+/// The end of a descent before all its cells are done.
 enum End {
     /// It failed.
     Failed(Error),
     /// This operand overlaps itself, and is to be united with itself first.
     Overlap(u32),
-    /// What comes before it has ended.
+    /// Something before it has ended.
     Before,
 }
 
@@ -42,7 +42,7 @@ impl From<Error> for End {
     }
 }
 
-/// What a descent makes of a cell.
+/// The result in a cell, or the end of the descent.
 type Visited = std::result::Result<Branch, End>;
 
 /// Two results, made at the same time where that pays; nothing begins after an end before it.
