@@ -48,6 +48,10 @@ const RETRY: usize = 8;
 /// As few operands as this can be evaluated in groups, where no kernel takes all of them.
 pub const GROUPED: usize = 3;
 
+/// A group of so few operands is evaluated at once: each partial result is a boundary to be cut
+/// again, and of more operands most of what crosses lies inside of others.
+pub const TOGETHER: usize = 8;
+
 /// So many operands in one place are evaluated in groups even before a kernel is asked: what is left
 /// of a group's boundaries is less than all of them, and all of them cross each other.
 const MANY: usize = 16;

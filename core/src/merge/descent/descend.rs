@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::choice::{is_crowded, is_overcrowded, Round, CROWD, GROUPED, LEAF, ORTHOGONAL, STUCK};
+use super::choice::{is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK, TOGETHER};
 use super::join;
 use super::state::{find, has_constant, nested, worth, State, States, MANY};
 use crate::error::{Error, ErrorKind, Result};
@@ -405,7 +405,7 @@ impl<'a> Descent<'a> {
 
     /// The result of a group of operands in a cell.
     fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> Visited {
-        if states.len() >= GROUPED
+        if states.len() > TOGETHER
             && depth < DEEPEST
             && let Some(parted) = expression.parted()
         {
