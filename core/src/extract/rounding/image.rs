@@ -94,6 +94,10 @@ fn unit(v: Point) -> Option<Point> {
 /// Three directions at right angles, along the first two of which most of some normals lie; `None` if
 /// they suit few of them, or are axes.
 fn axes(normals: &[Point]) -> Option<[Point; 3]> {
+    let is_axis = |a: &Point| a.iter().any(|x| x.abs() > 1.0 - CLOSE);
+    if normals.iter().all(is_axis) {
+        return None;
+    }
     let is_along = |a: &Point, b: &Point| dot(a, b).abs() > 1.0 - CLOSE;
     let count = |a: &Point| normals.iter().filter(|b| is_along(a, b)).count();
     // Of equally good ones the first.
@@ -102,7 +106,6 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     let is_across = |a: &&Point| dot(a, &first).abs() < CLOSE;
     let second = best(normals.iter().filter(is_across).collect())?;
     let suited = count(&first) + count(&second);
-    let is_axis = |a: &Point| a.iter().any(|x| x.abs() > 1.0 - CLOSE);
     if SUITED * suited < normals.len() || is_axis(&first) && is_axis(&second) {
         return None;
     }

@@ -10,3 +10,4 @@ pub mod settle;
 mod terrains;
 mod touching;
 pub mod unfold;
+mod upright;

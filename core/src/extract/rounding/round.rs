@@ -2,11 +2,13 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
+use super::crossings::Faults;
 use super::mend::Precision;
 use super::places::places;
 use super::settle::{settle, Rounded, Settled};
 use super::touching::touching;
 use super::unfold::{turned, unfold};
+use super::upright::keeps_order;
 use crate::arith::convert::{as_number, as_place};
 use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
@@ -73,7 +75,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     };
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
-    let settled = settle_mesh(&mut mesh, solid, &exact)?;
+    let settled = settle_mesh(&mut mesh, solid, &exact, &sources)?;
     let left = if unfolded.left.is_empty() && settled.mended.is_empty() {
         Vec::new()
     } else {
@@ -113,7 +115,12 @@ fn origins(faces: &[OrientedFace], sources: &Sources) -> Vec<[u32; 2]> {
 /// Triangles that are not as they came are compared with all near them, and faces of different
 /// parties with each other: on the lattice they do not cross, but their given doubles may. Where they
 /// do cross on the lattice, because an input overlaps itself, the mesh stays as it is.
-fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Settled> {
+fn settle_mesh(
+    mesh: &mut Mesh,
+    solid: &Solid,
+    exact: &ExactMesh,
+    sources: &Sources,
+) -> Result<Settled> {
     let mut changed = at_blurred(solid, exact);
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
     let parties = parties(mesh, exact);
@@ -132,7 +139,11 @@ fn settle_mesh(mesh: &mut Mesh, solid: &Solid, exact: &ExactMesh) -> Result<Sett
         vertices: std::mem::take(&mut mesh.vertices),
         triangles: std::mem::take(&mut mesh.triangles),
     };
-    let found = rounded.faults(&changed, party);
+    let found = if keeps_order(&rounded.faces(), exact, sources, solid.pitch()) {
+        Faults::default()
+    } else {
+        rounded.faults(&changed, party)
+    };
     let double = Precision::Double;
     let seem_to_cross = || -> Vec<Lattice> {
         let places = places(&rounded.faces(), &found);

@@ -1,0 +1,137 @@
+//! Meshes of faces perpendicular to axes, which rounding cannot make cross.
+//!
+//! Where rounding keeps the order of different coordinates on each axis, it is a map of space that
+//! stretches and shrinks along the axes. It takes walls to walls, and what does not cross to what
+//! does not cross: the parts of a plane end at edges along axes, and these are what the map makes of
+//! them. Inside such a part triangles overlap only if one of them is turned over.
+
+#![allow(
+    clippy::float_cmp,
+    reason = "equal coordinates are meant to the last bit"
+)]
+
+use super::company::Faces;
+use crate::arith::Sign;
+use crate::extract::mesh::{outward_normal, Corner, ExactMesh};
+use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
+use crate::geometry::plane::Lattice;
+use crate::interrupt::poll;
+use crate::merge::lists::list::Sources;
+use crate::mesh::grid::Pitch;
+
+/// Different coordinates up to so many steps have different nearest doubles: one step is at least
+/// two spacings of the doubles there.
+const DISTINCT: u64 = 1 << 51;
+
+/// Return whether the triangles of a rounded mesh cannot cross unless they do so on the lattice, since
+/// they are perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and
+/// none is turned over; errs on no.
+pub fn keeps_order(faces: &Faces, exact: &ExactMesh, sources: &Sources, pitch: Pitch) -> bool {
+    let mut triangles = (0..).zip(&exact.faces);
+    let mut vertices = exact.vertices.iter().zip(faces.vertices);
+    triangles.all(|(t, face)| {
+        poll();
+        stands_upright(&faces.corners(t), &outward_normal(*face, sources))
+    }) && vertices.all(|(corner, place)| {
+        poll();
+        let lattice = lattice_of(*corner, exact, sources);
+        lattice.is_some_and(|p| is_at(place, &p, pitch))
+    })
+}
+
+/// Return whether a triangle is perpendicular to an axis and faces as a normal does.
+fn stands_upright(corners: &Triangle, normal: &[i128; 3]) -> bool {
+    let [a, b, c] = corners;
+    let axis = (0..3).find(|i| a[*i] == b[*i] && b[*i] == c[*i]);
+    axis.is_some_and(|axis| {
+        let facing = Sign::of(normal[axis]);
+        facing != Sign::Zero && turn(seen_along(corners, axis)) == facing
+    })
+}
+
+/// Return whether a place is nearest to a lattice point, and to no other.
+fn is_at(place: &Point, p: &Lattice, pitch: Pitch) -> bool {
+    p.iter().all(|k| k.unsigned_abs() <= DISTINCT) && p.map(|k| pitch.coordinate(k)) == *place
+}
+
+/// The lattice point of a vertex, if it is known to be one.
+fn lattice_of(corner: Corner, exact: &ExactMesh, sources: &Sources) -> Option<Lattice> {
+    match corner {
+        Corner::Point(point) => exact.table.point(point).as_lattice().copied(),
+        Corner::Source(slot, vertex) => {
+            let mesh = sources.get(slot).mesh()?;
+            Some(mesh.vertices[vertex.place()])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extract::assemble::assemble;
+    use crate::extract::rounding::crossings::all_faults;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{cuboid, made_of, tetrahedra};
+    use crate::tree::solid::Solid;
+
+    /// Return whether the mesh of a solid keeps its order, if vertices are put elsewhere first.
+    fn keeps(solid: &Solid, put: impl FnOnce(&mut [Point])) -> bool {
+        let exact = assemble(solid).expect("bounded");
+        let sources = Sources::new(solid.sources().clone());
+        let at = |corner: &Corner| lattice_of(*corner, &exact, &sources).unwrap_or_default();
+        let doubles = |p: Lattice| p.map(|k| solid.pitch().coordinate(k));
+        let mut vertices: Vec<Point> = exact.vertices.iter().map(at).map(doubles).collect();
+        put(&mut vertices);
+        let faces = Faces {
+            vertices: &vertices,
+            triangles: &exact.triangles,
+        };
+        let keeps = keeps_order(&faces, &exact, &sources, solid.pitch());
+        assert!(!keeps || all_faults(&faces).is_empty());
+        keeps
+    }
+
+    #[test]
+    fn boxes_keep_their_order() {
+        // Walls one step apart.
+        let boxes = [
+            cuboid([100_000_001; 3], [300_000_000, 700_000_000, 900_000_000]),
+            cuboid([200_000_000; 3], [300_000_001, 900_000_000, 800_000_000]),
+        ];
+        for op in [Term::Or, Term::And] {
+            assert!(keeps(&made_of(&boxes, op), |_| {}));
+        }
+    }
+
+    #[test]
+    fn what_is_elsewhere_or_slanted_may_cross() {
+        let boxes = made_of(&[cuboid([0; 3], [4; 3]), cuboid([2; 3], [6; 3])], Term::Or);
+        let next = |x: f64| x.next_up();
+        assert!(!keeps(&boxes, |places| places[0] = places[0].map(next)));
+        // All of a wall, so that it stays upright.
+        assert!(!keeps(&boxes, |places| {
+            for place in places.iter_mut().filter(|p| p[0] == 0.0) {
+                place[0] = next(0.0);
+            }
+        }));
+        assert!(!keeps(&made_of(&tetrahedra(), Term::Or), |_| {}));
+    }
+
+    #[test]
+    fn a_triangle_that_faces_elsewhere_does_not_stand_upright() {
+        let corners = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+        assert!(stands_upright(&corners, &[0, 0, 1]));
+        assert!(!stands_upright(&corners, &[0, 0, -1]));
+        assert!(!stands_upright(&corners, &[0, 1, 0]));
+        let line = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [2.0, 0.0, 1.0]];
+        assert!(!stands_upright(&line, &[0, 0, 1]));
+    }
+
+    #[test]
+    fn places_beyond_all_distinct_ones_are_not_told_apart() {
+        let pitch = Pitch::DEFAULT;
+        let at = |k: i64| is_at(&[pitch.coordinate(k); 3], &[k; 3], pitch);
+        assert!(at(1 << 51) && !at((1 << 51) + 1));
+        assert!(!is_at(&[1e-9, 0.0, 0.0], &[2, 0, 0], pitch));
+    }
+}
