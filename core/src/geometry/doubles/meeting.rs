@@ -70,64 +70,90 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
 /// Return whether doubles alone show that two triangles have nothing or one corner in common: most
 /// pairs.
 fn are_clear(p: &Facing, q: &Facing) -> bool {
-    let [of_p, of_q] = common_corners(p.triangle(), q.triangle());
-    if of_p.iter().filter(|common| **common).count() > 1 {
+    let common = Common::of(p.triangle(), q.triangle());
+    if common.several() {
         return false;
     }
-    if lies_beside(p.triangle(), of_p, q) || lies_beside(q.triangle(), of_q, p) {
+    if lies_beside(p, common, q) || lies_beside(q, common.turned(), p) {
         return true;
     }
     let axis = q.main_axis();
-    let (p, q) = (p.triangle(), q.triangle());
-    lies_outside(p, q, axis) || lies_outside(q, p, axis)
+    lies_outside(p, common, q, axis) || lies_outside(q, common.turned(), p, axis)
 }
 
-/// Return for the corners of each of two triangles whether they are corners of the other.
-#[inline]
-fn common_corners(p: &Triangle, q: &Triangle) -> [[bool; 3]; 2] {
-    let mut common = [[false; 3]; 2];
-    for (i, corner) in p.iter().enumerate() {
-        for (j, other) in q.iter().enumerate() {
-            if is_same(corner, other) {
-                common[0][i] = true;
-                common[1][j] = true;
+/// The corners that two triangles have in common: bit `3 i + j` is set if corner `i` of the first
+/// is corner `j` of the second.
+#[derive(Clone, Copy)]
+struct Common(u16);
+
+impl Common {
+    #[inline]
+    fn of(p: &Triangle, q: &Triangle) -> Self {
+        let mut bits = 0;
+        for (i, corner) in p.iter().enumerate() {
+            for (j, other) in q.iter().enumerate() {
+                bits |= u16::from(is_same(corner, other)) << (3 * i + j);
             }
         }
+        Self(bits)
     }
-    common
+
+    /// Return whether more than one corner of the first is common.
+    #[inline]
+    fn several(self) -> bool {
+        // No two corners of a triangle that has area are the same.
+        self.0.count_ones() > 1
+    }
+
+    /// Return whether a corner of the first is one of the second.
+    #[inline]
+    fn has(self, i: usize) -> bool {
+        self.0 >> (3 * i) & 0b111 != 0
+    }
+
+    /// Return whether a corner of the first is an end of an edge of the second.
+    #[inline]
+    fn is_end(self, i: usize, edge: usize) -> bool {
+        const ENDS: [u16; 3] = [0b011, 0b110, 0b101];
+        self.0 >> (3 * i) & ENDS[edge] != 0
+    }
+
+    /// The same as the second triangle sees it.
+    #[inline]
+    fn turned(self) -> Self {
+        const DIAGONAL: u16 = 0b100_010_001;
+        const ABOVE: u16 = 0b000_100_010;
+        const CORNER: u16 = 0b000_000_100;
+        let rows = (self.0 & ABOVE) << 2 | self.0 >> 2 & ABOVE;
+        let corners = (self.0 & CORNER) << 4 | self.0 >> 4 & CORNER;
+        Self(self.0 & DIAGONAL | rows | corners)
+    }
 }
 
 /// Return whether a triangle is clearly on one side of the plane of another, but for common
 /// corners.
 #[inline]
-fn lies_beside(t: &Triangle, common: [bool; 3], plane: &Facing) -> bool {
-    let mut own = Side::On;
-    for (c, common) in t.iter().zip(common) {
-        if common {
-            continue;
-        }
-        match plane.clear_side_off(c) {
-            Filtered::Certain(side) if side != own.opposite() => own = side,
-            _ => return false,
-        }
-    }
-    true
+fn lies_beside(t: &Facing, common: Common, plane: &Facing) -> bool {
+    let corners = t.triangle().iter().enumerate();
+    let others = corners.filter(|(i, _)| !common.has(*i));
+    plane.clearly_beside(others.map(|(_, corner)| corner))
 }
 
 /// Return whether a triangle, seen along an axis, is clearly beyond an edge of another, but for a
 /// corner that is an end of the edge: seen so, each point of the other is one point.
-fn lies_outside(t: &Triangle, other: &Triangle, axis: usize) -> bool {
-    let (t_seen, other_seen) = (seen_along(t, axis), seen_along(other, axis));
-    let Filtered::Certain(inner) = clear_turn(other_seen) else {
+fn lies_outside(t: &Facing, common: Common, other: &Facing, axis: usize) -> bool {
+    let Filtered::Certain(inner) = other.clear_turn(axis) else {
         return false;
     };
-    (0..3).any(|i| {
-        let next = (i + 1) % 3;
+    let (seen, other) = (
+        seen_along(t.triangle(), axis),
+        seen_along(other.triangle(), axis),
+    );
+    (0..3).any(|edge| {
+        let ends = [other[edge], other[(edge + 1) % 3]];
         (0..3).all(|k| {
-            let turn = || clear_turn([other_seen[i], other_seen[next], t_seen[k]]);
-            is_same(&t[k], &other[i])
-                || is_same(&t[k], &other[next])
-                || turn() == Filtered::Certain(-inner)
+            common.is_end(k, edge)
+                || clear_turn([ends[0], ends[1], seen[k]]) == Filtered::Certain(-inner)
         })
     })
 }

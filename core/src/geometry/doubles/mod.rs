@@ -103,13 +103,41 @@ impl Facing {
     /// The side off the plane on which a point lies, where doubles settle it.
     #[inline]
     pub fn clear_side_off(&self, d: &Point) -> Filtered<Side> {
+        let (value, error) = self.height(d);
+        let side = if value > 0.0 { Side::Plus } else { Side::Minus };
+        Filtered::when(value.abs() > error, side)
+    }
+
+    /// Return whether doubles show that some points lie on one side off the plane, all on the same.
+    #[inline]
+    pub fn clearly_beside<'a>(&self, points: impl Iterator<Item = &'a Point>) -> bool {
+        let (mut above, mut below) = (true, true);
+        for (value, error) in points.map(|d| self.height(d)) {
+            above &= value > error;
+            below &= value < -error;
+            if !(above || below) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Six times the volume that a point spans with the triangle, and by how much that may be off.
+    #[inline]
+    fn height(&self, d: &Point) -> (f64, f64) {
         let (m, s) = (&self.minors, &self.sizes);
         let w = difference(d, &self.triangle[0]);
         let value = m[0] * w[0] + m[1] * w[1] + m[2] * w[2];
         let size = s[0] * w[0].abs() + s[1] * w[1].abs() + s[2] * w[2].abs();
-        let clear = value.abs() > SIDE_BOUND * size && TRUSTED.contains(&size);
-        let side = if value > 0.0 { Side::Plus } else { Side::Minus };
-        Filtered::when(clear, side)
+        let is_trusted = TRUSTED.contains(&size);
+        (
+            value,
+            if is_trusted {
+                SIDE_BOUND * size
+            } else {
+                f64::INFINITY
+            },
+        )
     }
 
     /// The axis along which the triangle is seen best.

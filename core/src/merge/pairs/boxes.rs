@@ -103,6 +103,10 @@ pub fn compare_all(
     space: &Space,
     meet: &mut impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
+    let operands = elements.chunk_by(|a, b| a.operand == b.operand).count();
+    if 2 * operands > elements.len() {
+        return compare_in_order(elements, space, meet);
+    }
     let lanes = Lanes::of(elements);
     let mut end = 0;
     for run in elements.chunk_by(|a, b| a.operand == b.operand) {
@@ -121,6 +125,41 @@ pub fn compare_all(
         }
     }
     Some(())
+}
+
+/// As [`compare_all`], along the axis on which the boxes overlap least: where most elements are alone
+/// in their operands, hardly any are left out for being of one.
+fn compare_in_order(
+    elements: &[Boxed],
+    space: &Space,
+    meet: &mut impl FnMut(u32, u32) -> Option<()>,
+) -> Option<()> {
+    let axis = space.sparsest(elements);
+    let sorted = sorted_along(axis, elements);
+    let lanes = Lanes::of(&sorted);
+    for (next, one) in (1..).zip(&sorted) {
+        let reached = sorted[next..].partition_point(|e| e.low[axis] <= one.high[axis]);
+        spend(1 + reached / PAIRS);
+        let mut goes_on = Some(());
+        let reached = &lanes[..(next + reached).div_ceil(LANES)];
+        Lanes::each_overlapping(reached, next, one, |at| {
+            let other = &sorted[at];
+            if goes_on.is_some() && one.operand != other.operand && space.owns(one, other) {
+                let (a, b) = (one.number, other.number);
+                goes_on = meet(a.min(b), a.max(b));
+            }
+        });
+        goes_on?;
+    }
+    Some(())
+}
+
+/// The elements by where they begin on an axis.
+fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
+    let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
+    let mut order: Vec<(i32, usize)> = begins.collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, at)| elements[at]).collect()
 }
 
 /// Calls `meet` for the pairs of two groups that belong to a space, comparing all with all.
@@ -168,8 +207,8 @@ impl Lanes {
             if missed.iter().fold(!0, |all, one| all & one) == !0 {
                 continue;
             }
-            for (at, missed) in (block * LANES..).zip(missed) {
-                if missed == 0 && at >= from {
+            for (at, missed) in (block * LANES..).zip(&missed) {
+                if *missed == 0 && at >= from {
                     found(at);
                 }
             }
@@ -199,6 +238,21 @@ impl Space {
         Self {
             low: each_axis(|i| low(i).map_or(0, |x| x - 1)),
             high: each_axis(|i| high(i).unwrap_or(0)),
+        }
+    }
+
+    /// The axis along which the boxes of elements are shortest, measured by the space.
+    fn sparsest(&self, elements: &[Boxed]) -> usize {
+        let share = |i: usize| {
+            let length = |e: &Boxed| f64::from(e.high[i]) - f64::from(e.low[i]);
+            let size = f64::from(self.high[i]) - f64::from(self.low[i]);
+            elements.iter().map(length).sum::<f64>() / size
+        };
+        let [x, y, z] = [0, 1, 2].map(share);
+        if x <= y && x <= z {
+            0
+        } else {
+            1 + usize::from(z < y)
         }
     }
 
