@@ -24,7 +24,7 @@ pub struct PlaneGroup {
     /// The plane, inside on its minus side.
     pub plane: Arc<Plane>,
     /// The faces that lie in it, ascending.
-    pub faces: Vec<OrientedFace>,
+    pub faces: SmallVec<[OrientedFace; 2]>,
     /// The outline, counterclockwise as seen from outside.
     pub outline: Outline,
 }
@@ -45,7 +45,7 @@ impl PlaneGroup {
 struct Gathered {
     plane: Arc<Plane>,
     patch: u32,
-    faces: Vec<OrientedFace>,
+    faces: SmallVec<[OrientedFace; 2]>,
     /// The outlines of cut faces.
     cut: SmallVec<[Outline; 1]>,
     /// The edges of whole faces.
@@ -92,15 +92,16 @@ pub fn group(
     patches: &Patches,
     join: bool,
 ) -> (Fates, Vec<PlaneGroup>, Rims) {
+    let count = boundary.cut.len();
     let mut grouping = Grouping {
         sources,
         patches,
         join,
         rims: Rims::of(&boundary.fates, sources),
         fates: boundary.fates,
-        groups: Vec::new(),
+        groups: Vec::with_capacity(count),
         by_plane: HashMap::default(),
-        open: Vec::new(),
+        open: Vec::with_capacity(count),
     };
     for cut in boundary.cut {
         poll();
@@ -133,7 +134,7 @@ impl Grouping<'_> {
             self.groups.push(Gathered {
                 plane,
                 patch,
-                faces: Vec::new(),
+                faces: SmallVec::new(),
                 cut: SmallVec::new(),
                 whole: Vec::new(),
             });

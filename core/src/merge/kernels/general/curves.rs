@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::cutting::Special;
 use super::segment::{End, Segment};
 use crate::arith::convert::as_double;
@@ -12,14 +14,14 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
 /// The segment that continues each.
-pub(super) struct Joints(Vec<Option<usize>>);
+pub(super) struct Joints(SmallVec<[Option<usize>; 2]>);
 
 impl Joints {
     /// Each end inside the element must be where exactly one other segment begins.
     pub(super) fn of(segments: &[Segment]) -> Result<Self, Special> {
         let address = |end: &End| Arc::as_ptr(&end.at) as usize;
         let inner = |end: &&End| end.edge.is_none();
-        let mut begins: Vec<(usize, usize)> = Vec::with_capacity(segments.len());
+        let mut begins: SmallVec<[(usize, usize); 4]> = SmallVec::new();
         let numbered = segments.iter().enumerate();
         begins.extend(
             numbered
@@ -38,8 +40,8 @@ impl Joints {
             let found = begins.binary_search_by_key(&address(&segment.to), |b| b.0);
             found.map(|at| Some(begins[at].1)).map_err(|_| Special)
         };
-        let next: Vec<Option<usize>> = segments.iter().map(next).collect::<Result<_, _>>()?;
-        let mut taken = vec![false; segments.len()];
+        let next: SmallVec<_> = segments.iter().map(next).collect::<Result<_, _>>()?;
+        let mut taken = none_of(segments);
         let twice = |i: &usize| std::mem::replace(&mut taken[*i], true);
         if next.iter().flatten().any(twice) {
             return Err(Special);
@@ -54,7 +56,7 @@ impl Joints {
 
     /// The segments of each closed curve, by number.
     pub(super) fn loops(&self, segments: &[Segment]) -> Vec<Vec<usize>> {
-        let mut seen = vec![false; segments.len()];
+        let mut seen = none_of(segments);
         let mut follow = |start: usize| {
             let mut at = Some(start);
             let mut found = Vec::new();
@@ -77,7 +79,7 @@ impl Joints {
 
     /// The segments with those joined that continue each other on one line, and what continues them.
     pub(super) fn joined(self, segments: Vec<Segment>) -> Result<(Vec<Segment>, Self), Special> {
-        let mut continued = vec![false; segments.len()];
+        let mut continued = none_of(&segments);
         let mut any = false;
         for (i, next) in self.0.iter().enumerate() {
             poll();
@@ -113,6 +115,11 @@ impl Joints {
         let joints = Self::of(&joined)?;
         Ok((joined, joints))
     }
+}
+
+/// For each segment false: as a rule they are few.
+fn none_of(segments: &[Segment]) -> SmallVec<[bool; 16]> {
+    SmallVec::from_elem(false, segments.len())
 }
 
 /// Calls for each two segments that do not follow each other and may meet, until that fails.

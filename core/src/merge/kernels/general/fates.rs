@@ -59,6 +59,7 @@ pub(super) struct Cut {
 }
 
 /// The parts into which an element is divided.
+#[allow(clippy::large_enum_variant, reason = "nearly all are traces")]
 pub(super) enum Parts {
     /// Parts by the operands inside which they lie.
     Sides(Trace),

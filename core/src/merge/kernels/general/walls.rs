@@ -6,6 +6,8 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::curves::Joints;
 use super::cutting::Special;
 use super::segment::Segment;
@@ -21,7 +23,7 @@ pub(super) struct Walls {
     pub(super) joints: Joints,
     stops: Stops,
     /// For each segment the other operands inside which it begins.
-    starts: Vec<Option<Labels>>,
+    starts: SmallVec<[Option<Labels>; 2]>,
 }
 
 /// A piece of a segment that nothing crosses.
@@ -35,7 +37,7 @@ pub(super) struct Wall<'a> {
 
 impl Walls {
     pub(super) fn new(segments: Vec<Segment>, joints: Joints, stops: Stops) -> Self {
-        let starts = vec![None; segments.len()];
+        let starts = SmallVec::from_elem(None, segments.len());
         Self {
             segments,
             joints,
@@ -76,7 +78,8 @@ impl Walls {
 
     /// Labels all that hangs together with a segment, given the labels where that begins.
     pub(super) fn spread(&mut self, start: usize, labels: Labels) -> Result<(), Special> {
-        let mut open = vec![(start, labels)];
+        let mut open: SmallVec<[(usize, Labels); 4]> = SmallVec::new();
+        open.push((start, labels));
         while let Some((i, mut labels)) = open.pop() {
             poll();
             match self.starts[i].replace(labels) {
