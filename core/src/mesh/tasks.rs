@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::interrupt::{handed_over, spend, Task};
+use crate::interrupt::{carried, handed_over, spend, Task};
 
 /// Elements of one task: some 50 µs of work, far above what handing it over costs.
 pub const CHUNK: usize = 1 << 14;
@@ -56,6 +56,15 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     }
     let chunks = items.par_chunks(CHUNK).zip(out.par_chunks_mut(CHUNK));
     chunks.enumerate().map(value).collect()
+}
+
+/// A value for each item, in order: each is a task.
+pub fn each<T: Send, R: Send>(items: Vec<T>, value: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
+    if in_pool() {
+        items.into_par_iter().map(carried(value)).collect()
+    } else {
+        items.into_iter().map(value).collect()
+    }
 }
 
 /// The worth of sharing work among threads.

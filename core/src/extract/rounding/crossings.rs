@@ -14,9 +14,9 @@ use crate::geometry::doubles::meeting::{
 };
 use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs_of_many, Boxed, Swept};
+use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{each_chunk, CHUNK};
+use crate::mesh::tasks::{each, each_chunk, CHUNK};
 use crate::mesh::topology::NONE;
 
 /// The faults that keep a mesh from being embedded.
@@ -82,6 +82,9 @@ pub fn all_faults(faces: &Faces) -> Faults {
 /// For directed edges the third corner of the triangle there, if there is one.
 type Apexes = HashMap<[VertexId; 2], Option<VertexId>>;
 
+/// Triangles that one thread compares: a millisecond of work or more.
+const SHARE: usize = 2048;
+
 /// Pairs that are looked at together, by several threads where there are any.
 const BATCH: usize = 8 * CHUNK;
 
@@ -129,6 +132,13 @@ struct Found {
 }
 
 impl Found {
+    /// These meetings, and others.
+    fn with(mut self, others: Self) -> Self {
+        self.crossings.extend(others.crossings);
+        self.doubtful.extend(others.doubtful);
+        self
+    }
+
     /// Looks at a pair of triangles.
     fn look_at(&mut self, p: &Candidate, q: &Candidate) {
         poll();
@@ -207,34 +217,63 @@ fn apexes(faces: &Faces, mut at: Apexes) -> Apexes {
 struct Search<'a> {
     /// By party.
     candidates: &'a [Candidate],
-    /// Pairs that may meet and were not looked at yet.
-    waiting: Vec<[u32; 2]>,
-    found: Found,
+    image: Image,
 }
 
 impl<'a> Search<'a> {
     /// Find the meetings of candidates of different parties.
     fn among(candidates: &'a [Candidate]) -> Found {
-        let mut search = Self {
-            candidates,
-            waiting: Vec::new(),
-            found: Found::default(),
+        let corners = |k: u32| *candidates[k as usize].facing.triangle();
+        let Some(image) = Image::of(candidates.len(), corners) else {
+            return Found::default();
         };
-        each_pair(candidates, |i, j| search.add([i, j]));
-        search.look();
-        search.found
+        let search = Self { candidates, image };
+        let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
+        let parts = Part::of(boxes.collect()).divided(SHARE);
+        let found = each(parts, |part| search.meetings(part));
+        found.into_iter().fold(Found::default(), Found::with)
     }
 
-    fn add(&mut self, pair: [u32; 2]) {
-        self.waiting.push(pair);
-        if self.waiting.len() == BATCH {
-            self.look();
+    fn boxed(&self, k: u32) -> Boxed {
+        let (low, high) = self.image.ends(k);
+        let party = self.candidates[k as usize].party as usize;
+        Boxed::new(party, k, [&low, &high], Image::BITS - 30)
+    }
+
+    fn swept(&self, k: u32) -> Swept {
+        let (low, high) = self.image.ends(k);
+        let Candidate { party, facing, .. } = &self.candidates[k as usize];
+        Swept {
+            operand: *party as usize,
+            low,
+            high,
+            corners: Some(facing.triangle().map(|p| self.image.place(&p))),
         }
     }
 
-    /// Looks at the pairs that wait.
-    fn look(&mut self) {
-        let looked = each_chunk(&self.waiting, |_, pairs| {
+    /// The meetings of the pairs that belong to a part of space.
+    fn meetings(&self, part: Part) -> Found {
+        let mut found = Found::default();
+        let mut waiting = Vec::new();
+        pairs_of_many(
+            part,
+            |k| self.swept(k),
+            |i, j| {
+                waiting.push([i, j]);
+                if waiting.len() == BATCH {
+                    self.look_at(&waiting, &mut found);
+                    waiting.clear();
+                }
+                Some(())
+            },
+        );
+        self.look_at(&waiting, &mut found);
+        found
+    }
+
+    /// Look at pairs that may meet.
+    fn look_at(&self, pairs: &[[u32; 2]], found: &mut Found) {
+        let looked = each_chunk(pairs, |_, pairs| {
             let mut found = Found::default();
             for [i, j] in pairs {
                 let candidate = |k: &u32| &self.candidates[*k as usize];
@@ -242,11 +281,8 @@ impl<'a> Search<'a> {
             }
             found
         });
-        for found in looked {
-            self.found.crossings.extend(found.crossings);
-            self.found.doubtful.extend(found.doubtful);
-        }
-        self.waiting.clear();
+        let before = std::mem::take(found);
+        *found = looked.into_iter().fold(before, Found::with);
     }
 }
 
@@ -270,33 +306,6 @@ pub fn crosses_at(
         }),
     };
     crossing.unwrap_or(true)
-}
-
-/// Calls `meet` for the pairs of candidates of different parties that may meet, by their numbers.
-fn each_pair(candidates: &[Candidate], mut meet: impl FnMut(u32, u32)) {
-    let corners = |k: u32| *candidates[k as usize].facing.triangle();
-    let numbers = 0..as_number(candidates.len());
-    let Some(image) = Image::of(numbers.len(), corners) else {
-        return;
-    };
-    let party = |k: u32| candidates[k as usize].party as usize;
-    let boxed = |k: u32| {
-        let (low, high) = image.ends(k);
-        Boxed::new(party(k), k, [&low, &high], Image::BITS - 30)
-    };
-    let swept = |k: u32| {
-        let (low, high) = image.ends(k);
-        Swept {
-            operand: party(k),
-            low,
-            high,
-            corners: Some(corners(k).map(|p| image.place(&p))),
-        }
-    };
-    pairs_of_many(numbers.map(boxed).collect(), swept, |i, j| {
-        meet(i, j);
-        Some(())
-    });
 }
 
 #[cfg(test)]

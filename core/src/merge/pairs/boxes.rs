@@ -54,8 +54,8 @@ struct Lanes {
     high: [[i32; LANES]; 3],
 }
 
-/// The elements that reach into a box of space.
-struct Task {
+/// The elements that reach into a part of space. Those of one operand follow each other.
+pub struct Part {
     elements: Vec<Boxed>,
     space: Space,
 }
@@ -72,28 +72,18 @@ pub struct Space {
 /// Calls `meet` for all pairs of different operands whose boxes overlap, and `crowd` for elements
 /// that halving does not separate, with the space in which their pairs are still to be found;
 /// gives up where one of them does.
-///
-/// Elements of one operand follow each other.
 pub fn pairs(
-    elements: Vec<Boxed>,
+    part: Part,
     mut meet: impl FnMut(u32, u32) -> Option<()>,
     mut crowd: impl FnMut(&[Boxed], &Space) -> Option<()>,
 ) -> Option<()> {
-    let space = Space::around(&elements);
-    let mut open = vec![Task { elements, space }];
-    while let Some(task) = open.pop() {
-        spend(task.elements.len());
-        let halved = task.elements.len() > FEW && task.halve(&mut open);
-        if halved {
-            continue;
-        }
-        if task.elements.len() <= SOME {
-            compare_all(&task.elements, &task.space, &mut meet)?;
+    part.halved(FEW, |part| {
+        if part.elements.len() <= SOME {
+            compare_all(&part.elements, &part.space, &mut meet)
         } else {
-            crowd(&task.elements, &task.space)?;
+            crowd(&part.elements, &part.space)
         }
-    }
-    Some(())
+    })
 }
 
 /// Calls `meet` for the pairs that belong to a space, comparing all elements with all of other
@@ -265,7 +255,39 @@ impl Space {
     }
 }
 
-impl Task {
+impl Part {
+    /// All elements, of which those of one operand follow each other.
+    #[must_use]
+    pub fn of(elements: Vec<Boxed>) -> Self {
+        let space = Space::around(&elements);
+        Self { elements, space }
+    }
+
+    /// Parts of up to so many elements, or that halving does not separate: each pair belongs to one.
+    #[must_use]
+    pub fn divided(self, most: usize) -> Vec<Self> {
+        let mut parts = Vec::new();
+        let _ = self.halved(most, |part| {
+            parts.push(part);
+            Some(())
+        });
+        parts
+    }
+
+    /// Calls `visit` for parts of up to so many elements, or that halving does not separate; gives up
+    /// where it does.
+    fn halved(self, most: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
+        let mut open = vec![self];
+        while let Some(part) = open.pop() {
+            spend(part.elements.len());
+            let halved = part.elements.len() > most && part.halve(&mut open);
+            if !halved {
+                visit(part)?;
+            }
+        }
+        Some(())
+    }
+
     /// Divides the elements among the halves of the space; false if no axis separates them.
     ///
     /// The longest axis that does is as good as the best one, and not all have to be counted.

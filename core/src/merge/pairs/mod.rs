@@ -15,7 +15,7 @@ use std::cell::{Cell, RefCell};
 
 use crate::geometry::plane::Lattice;
 use boxes::Space;
-pub use boxes::{shift_of, Boxed};
+pub use boxes::{shift_of, Boxed, Part};
 use divide::{divided, Groups};
 use view::share_corner;
 
@@ -48,7 +48,7 @@ pub fn pairs(
         found(i, j);
         Some(())
     };
-    boxes::pairs(elements, go_on, |crowd, space| {
+    boxes::pairs(Part::of(elements), go_on, |crowd, space| {
         let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
         if share_corner(&some) {
             return None;
@@ -70,7 +70,7 @@ pub fn pairs(
 ///
 /// # Example
 /// ```
-/// use bspcsg::merge::pairs::{pairs_of_many, Boxed, Swept};
+/// use bspcsg::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
 ///
 /// let boxes = [(0, [0; 3], [2; 3]), (1, [1; 3], [3; 3]), (1, [8; 3], [9; 3])];
 /// let boxed = |(number, (operand, low, high)): (u32, &(usize, _, _))| {
@@ -81,20 +81,21 @@ pub fn pairs(
 ///     Swept { operand, low, high, corners: None }
 /// };
 /// let mut found = Vec::new();
-/// pairs_of_many((0..).zip(&boxes).map(boxed).collect(), swept, |a, b| {
+/// let all = Part::of((0..).zip(&boxes).map(boxed).collect());
+/// pairs_of_many(all, swept, |a, b| {
 ///     found.push([a, b]);
 ///     Some(())
 /// });
 /// assert_eq!(found, [[0, 1]]);
 /// ```
 pub fn pairs_of_many(
-    elements: Vec<Boxed>,
+    part: Part,
     swept: impl Fn(u32) -> Swept,
     meet: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    boxes::pairs(elements, found, |crowd, space| {
+    boxes::pairs(part, found, |crowd, space| {
         let mut open = vec![crowd.to_vec()];
         while let Some(crowd) = open.pop() {
             let groups = (crowd.len() > boxes::SOME).then(|| divided(&crowd, &swept));
@@ -269,7 +270,7 @@ mod tests {
         let boxes = (0..).zip(&elements).map(boxed).collect();
         let mut found = HashSet::new();
         let one = |k: u32| elements[k as usize].clone();
-        pairs_of_many(boxes, one, |i, j| {
+        pairs_of_many(Part::of(boxes), one, |i, j| {
             found.insert((i.min(j) as usize, i.max(j) as usize));
             Some(())
         });

@@ -5,16 +5,14 @@
 //! overlap in every projection, but hardly as seen from that corner. In the plane of the two best lines
 //! also the edges of triangles tell them from boxes.
 
-use rayon::prelude::*;
-
 use super::direction::{largest_coordinate, Span};
 use super::line::{longest_edge, Line, MANY};
 use super::rim::{rims, HalfPlane};
 use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::dot;
-use crate::interrupt::{carried, spend};
-use crate::mesh::tasks::in_pool;
+use crate::interrupt::spend;
+use crate::mesh::tasks::each;
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
@@ -26,21 +24,15 @@ const PAIRS: usize = 16;
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
 pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
     let parties = parties(elements);
-    let sweeps = each(&parties, |numbers| Sweep::of(elements, numbers));
+    let sweeps = each(parties.iter().collect(), |numbers| {
+        Sweep::of(elements, numbers)
+    });
     if sweeps.iter().map(Sweep::cost).sum::<f64>() > CROWDED {
         return None;
     }
-    let found = each(&sweeps, Sweep::run);
+    let found = each(sweeps.iter().collect(), Sweep::run);
     found.into_iter().flatten().for_each(|(i, j)| meet(i, j));
     Some(())
-}
-
-/// A value for each item, in order, by several threads where there are any.
-fn each<T: Sync, R: Send>(items: &[T], value: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    if in_pool() {
-        return items.par_iter().map(carried(&value)).collect();
-    }
-    items.iter().map(value).collect()
 }
 
 /// The elements, all together or, if two operands have many, as pairs of groups that suit different

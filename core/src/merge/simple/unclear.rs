@@ -10,7 +10,7 @@ use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Swept};
+use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{each_chunk, CHUNK};
@@ -199,7 +199,7 @@ impl<'a> Search<'a> {
         let face = |number: u32| sorted[number as usize];
         let swept = |number: u32| view.swept(face(number), &origin);
         let boxes = sorted.iter().enumerate().map(boxed).collect();
-        pairs_of_many(boxes, swept, |a, b| self.add([face(a), face(b)]))?;
+        pairs_of_many(Part::of(boxes), swept, |a, b| self.add([face(a), face(b)]))?;
         self.look()
     }
 
