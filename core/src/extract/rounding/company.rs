@@ -1,10 +1,12 @@
 //! The triangles of a mesh that lie so near others that the two may meet, by a coarse grid.
 
+use std::ops::Range;
+
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::fill_chunks;
+use crate::mesh::tasks::{each, fill_chunks};
 
 /// A mesh in doubles, closed by index.
 #[derive(Clone, Copy, Debug)]
@@ -36,12 +38,20 @@ const FEW: usize = 256;
 /// which are near costs more than it saves.
 const MOST: usize = 4;
 
+/// Triangles that one thread looks through: some milliseconds of work, above what marks of its own
+/// cost.
+const SHARE: usize = 1 << 17;
+
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
 /// another party; with their parties, ascending.
 ///
 /// # Cost
 /// Two passes over vertices and triangles.
-pub fn in_company(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
+pub fn in_company(
+    faces: &Faces,
+    some: &[u32],
+    party: impl Fn(u32) -> u32 + Sync + Send,
+) -> Vec<(u32, u32)> {
     let count = faces.triangles.len();
     if some.len() == count {
         return Vec::new();
@@ -65,21 +75,36 @@ struct Others<'a> {
 
 impl<'a> Others<'a> {
     fn each(self) -> impl Iterator<Item = u32> + 'a {
-        let ends = self.some.iter().copied().chain([as_number(self.count)]);
-        let mut next = 0;
-        ends.flat_map(move |end| {
-            let between = next..end;
-            next = end + 1;
-            between
-        })
+        self.within(0..as_number(self.count))
+    }
+
+    /// Those in a range, ascending.
+    fn within(self, range: Range<u32>) -> impl Iterator<Item = u32> + 'a {
+        let place = |t: u32| self.some.partition_point(|s| *s < t);
+        let some = &self.some[place(range.start)..place(range.end)];
+        let mut next = range.start;
+        some.iter()
+            .copied()
+            .chain([range.end])
+            .flat_map(move |end| {
+                let between = next..end;
+                next = end + 1;
+                between
+            })
+    }
+
+    /// The triangles in shares, each of which one thread looks through.
+    fn shares(self) -> Vec<Range<u32>> {
+        let starts = (0..self.count).step_by(SHARE);
+        let share = |start: usize| as_number(start)..as_number(self.count.min(start + SHARE));
+        starts.map(share).collect()
     }
 
     /// Those in a cell with one that is left out, or with one of another party.
-    fn near(self, faces: &Faces, party: impl Fn(u32) -> u32) -> Vec<(u32, u32)> {
+    fn near(self, faces: &Faces, party: impl Fn(u32) -> u32 + Sync + Send) -> Vec<(u32, u32)> {
         let Some(grid) = Grid::around(faces) else {
             return Vec::new();
         };
-        let mut marks = grid.marks();
         let mut cells = vec![0; faces.vertices.len()];
         fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
             for (place, cell) in places.iter().zip(cells) {
@@ -87,13 +112,21 @@ impl<'a> Others<'a> {
             }
         });
         let corners = |t: u32| faces.triangles[t as usize].map(|v| cells[v.place()]);
+        let marked = each(self.shares(), |share| {
+            let mut marks = grid.marks();
+            self.within(share)
+                .for_each(|t| marks.mark(corners(t), party(t) + 1));
+            marks
+        });
+        let mut marks = marked.into_iter().fold(grid.marks(), Marks::joined);
         for t in self.some {
             marks.mark(corners(*t), SHARED);
         }
-        self.each()
-            .for_each(|t| marks.mark(corners(t), party(t) + 1));
-        let near = self.each().filter(|t| marks.is_shared(corners(*t)));
-        near.map(|t| (party(t), t)).collect()
+        let near = each(self.shares(), |share| {
+            let near = self.within(share).filter(|t| marks.is_shared(corners(*t)));
+            near.map(|t| (party(t), t)).collect::<Vec<_>>()
+        });
+        near.concat()
     }
 }
 
@@ -107,12 +140,18 @@ struct Marks {
 }
 
 impl Marks {
+    /// The marks of the triangles of both.
+    fn joined(mut self, other: Self) -> Self {
+        for (mark, party) in self.of_cells.iter_mut().zip(other.of_cells) {
+            *mark = joint(*mark, party);
+        }
+        self
+    }
+
     fn mark(&mut self, corners: [Cell; 3], party: u32) {
         let of_cells = &mut self.of_cells;
         self.grid.visit(corners, |cell| {
-            let mark = &mut of_cells[cell];
-            let own = *mark == 0 || *mark == party;
-            *mark = if own { party } else { SHARED };
+            of_cells[cell] = joint(of_cells[cell], party);
             true
         });
     }
@@ -124,6 +163,18 @@ impl Marks {
             !shared
         });
         shared
+    }
+}
+
+/// The mark of a cell with what two marks tell of.
+#[inline]
+const fn joint(one: u32, other: u32) -> u32 {
+    if one == other || other == 0 {
+        one
+    } else if one == 0 {
+        other
+    } else {
+        SHARED
     }
 }
 

@@ -45,7 +45,7 @@ impl Faults {
 ///
 /// Others of one party, such as the faces of one input that are as they came, are not compared with
 /// each other.
-pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32) -> Faults {
+pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let has_area = |t: u32| !has_no_area(&faces.corners(t));
     let mut elements = in_company(faces, some, &party);
     elements.retain(|(_, t)| has_area(*t));

@@ -22,7 +22,7 @@ use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::snap_point;
 use crate::mesh::handle::{OrientedFace, VertexId};
-use crate::mesh::tasks::fill_chunks;
+use crate::mesh::tasks::{both, fill_chunks, Worth, CHUNK};
 use crate::mesh::topology::NONE;
 use crate::tree::solid::Solid;
 
@@ -75,18 +75,18 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     };
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
-    let settled = settle_mesh(&mut mesh, solid, &exact, &sources)?;
+    let (parties, names) = both(
+        Worth::task_if(exact.faces.len() > CHUNK),
+        || parties(&mesh, &exact),
+        || names(&exact.faces, &sources),
+    );
+    (mesh.origins, mesh.flips) = names;
+    let settled = settle_mesh(&mut mesh, solid, &exact, &sources, &parties)?;
     let left = if unfolded.left.is_empty() && settled.mended.is_empty() {
         Vec::new()
     } else {
         turned(&mesh, &exact, &sources)
     };
-    mesh.origins = origins(&exact.faces, &sources);
-    mesh.flips = exact
-        .faces
-        .iter()
-        .map(|f| f.orientation.is_opposite())
-        .collect();
     tell_moved(&mut mesh, &settled.moved);
     tell_touching(&mut mesh, &exact.vertices, !settled.mended.is_empty());
     let renumbered = if settled.mended.is_empty() {
@@ -99,15 +99,16 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// For each face the slot of its source, and the number it had in its input.
-fn origins(faces: &[OrientedFace], sources: &Sources) -> Vec<[u32; 2]> {
+/// For each face the slot of its source and the number it had in its input, and whether it is turned.
+fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>) {
     let mut origins = Vec::with_capacity(faces.len());
     for run in faces.chunk_by(|a, b| a.slot() == b.slot()) {
         let slot = run[0].slot();
         let source = sources.get(slot);
         origins.extend(run.iter().map(|f| [slot.0, source.number(f.id())]));
     }
-    origins
+    let flips = faces.iter().map(|f| f.orientation.is_opposite());
+    (origins, flips.collect())
 }
 
 /// Mends the crossings that rounding made.
@@ -120,10 +121,10 @@ fn settle_mesh(
     solid: &Solid,
     exact: &ExactMesh,
     sources: &Sources,
+    parties: &[u32],
 ) -> Result<Settled> {
     let mut changed = at_blurred(solid, exact);
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
-    let parties = parties(mesh, exact);
     let party = |t: u32| parties[t as usize];
     let corner = |v: VertexId| exact.vertices.get(v.place());
     let on_lattice = |v: VertexId| match corner(v) {

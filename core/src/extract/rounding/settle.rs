@@ -104,7 +104,7 @@ impl Rounded {
     }
 
     /// Return the faults of changed triangles, ascending, and those between parties.
-    pub fn faults(&self, changed: &[u32], party: impl Fn(u32) -> u32) -> Faults {
+    pub fn faults(&self, changed: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
         if changed.is_empty() && self.is_of_one(&party) {
             return Faults::default();
         }
