@@ -325,8 +325,11 @@ fn what_crosses_itself_in_one_place_costs_no_tree() {
 /// Only where surfaces cross on the lattice the mesh stays as it is, and one such place is enough.
 #[test]
 fn a_mesh_says_that_it_crosses_itself_without_being_united() {
-    let bars = Shape::cuboid([-100, -3, -3], [100, 3, 3])
-        .with(Shape::cuboid([-80, -90, -2], [-70, 95, 2]));
+    let mut askew = Shape::cuboid([-80, -90, -2], [-70, 95, 2]);
+    for place in &mut askew.vertices {
+        place[0] += place[1] / 10;
+    }
+    let bars = Shape::cuboid([-100, -3, -3], [100, 3, 3]).with(askew);
     let bars = bars.unchecked();
     let tool = Shape::cuboid([80, -20, -20], [130, 20, 20]).unchecked();
     let result = applied(SetOp::Difference, &bars, &tool);
