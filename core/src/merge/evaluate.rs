@@ -151,21 +151,15 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
 }
 
 /// Return whether the elements of a solid are its reduced boundary; looks, if nobody has, and first
-/// at a place where the boundary seems to cross itself: if it does, that mostly shows it, and costs
-/// less than a check of whole meshes.
+/// at places where the boundary seems to cross itself.
 ///
 /// # Errors
 /// `Internal`.
 pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
-    let (first, others) = suspects.split_at(suspects.len().min(1));
-    let is_asked = solid.simple().get().is_some() || solid.is_reduced();
-    if !is_asked && overlaps_at(solid, first) {
-        return Ok(*solid.simple().get_or_make(|| false));
-    }
     if let Some(known) = found_simple(solid)?.0 {
         return Ok(known);
     }
-    if overlaps_at(solid, others) {
+    if overlaps_at(solid, suspects) {
         return Ok(*solid.simple().get_or_make(|| false));
     }
     normalize(solid, Rule::Positive)?;
@@ -325,21 +319,4 @@ fn joint_table(solids: &[Solid]) -> Table {
             all.joined(one)
         }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::merge::scenes::cuboids;
-
-    #[test]
-    fn suspects_do_not_change_whether_a_solid_is_simple() {
-        let [one, into_it, apart] = [[[0; 3], [4; 3]], [[2; 3], [6; 3]], [[20; 3], [24; 3]]];
-        let (inside, elsewhere) = ([3; 3], [22; 3]);
-        for suspects in [vec![], vec![inside], vec![elsewhere, inside]] {
-            let asked = |solid: Solid| is_simple(&solid, &suspects).ok();
-            assert_eq!(asked(cuboids([one, into_it, apart])), Some(false));
-            assert_eq!(asked(cuboids([one, apart])), Some(true));
-        }
-    }
 }
