@@ -91,7 +91,7 @@ impl Round {
         ..Self::START
     };
 
-    /// After a halving of a cell with so many elements.
+    /// After a halving of a cell with so many elements that may separate them.
     #[must_use]
     pub fn next(self, total: usize) -> Self {
         if self.depth + 1 < ROUND {
@@ -145,6 +145,29 @@ impl Round {
     }
 }
 
+/// Return whether what is left where halving cuts off only what is empty is no smaller than the cell: it
+/// spans half of it or more, or is one lattice point.
+pub fn is_filled(cell: &Cell, states: &States) -> bool {
+    let boxes = states.iter().map(|s| within(cell, s.1.bounds(cell)));
+    let joined = |[low, high]: [Lattice; 2], [least, most]: [Lattice; 2]| {
+        [
+            each_axis(|i| low[i].min(least[i])),
+            each_axis(|i| high[i].max(most[i])),
+        ]
+    };
+    let longest = |[low, high]: [Lattice; 2]| (0..3).map(|i| high[i] - low[i]).max();
+    let content = boxes.reduce(joined).and_then(longest);
+    let side = longest([*cell.low(), cell.high()]);
+    content.is_some_and(|content| content == 0 || Some(2 * content) >= side)
+}
+
+/// The part of a box in a cell.
+fn within(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
+    let (least, most) = (cell.low(), cell.high());
+    let low = each_axis(|i| low[i].max(least[i]));
+    [low, each_axis(|i| high[i].min(most[i]))]
+}
+
 /// Return whether so many operands are in one place that no kernel should be asked.
 pub fn is_overcrowded(cell: &Cell, states: &States) -> bool {
     states.len() >= MANY && is_crowded(cell, states)
@@ -157,12 +180,7 @@ pub fn is_crowded(cell: &Cell, states: &States) -> bool {
         return false;
     }
     let some = states.iter().step_by(states.len().div_ceil(MOST));
-    let (least, most) = (cell.low(), cell.high());
-    let inside = |[low, high]: [Lattice; 2]| {
-        let low = each_axis(|i| low[i].max(least[i]));
-        [low, each_axis(|i| high[i].min(most[i]))]
-    };
-    let boxes: Vec<[Lattice; 2]> = some.map(|s| inside(s.1.bounds(cell))).collect();
+    let boxes: Vec<[Lattice; 2]> = some.map(|s| within(cell, s.1.bounds(cell))).collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
     let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();
@@ -207,6 +225,16 @@ mod tests {
         assert!(!crowded(&cell, 10));
         // Beyond the cell it does not matter.
         assert!(!crowded(&Cell::around(&[0; 3], &[1; 3]), 3));
+    }
+
+    #[test]
+    fn cells_are_filled_by_what_spans_half_of_them_or_is_one_point() {
+        let states: States = vec![(0, State::Tree(cuboid([0; 3], [8; 3]).root().clone()))];
+        let filled = |low: i64, high: i64| is_filled(&Cell::around(&[low; 3], &[high; 3]), &states);
+        assert!(filled(0, 15));
+        assert!(!filled(0, 63));
+        // A corner alone.
+        assert!(filled(8, 15));
     }
 
     #[test]

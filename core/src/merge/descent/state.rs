@@ -76,6 +76,16 @@ pub fn has_constant(states: &States) -> bool {
     states.iter().any(|s| matches!(s.1, State::Constant(_)))
 }
 
+/// Return whether an operand has boundary in the cell, as far as its list or its tree tells.
+pub fn has_surface(states: &States) -> bool {
+    states.iter().any(|(_, state)| match state {
+        State::Constant(_) => false,
+        State::Tree(branch) => branch.constant().is_none(),
+        State::List(list) => !list.is_empty(),
+        State::Bins(_) => true,
+    })
+}
+
 impl State {
     /// About how many elements it has in the cell.
     pub fn len_in(&self, cell: &Cell) -> usize {
@@ -294,6 +304,16 @@ mod tests {
         let (minus, plus) = state.divided(&cell, cut, &sources);
         assert!(matches!(minus, State::Tree(_)));
         assert!(matches!(plus, State::Constant(0)));
+    }
+
+    #[test]
+    fn constants_and_empty_lists_have_no_surface() {
+        let scene = crossing();
+        let mut list = scene.lists[0].clone();
+        let states = |list| vec![(0, State::Constant(1)), (1, State::List(list))];
+        assert!(has_surface(&states(list.clone())));
+        list.records.clear();
+        assert!(!has_surface(&states(list)));
     }
 
     #[test]
