@@ -148,7 +148,8 @@ impl Round {
 /// Return whether what is left where halving cuts off only what is empty is no smaller than the cell: it
 /// spans half of it or more, or is one lattice point.
 pub fn is_filled(cell: &Cell, states: &States) -> bool {
-    let boxes = states.iter().map(|s| within(cell, s.1.bounds(cell)));
+    let present = states.iter().filter(|s| s.1.has_surface());
+    let boxes = present.map(|s| within(cell, s.1.bounds(cell)));
     let joined = |[low, high]: [Lattice; 2], [least, most]: [Lattice; 2]| {
         [
             each_axis(|i| low[i].min(least[i])),

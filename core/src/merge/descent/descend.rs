@@ -448,7 +448,6 @@ impl<'a> Descent<'a> {
         self.counters
             .halved
             .fetch_add(halved as u64, Ordering::Relaxed);
-        let filled = is_filled(&cell, &states);
         let mut below = Vec::with_capacity(states.len());
         let mut above = Vec::with_capacity(states.len());
         for (k, state) in states {
@@ -457,11 +456,12 @@ impl<'a> Descent<'a> {
             above.push((k, plus));
         }
         // Cutting off what is empty tells nothing about how the rest separates, if that is small.
-        let round = if filled || has_surface(&below) && has_surface(&above) {
-            round.next(total)
-        } else {
-            round
+        let is_counted = match [&below, &above].map(has_surface) {
+            [true, true] => true,
+            [true, false] => is_filled(&cell, &below),
+            [false, _] => is_filled(&cell, &above),
         };
+        let round = if is_counted { round.next(total) } else { round };
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };

@@ -78,15 +78,20 @@ pub fn has_constant(states: &States) -> bool {
 
 /// Return whether an operand has boundary in the cell, as far as its list or its tree tells.
 pub fn has_surface(states: &States) -> bool {
-    states.iter().any(|(_, state)| match state {
-        State::Constant(_) => false,
-        State::Tree(branch) => branch.constant().is_none(),
-        State::List(list) => !list.is_empty(),
-        State::Bins(_) => true,
-    })
+    states.iter().any(|s| s.1.has_surface())
 }
 
 impl State {
+    /// Return whether it has boundary in the cell, as far as its list or its tree tells.
+    pub fn has_surface(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Tree(branch) => branch.constant().is_none(),
+            Self::List(list) => !list.is_empty(),
+            Self::Bins(_) => true,
+        }
+    }
+
     /// About how many elements it has in the cell.
     pub fn len_in(&self, cell: &Cell) -> usize {
         match self {
