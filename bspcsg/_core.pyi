@@ -30,6 +30,7 @@ __all__ = [
     "mesh_faults",
     "mesh_in_single",
     "mesh_measures",
+    "mesh_moved",
     "normal_bits",
     "numbers_in",
     "set_threads",
@@ -65,7 +66,7 @@ class Faults(TypedDict):
     flat: npt.NDArray[np.int64]
 
 @type_check_only
-class InSingle(Faults):
+class Settled(Faults):
     vertices: npt.NDArray[np.float64]
     triangles: npt.NDArray[np.int64]
     kept: npt.NDArray[np.int64]
@@ -82,9 +83,14 @@ _SplitCase: TypeAlias = Literal[
 def fail_on_purpose(panic: bool, size: int) -> None: ...
 def hull_faces(points: npt.NDArray[np.float64], pitch: int) -> npt.NDArray[np.int64]: ...
 def mesh_faults(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> Faults: ...
+def mesh_moved(
+    before: npt.NDArray[np.float64],
+    vertices: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+) -> Settled | None: ...
 def mesh_in_single(
     vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]
-) -> InSingle: ...
+) -> Settled: ...
 def set_threads(n: int) -> None: ...
 def watch(watcher: Callable[[], object] | None) -> Callable[[], object] | None: ...
 def find_numpy() -> None: ...

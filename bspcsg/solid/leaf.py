@@ -22,6 +22,7 @@ from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
+from .moving import SaidMesh
 from .program import COMPLEMENT, Algebra
 
 
@@ -109,12 +110,14 @@ class MeshLeaf:
 
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
-        vertices, faces = transformed_arrays(*self.arrays(), factors)
-        # Rounding may make faces cross, so the word given for the original no longer counts.
-        said = self._attributes
-        moved = None if said is None else moved_attributes(said, factors)
+        # Rounding moves vertices, so the word given for the original no longer counts.
+        moved = SaidMesh(*self.arrays(), self._attributes).moved(factors)
         return MeshLeaf(
-            vertices, faces, self._chosen_pitch, winding=self._winding, attributes=moved
+            moved.vertices,
+            moved.faces,
+            self._chosen_pitch,
+            winding=self._winding,
+            attributes=moved.attributes,
         )
 
     @cached_property
@@ -352,12 +355,6 @@ def tagged(
     return said if more is None else replace(said, face={**said.face, **more.face})
 
 
-def moved_attributes(attributes: Attributes, factors: FactorChain) -> Attributes:
-    """Return attributes over a mesh that was moved as by `transformed_arrays`."""
-    turned = attributes.turned(factors.product[:3, :3])
-    return turned.reordered([2, 1, 0]) if factors.mirrors else turned
-
-
 def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
     """Return the finest of the leaves' pitches; planes choose only where nothing else does."""
     own = [leaf.pitch for leaf in leaves if leaf.pitch is not None]
@@ -400,23 +397,13 @@ def _other(operand: Extent) -> Extent:
 _EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)
 
 
-def transformed_arrays(
-    vertices: FloatArray, faces: IndexArray, factors: FactorChain
-) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh moved by the product of the factors, its outside still outside."""
-    moved = transform.apply(factors.product, vertices)
-    return moved, np.ascontiguousarray(faces[:, ::-1]) if factors.mirrors else faces
-
-
 def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     tree = leaf.shown
     with core_errors():
         vertices, faces = tree.to_mesh()
-    arrays = transformed_arrays(vertices, faces, factors)
-    if not leaf.sayings:
-        return MeshLeaf(*arrays)
-    moved = moved_attributes(attributes_of(tree, leaf.sayings), factors)
-    return MeshLeaf(*arrays, attributes=moved)
+    said = attributes_of(tree, leaf.sayings) if leaf.sayings else None
+    moved = SaidMesh(vertices, faces, said).moved(factors)
+    return MeshLeaf(moved.vertices, moved.faces, attributes=moved.attributes)
 
 
 #: Something that is being moved: it asks for leaves under factors, and is sent them where they go.

@@ -1,7 +1,7 @@
 //! Triangle meshes on the lattice: import, topology and findings.
 
 pub mod cached;
-mod chain;
+pub mod chain;
 pub mod disjoint;
 mod ears;
 pub mod facets;

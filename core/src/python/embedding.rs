@@ -10,7 +10,7 @@ use super::calls::run::run;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::{all_faults, Faults};
-use crate::extract::rounding::settle::{settle_in_single, Rounded};
+use crate::extract::rounding::settle::{settle_in_single, settle_moved, Rounded, Settled};
 use crate::mesh::handle::VertexId;
 
 /// The pairs of triangles that cross or overlap, and the triangles without area.
@@ -43,6 +43,30 @@ pub fn mesh_in_single<'py>(
     let settled = run(py, 0, mesh.triangles.len(), || {
         Ok(settle_in_single(&mut mesh))
     })?;
+    settled_mesh(py, mesh, settled)
+}
+
+/// A mesh closed by index whose vertices a transform moved, mended where that made it cross itself;
+/// `None` if it stays as it is.
+#[pyfunction]
+pub fn mesh_moved<'py>(
+    py: Python<'py>,
+    before: PyReadonlyArray2<'py, f64>,
+    vertices: PyReadonlyArray2<'py, f64>,
+    triangles: PyReadonlyArray2<'py, i64>,
+) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let before = given(&before, &triangles).map_err(|e| to_python(py, &e))?;
+    let mut mesh = given(&vertices, &triangles).map_err(|e| to_python(py, &e))?;
+    let settled = run(py, 0, mesh.triangles.len(), || {
+        Ok(settle_moved(&mut mesh, &before.vertices))
+    })?;
+    let is_changed = !settled.mended.is_empty() || !settled.left.is_empty();
+    is_changed
+        .then(|| settled_mesh(py, mesh, settled))
+        .transpose()
+}
+
+fn settled_mesh(py: Python<'_>, mesh: Rounded, settled: Settled) -> PyResult<Bound<'_, PyDict>> {
     let numbers = (0..).zip(&mesh.triangles);
     let (kept, left): (Vec<i64>, Vec<[VertexId; 3]>) =
         numbers.filter(|(_, t)| t[0] != t[1]).unzip();

@@ -84,6 +84,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<RayTree>()?;
     module.add_class::<RayScene>()?;
     module.add_function(wrap_pyfunction!(embedding::mesh_faults, module)?)?;
+    module.add_function(wrap_pyfunction!(embedding::mesh_moved, module)?)?;
     module.add_function(wrap_pyfunction!(embedding::mesh_in_single, module)?)?;
     module.add_function(wrap_pyfunction!(hulls::hull_faces, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;

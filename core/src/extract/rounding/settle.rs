@@ -3,11 +3,12 @@
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use super::company::{in_company, Faces};
-use super::crossings::{faults, Faults};
+use super::crossings::{all_faults, faults, Faults};
 use super::mend::{Mending, Precision};
 use crate::arith::convert::as_number;
 use crate::extract::mesh::edges;
 use crate::geometry::doubles::Point;
+use crate::mesh::chain::is_closed;
 use crate::mesh::handle::VertexId;
 
 /// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
@@ -94,7 +95,36 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
     settle(mesh, changed, found, single, |_| None, |_| false, |_| 0)
 }
 
+/// Mends what moving the vertices of a mesh made cross; `before` has their old places.
+///
+/// A mesh that crossed itself there before stays as it is, and so does one that is not closed by
+/// index.
+pub fn settle_moved(mesh: &mut Rounded, before: &[Point]) -> Settled {
+    if !is_closed(&mesh.triangles) {
+        return Settled::default();
+    }
+    let found = all_faults(&mesh.faces());
+    if found.crossings.is_empty() || mesh.crossed_before(&found, before) {
+        return Settled::default();
+    }
+    let all = (0..as_number(mesh.triangles.len())).collect();
+    let double = Precision::Double;
+    settle(mesh, all, found, double, |_| None, |_| false, |_| 0)
+}
+
 impl Rounded {
+    /// Return whether triangles that cross others crossed some in these places, too.
+    fn crossed_before(&self, found: &Faults, before: &[Point]) -> bool {
+        let mut some: Vec<u32> = found.crossings.iter().flatten().copied().collect();
+        some.sort_unstable();
+        some.dedup();
+        let faces = Faces {
+            vertices: before,
+            triangles: &self.triangles,
+        };
+        !faults(&faces, &some, |_| 0).crossings.is_empty()
+    }
+
     /// The triangles.
     pub fn faces(&self) -> Faces<'_> {
         Faces {

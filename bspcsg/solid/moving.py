@@ -1,0 +1,55 @@
+"""Meshes moved by a transform: each coordinate is rounded once, and surfaces still do not cross."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._core import mesh_moved
+from .._types import FloatArray, IndexArray
+from ..attributes.attributes import Attributes
+from ..errors import core_errors
+from ..geometry import transform
+from ..geometry.chain import FactorChain
+
+
+@dataclass(frozen=True, eq=False)
+class SaidMesh:
+    """A mesh, and what is said of its faces.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64, in model units
+    faces : (m, 3) int64, indices of `vertices`
+    attributes : Attributes or None
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    attributes: Attributes | None = None
+
+    def moved(self, factors: FactorChain) -> "SaidMesh":
+        """Return the mesh moved by the product of the factors, its outside still outside.
+
+        Rounding moves each vertex by itself, so that surfaces that touched may cross. Where a mesh
+        that is closed by index did not cross itself before, such crossings are mended by changes
+        of the width of the rounding.
+        """
+        said = self.attributes and self.attributes.turned(factors.product[:3, :3])
+        faces = self.faces
+        if factors.mirrors:
+            faces = np.ascontiguousarray(faces[:, ::-1])
+            said = said and said.reordered([2, 1, 0])
+        moved = SaidMesh(transform.apply(factors.product, self.vertices), faces, said)
+        return moved._mended(self.vertices)
+
+    def _mended(self, before: FloatArray) -> "SaidMesh":
+        """Return the mesh without the crossings that moving its vertices has made."""
+        if not np.isfinite(self.vertices).all():
+            return self  # Its import names the vertex.
+        with core_errors():
+            found = mesh_moved(before, self.vertices, self.faces)
+        if found is None:
+            return self
+        faces = found["triangles"]
+        said = self.attributes and self.attributes.onto(faces, found["kept"])
+        return SaidMesh(found["vertices"], faces, said)
