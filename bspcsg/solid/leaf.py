@@ -67,11 +67,12 @@ class MeshLeaf:
         self._winding = winding
         self._attributes = attributes
         self._tree: Tree | None = None
+        self._before: FloatArray | None = None
 
     @property
     def pitch(self) -> int | None:
         """Exponent of the lattice step."""
-        return self.grown().pitch
+        return self.grown().pitch if self._chosen_pitch is None else self._chosen_pitch
 
     @property
     def extent(self) -> "Extent":
@@ -81,10 +82,12 @@ class MeshLeaf:
     @property
     def sayings(self) -> "Sayings":
         """The attributes of the mesh."""
+        self._mend()
         return () if self._attributes is None else (self._attributes,)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
-        """Return vertices and faces as they were given."""
+        """Return vertices and faces as they were given, or moved."""
+        self._mend()
         return self.grown().given_arrays() if self._arrays is None else self._arrays
 
     def let_go(self) -> None:
@@ -111,19 +114,36 @@ class MeshLeaf:
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
         # Rounding moves vertices, so the word given for the original no longer counts.
-        moved = SaidMesh(*self.arrays(), self._attributes).moved(factors)
-        return MeshLeaf(
-            moved.vertices,
-            moved.faces,
-            self._chosen_pitch,
-            winding=self._winding,
-            attributes=moved.attributes,
-        )
+        said = SaidMesh(*self.arrays(), self._attributes)
+        return MeshLeaf.moved(said, factors, self._chosen_pitch, self._winding)
+
+    @classmethod
+    def moved(
+        cls,
+        mesh: SaidMesh,
+        factors: FactorChain,
+        pitch: int | None = None,
+        winding: WindingRule = "positive",
+    ) -> "MeshLeaf":
+        """Return the leaf of a moved mesh; what that makes cross is mended before its first use."""
+        moved = mesh.moved(factors)
+        pitch = moved.suited_pitch() if pitch is None else pitch
+        leaf = cls(moved.vertices, moved.faces, pitch, False, winding, moved.attributes)
+        leaf._before = mesh.vertices
+        return leaf
 
     @cached_property
     def shown(self) -> Tree:
         """The tree as it is made into a mesh."""
         return patched(self.grown(), self.sayings)
+
+    def _mend(self) -> None:
+        """Mend what moving the vertices has made cross."""
+        if self._before is None or self._arrays is None:
+            return
+        mesh = SaidMesh(*self._arrays, self._attributes).mended(self._before)
+        self._arrays, self._attributes = (mesh.vertices, mesh.faces), mesh.attributes
+        self._before = None
 
     def _grow(self) -> Tree:
         with core_errors():
@@ -402,8 +422,7 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     with core_errors():
         vertices, faces = tree.to_mesh()
     said = attributes_of(tree, leaf.sayings) if leaf.sayings else None
-    moved = SaidMesh(vertices, faces, said).moved(factors)
-    return MeshLeaf(moved.vertices, moved.faces, attributes=moved.attributes)
+    return MeshLeaf.moved(SaidMesh(vertices, faces, said), factors)
 
 
 #: Something that is being moved: it asks for leaves under factors, and is sent them where they go.
@@ -436,13 +455,12 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     base = (yield from _transforming(leaf, inner)) if inner else leaf
     if len(inner) == len(factors):
         return base
-    tree = tree_of(base)
-    motion = factors.outer_motion(tree.pitch)
+    motion = factors.outer_motion(_common_pitch([base]))
     if motion is None:
         return (yield from _transforming(leaf, factors))
     try:
         with core_errors():
-            moved = tree.moved(list(motion.axes), list(motion.shift))
+            moved = tree_of(base).moved(list(motion.axes), list(motion.shift))
         return TreeLeaf(moved, extent=base.extent, sayings=_after(motion, base.sayings))
     except (LimitError, UnboundedError):
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._core import mesh_moved
+from .._core import mesh_moved, suited_pitch
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes
 from ..errors import core_errors
@@ -28,28 +28,39 @@ class SaidMesh:
     attributes: Attributes | None = None
 
     def moved(self, factors: FactorChain) -> "SaidMesh":
-        """Return the mesh moved by the product of the factors, its outside still outside.
-
-        Rounding moves each vertex by itself, so that surfaces that touched may cross. Where a mesh
-        that is closed by index did not cross itself before, such crossings are mended by changes
-        of the width of the rounding.
-        """
+        """Return the mesh moved by the product of the factors, its outside still outside."""
         said = self.attributes and self.attributes.turned(factors.product[:3, :3])
         faces = self.faces
         if factors.mirrors:
             faces = np.ascontiguousarray(faces[:, ::-1])
             said = said and said.reordered([2, 1, 0])
-        moved = SaidMesh(transform.apply(factors.product, self.vertices), faces, said)
-        return moved._mended(self.vertices)
+        return SaidMesh(transform.apply(factors.product, self.vertices), faces, said)
 
-    def _mended(self, before: FloatArray) -> "SaidMesh":
-        """Return the mesh without the crossings that moving its vertices has made."""
+    def mended(self, before: FloatArray) -> "SaidMesh":
+        """Return the mesh without the crossings that moving its vertices has made.
+
+        Rounding moves each vertex by itself, so that surfaces that touched may cross. This is
+        mended by changes of the width of the rounding, where the mesh is closed by index and did
+        not cross itself there before.
+
+        Parameters
+        ----------
+        before : (n, 3) float64
+            The vertices before they were moved.
+        """
         if not np.isfinite(self.vertices).all():
             return self  # Its import names the vertex.
         with core_errors():
             found = mesh_moved(before, self.vertices, self.faces)
         if found is None:
             return self
-        faces = found["triangles"]
-        said = self.attributes and self.attributes.onto(faces, found["kept"])
-        return SaidMesh(found["vertices"], faces, said)
+        said = self.attributes and self.attributes.onto(found["triangles"], found["kept"])
+        return SaidMesh(found["vertices"], found["triangles"], said)
+
+    def suited_pitch(self) -> int | None:
+        """Return the pitch that its size suits; None if it has none, which its import tells."""
+        if len(self.vertices) == 0 or not np.isfinite(self.vertices).all():
+            return None
+        largest = float(np.abs(self.vertices).max())
+        with core_errors():
+            return suited_pitch(largest, float(np.ptp(self.vertices, axis=0).max()))

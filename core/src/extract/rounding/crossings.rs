@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::company::{in_company, Faces};
 use super::image::Image;
+use super::star::is_star_shaped;
 use super::terrains::terrains;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::meeting::{
@@ -75,6 +76,9 @@ fn parties(faces: &Faces, some: &[u32], next: u32) -> (Vec<(u32, u32)>, Vec<u32>
 
 /// The faults of a mesh.
 pub fn all_faults(faces: &Faces) -> Faults {
+    if is_star_shaped(faces) {
+        return Faults::default();
+    }
     let all: Vec<u32> = (0..as_number(faces.triangles.len())).collect();
     faults(faces, &all, |_| 0)
 }

@@ -419,4 +419,36 @@ mod tests {
         assert!(settled.left.is_empty() && settled.mended.is_empty());
         assert!(mesh.vertices[4][2] > 0.0);
     }
+
+    /// A tip that touches a face, both of them far from the origin.
+    fn touching(tip: Point) -> Rounded {
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let floor = [[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0], [0.0; 3]];
+        let above = [tip, [3.0, 1.0, 3.0], [1.0, 3.0, 3.0], [-1.0, -1.0, 3.0]];
+        Rounded {
+            vertices: [floor, above].concat(),
+            triangles: VertexId::rows([faces, faces.map(|t| t.map(|v| v + 4))].concat()),
+        }
+    }
+
+    #[test]
+    fn what_moving_vertices_makes_cross_is_mended() {
+        let before = touching([1.0, 1.0, 1.0]);
+        let below = 1.0f64.next_down();
+        let mut moved = touching([1.0, 1.0, below]);
+        assert!(!all_faults(&moved.faces()).is_empty());
+        let settled = settle_moved(&mut moved, &before.vertices);
+        assert!(!settled.mended.is_empty() && settled.left.is_empty());
+        assert!(all_faults(&moved.faces()).is_empty());
+        assert_eq!(moved.triangles, before.triangles);
+    }
+
+    #[test]
+    fn what_crossed_before_it_was_moved_is_left_alone() {
+        let before = touching([1.0, 1.0, 0.5]);
+        let mut moved = touching([1.0, 1.0, 0.500_000_1]);
+        let settled = settle_moved(&mut moved, &before.vertices);
+        assert!(settled.mended.is_empty() && settled.left.is_empty());
+        assert!(!all_faults(&moved.faces()).is_empty());
+    }
 }
