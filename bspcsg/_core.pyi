@@ -87,6 +87,7 @@ def mesh_moved(
     before: npt.NDArray[np.float64],
     vertices: npt.NDArray[np.float64],
     triangles: npt.NDArray[np.int64],
+    pitch: int,
 ) -> Settled | None: ...
 def mesh_in_single(
     vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]

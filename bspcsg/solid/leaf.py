@@ -68,6 +68,8 @@ class MeshLeaf:
         self._attributes = attributes
         self._tree: Tree | None = None
         self._before: FloatArray | None = None
+        self._given_pitch = pitch
+        self._is_mended = False
 
     @property
     def pitch(self) -> int | None:
@@ -115,7 +117,7 @@ class MeshLeaf:
         """Return the leaf of the mesh whose vertices the factors have moved."""
         # Rounding moves vertices, so the word given for the original no longer counts.
         said = SaidMesh(*self.arrays(), self._attributes)
-        return MeshLeaf.moved(said, factors, self._chosen_pitch, self._winding)
+        return MeshLeaf.moved(said, factors, self._given_pitch, self._winding)
 
     @classmethod
     def moved(
@@ -127,8 +129,8 @@ class MeshLeaf:
     ) -> "MeshLeaf":
         """Return the leaf of a moved mesh; what that makes cross is mended before its first use."""
         moved = mesh.moved(factors)
-        pitch = moved.suited_pitch() if pitch is None else pitch
         leaf = cls(moved.vertices, moved.faces, pitch, False, winding, moved.attributes)
+        leaf._chosen_pitch = moved.suited_pitch() if pitch is None else pitch
         leaf._before = mesh.vertices
         return leaf
 
@@ -139,16 +141,18 @@ class MeshLeaf:
 
     def _mend(self) -> None:
         """Mend what moving the vertices has made cross."""
-        if self._before is None or self._arrays is None:
+        if self._before is None or self._arrays is None or self._chosen_pitch is None:
             return
-        mesh = SaidMesh(*self._arrays, self._attributes).mended(self._before)
+        moved = SaidMesh(*self._arrays, self._attributes)
+        mesh = moved.mended(self._before, self._chosen_pitch)
         self._arrays, self._attributes = (mesh.vertices, mesh.faces), mesh.attributes
-        self._before = None
+        self._before, self._is_mended = None, mesh is not moved
 
     def _grow(self) -> Tree:
         with core_errors():
             tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted)
-            if self._winding != "positive":
+            # What crossed in doubles touches itself, and may cross on the lattice.
+            if self._is_mended or self._winding != "positive":
                 tree = tree.normalized(self._winding)
         return tree
 

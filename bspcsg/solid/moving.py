@@ -36,7 +36,7 @@ class SaidMesh:
             said = said and said.reordered([2, 1, 0])
         return SaidMesh(transform.apply(factors.product, self.vertices), faces, said)
 
-    def mended(self, before: FloatArray) -> "SaidMesh":
+    def mended(self, before: FloatArray, pitch: int) -> "SaidMesh":
         """Return the mesh without the crossings that moving its vertices has made.
 
         Rounding moves each vertex by itself, so that surfaces that touched may cross. This is
@@ -47,11 +47,11 @@ class SaidMesh:
         ----------
         before : (n, 3) float64
             The vertices before they were moved.
+        pitch : int
+            Exponent of the lattice step: corners go to the lattice where else crossings are left.
         """
-        if not np.isfinite(self.vertices).all():
-            return self  # Its import names the vertex.
         with core_errors():
-            found = mesh_moved(before, self.vertices, self.faces)
+            found = mesh_moved(before, self.vertices, self.faces, pitch)
         if found is None:
             return self
         said = self.attributes and self.attributes.onto(found["triangles"], found["kept"])

@@ -18,6 +18,8 @@ pub struct ExactMesh {
     pub faces: Vec<OrientedFace>,
     /// The number of triangles at the start that are faces of sources as they came.
     pub untouched: usize,
+    /// Those of them with a vertex that others have, too, ascending.
+    pub special: Vec<u32>,
     /// The constructed points that [`Corner::Point`] names.
     pub table: VertexTable,
     /// The findings on the way.

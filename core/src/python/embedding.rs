@@ -11,6 +11,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::{all_faults, Faults};
 use crate::extract::rounding::settle::{settle_in_single, settle_moved, Rounded, Settled};
+use crate::mesh::grid::Pitch;
 use crate::mesh::handle::VertexId;
 
 /// The pairs of triangles that cross or overlap, and the triangles without area.
@@ -54,14 +55,16 @@ pub fn mesh_moved<'py>(
     before: PyReadonlyArray2<'py, f64>,
     vertices: PyReadonlyArray2<'py, f64>,
     triangles: PyReadonlyArray2<'py, i64>,
+    pitch: i64,
 ) -> PyResult<Option<Bound<'py, PyDict>>> {
+    let pitch = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
     let before = given(&before, &triangles).map_err(|e| to_python(py, &e))?;
     let mut mesh = given(&vertices, &triangles).map_err(|e| to_python(py, &e))?;
     let settled = run(py, 0, mesh.triangles.len(), || {
-        Ok(settle_moved(&mut mesh, &before.vertices))
+        Ok(settle_moved(&mut mesh, &before.vertices, pitch))
     })?;
-    let is_changed = !settled.mended.is_empty() || !settled.left.is_empty();
-    is_changed
+    let is_changed = !(settled.moved.is_empty() && settled.mended.is_empty());
+    (is_changed || !settled.left.is_empty())
         .then(|| settled_mesh(py, mesh, settled))
         .transpose()
 }

@@ -152,6 +152,7 @@ impl<'a> Assembly<'a> {
             triangles: self.triangles,
             faces: self.faces,
             untouched: self.untouched.count,
+            special: self.untouched.special,
             table: self.table,
             findings,
         }

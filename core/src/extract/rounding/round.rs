@@ -115,7 +115,7 @@ fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>
 ///
 /// Triangles that are not as they came are compared with all near them, and faces of different
 /// parties with each other: on the lattice they do not cross, but their given doubles may. Where they
-/// do cross on the lattice, because an input overlaps itself, the mesh stays as it is.
+/// do cross on the lattice, because an input overlaps itself, the mesh stays as it is, and is told.
 fn settle_mesh(
     mesh: &mut Mesh,
     solid: &Solid,
@@ -124,6 +124,9 @@ fn settle_mesh(
     parties: &[u32],
 ) -> Result<Settled> {
     let mut changed = at_blurred(solid, exact);
+    changed.extend(with_others_corners(mesh, sources, exact));
+    changed.sort_unstable();
+    changed.dedup();
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
     let party = |t: u32| parties[t as usize];
     let corner = |v: VertexId| exact.vertices.get(v.place());
@@ -162,7 +165,10 @@ fn settle_mesh(
             party,
         )
     } else {
-        Settled::default()
+        Settled {
+            own: found,
+            ..Settled::default()
+        }
     };
     mesh.vertices = rounded.vertices;
     mesh.triangles = rounded.triangles;
@@ -215,6 +221,22 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
         first += as_number(run.len());
     }
     found
+}
+
+/// The triangles that are faces as they came, but for a corner at which another vertex lies on the
+/// lattice, and has given it other doubles; ascending.
+fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
+    let bits = |p: &[f64; 3]| p.map(f64::to_bits);
+    let has_others = |t: &u32| {
+        let face = exact.faces[*t as usize];
+        let corners = mesh.triangles[*t as usize].map(|v| bits(&mesh.vertices[v.place()]));
+        sources.get(face.slot()).mesh().is_some_and(|source| {
+            let given = source.vertices_of(face.id());
+            let given = given.map(|v| bits(&source.doubles[v.place()]));
+            corners.iter().any(|corner| !given.contains(corner))
+        })
+    };
+    exact.special.iter().copied().filter(has_others).collect()
 }
 
 /// Leaves out the triangles that mending removed, and vertices that no triangle uses any more;
@@ -301,9 +323,12 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
     let number = |t: &u64| numbers.get(as_place(*t)).copied().unwrap_or(*t);
     let numbered = |ids: &[u64]| ids.iter().map(number).collect::<Vec<u64>>();
     let wide = |ids: &mut dyn Iterator<Item = &u32>| ids.map(|t| number(&u64::from(*t))).collect();
-    let mut crossing: Vec<u64> = wide(&mut settled.left.crossings.iter().flatten());
-    crossing.sort_unstable();
-    crossing.dedup();
+    let [crossing, own] = [&settled.left, &settled.own].map(|faults| {
+        let mut places: Vec<u64> = wide(&mut faults.crossings.iter().flatten());
+        places.sort_unstable();
+        places.dedup();
+        places
+    });
     let mut faulty = numbered(turned);
     faulty.extend(wide(&mut settled.left.flat.iter()).iter());
     faulty.sort_unstable();
@@ -317,6 +342,7 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
         ("collapsed", Severity::Note, &collapsed, COLLAPSED),
         ("turned", Severity::Warning, &over, TURNED),
         ("crossing", Severity::Warning, &crossing, CROSSING),
+        ("self_crossing", Severity::Warning, &own, OWN),
     ] {
         if !places.is_empty() {
             let finding = Finding::about(code, severity, places, text);
@@ -337,6 +363,9 @@ const COLLAPSED: &str = "rounding to doubles put two corners of these triangles 
 const TURNED: &str = "rounding to doubles turned these triangles over or left them no area";
 const CROSSING: &str = "rounding to doubles makes these triangles cross or overlap others, which \
     could not be mended";
+const OWN: &str =
+    "a solid that takes part crosses itself, so that these triangles cross or overlap \
+    others; `normalized()` unites it with itself";
 
 /// Return whether two corners of a triangle were rounded to the same place.
 #[allow(clippy::float_cmp)]

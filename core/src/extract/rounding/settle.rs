@@ -8,14 +8,16 @@ use super::mend::{Mending, Precision};
 use crate::arith::convert::as_number;
 use crate::extract::mesh::edges;
 use crate::geometry::doubles::Point;
+use crate::geometry::vertex::Vertex;
 use crate::mesh::chain::is_closed;
+use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::handle::VertexId;
 
 /// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
 const ROUNDS: usize = 4;
 
 /// A mesh whose vertices were rounded, closed by index.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Rounded {
     /// The vertices.
     pub vertices: Vec<Point>,
@@ -34,6 +36,8 @@ pub struct Settled {
     pub moved: Vec<VertexId>,
     /// The faults that could not be mended.
     pub left: Faults,
+    /// The faults that are there on the lattice, too, and stay.
+    pub own: Faults,
 }
 
 /// Mends what can be mended of the faults found of changed triangles, ascending.
@@ -95,11 +99,12 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
     settle(mesh, changed, found, single, |_| None, |_| false, |_| 0)
 }
 
-/// Mends what moving the vertices of a mesh made cross; `before` has their old places.
+/// Mends what moving the vertices of a mesh made cross; `before` has their old places. Where this leaves
+/// crossings, it is tried again from the lattice.
 ///
 /// A mesh that crossed itself there before stays as it is, and so does one that is not closed by
 /// index.
-pub fn settle_moved(mesh: &mut Rounded, before: &[Point]) -> Settled {
+pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settled {
     if !is_closed(&mesh.triangles) {
         return Settled::default();
     }
@@ -107,12 +112,32 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point]) -> Settled {
     if found.crossings.is_empty() || mesh.crossed_before(&found, before) {
         return Settled::default();
     }
-    let all = (0..as_number(mesh.triangles.len())).collect();
-    let double = Precision::Double;
-    settle(mesh, all, found, double, |_| None, |_| false, |_| 0)
+    let moved = mesh.clone();
+    let settled = mesh.settle_all(found.clone(), |_| None);
+    if settled.left.is_empty() {
+        return settled;
+    }
+    let mut other = moved.clone();
+    let on_lattice = |v: VertexId| {
+        let place = snap_point(pitch, moved.vertices.get(v.place())?).ok()?;
+        Some(pitch.position(&Vertex::lattice(place)))
+    };
+    let again = other.settle_all(found, on_lattice);
+    if again.left.count() >= settled.left.count() {
+        return settled;
+    }
+    *mesh = other;
+    again
 }
 
 impl Rounded {
+    /// Mends faults of all triangles.
+    fn settle_all(&mut self, found: Faults, exact: impl Fn(VertexId) -> Option<Point>) -> Settled {
+        let all = (0..as_number(self.triangles.len())).collect();
+        let double = Precision::Double;
+        settle(self, all, found, double, exact, |_| false, |_| 0)
+    }
+
     /// Return whether triangles that cross others crossed some in these places, too.
     fn crossed_before(&self, found: &Faults, before: &[Point]) -> bool {
         let mut some: Vec<u32> = found.crossings.iter().flatten().copied().collect();
@@ -437,7 +462,7 @@ mod tests {
         let below = 1.0f64.next_down();
         let mut moved = touching([1.0, 1.0, below]);
         assert!(!all_faults(&moved.faces()).is_empty());
-        let settled = settle_moved(&mut moved, &before.vertices);
+        let settled = settle_moved(&mut moved, &before.vertices, Pitch::DEFAULT);
         assert!(!settled.mended.is_empty() && settled.left.is_empty());
         assert!(all_faults(&moved.faces()).is_empty());
         assert_eq!(moved.triangles, before.triangles);
@@ -447,7 +472,7 @@ mod tests {
     fn what_crossed_before_it_was_moved_is_left_alone() {
         let before = touching([1.0, 1.0, 0.5]);
         let mut moved = touching([1.0, 1.0, 0.500_000_1]);
-        let settled = settle_moved(&mut moved, &before.vertices);
+        let settled = settle_moved(&mut moved, &before.vertices, Pitch::DEFAULT);
         assert!(settled.mended.is_empty() && settled.left.is_empty());
         assert!(!all_faults(&moved.faces()).is_empty());
     }
