@@ -1,9 +1,7 @@
 //! Points with equal coordinates as one point.
 
-use rustc_hash::FxHashMap;
-
 use super::handle::VertexId;
-use crate::arith::convert::as_number;
+use crate::arith::convert::{as_number, low_limb};
 use crate::interrupt::poll;
 
 /// The different points among some, in the order in which they first occur.
@@ -28,28 +26,153 @@ pub struct Welded {
 /// assert_eq!(welded(&[a, b, a]).same, [0, 1, 0].map(VertexId));
 /// ```
 pub fn welded(points: &[[f64; 3]]) -> Welded {
-    let mut numbers: FxHashMap<[u64; 3], VertexId> = FxHashMap::default();
-    let mut different = Vec::new();
+    let mut different = Different::default();
     let same = points
         .iter()
-        .map(|point| {
+        .map(|[x, y, z]| {
             poll();
-            let point = point.map(|x| x + 0.0);
-            *numbers.entry(point.map(f64::to_bits)).or_insert_with(|| {
-                different.push(point);
-                VertexId(as_number(different.len()) - 1)
-            })
+            different.number_of([x + 0.0, y + 0.0, z + 0.0])
         })
         .collect();
     Welded {
-        points: different,
+        points: different.points,
         same,
     }
 }
 
+/// Points without repetition, and a table that finds them by their bits.
+#[derive(Debug, Default)]
+struct Different {
+    points: Vec<[f64; 3]>,
+    /// As many as a power of two, of which at most half are taken.
+    slots: Vec<Slot>,
+}
+
+/// A place in the table. It holds no coordinates, so that the caches of the processor hold the
+/// table for four times as many points.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slot {
+    /// The number of a point plus one, or 0 where nothing is.
+    next: u32,
+    hash: u32,
+}
+
+/// Slots of a table that has its first point.
+const FIRST_SLOTS: usize = 64;
+
+impl Different {
+    /// The number of a point, a new one if no equal was here before.
+    fn number_of(&mut self, point: [f64; 3]) -> VertexId {
+        if self.slots.len() <= 2 * self.points.len() {
+            self.grow();
+        }
+        let hash = hash_of(&point);
+        let mut place = self.home(hash);
+        while self.slots[place].next != 0 {
+            let number = VertexId(self.slots[place].next - 1);
+            if self.slots[place].hash == hash && are_same(&self.points[number.place()], &point) {
+                return number;
+            }
+            place = self.after(place);
+        }
+        self.points.push(point);
+        let next = as_number(self.points.len());
+        self.slots[place] = Slot { next, hash };
+        VertexId(next - 1)
+    }
+
+    /// Makes room for twice as many points.
+    fn grow(&mut self) {
+        let larger = (2 * self.slots.len()).max(FIRST_SLOTS);
+        let slots = std::mem::replace(&mut self.slots, vec![Slot::default(); larger]);
+        for slot in slots.into_iter().filter(|slot| slot.next != 0) {
+            let mut place = self.home(slot.hash);
+            while self.slots[place].next != 0 {
+                place = self.after(place);
+            }
+            self.slots[place] = slot;
+        }
+    }
+
+    /// The slot at which the search for a hash begins.
+    fn home(&self, hash: u32) -> usize {
+        hash as usize & (self.slots.len() - 1)
+    }
+
+    fn after(&self, place: usize) -> usize {
+        (place + 1) & (self.slots.len() - 1)
+    }
+}
+
+/// Says whether two points have the same bits, which NaN has in common with itself.
+fn are_same([a, b, c]: &[f64; 3], [x, y, z]: &[f64; 3]) -> bool {
+    a.to_bits() == x.to_bits() && b.to_bits() == y.to_bits() && c.to_bits() == z.to_bits()
+}
+
+/// A hash of which all bits depend on all bits of a point.
+///
+/// Coordinates of single precision end in zeros, which a product alone would keep.
+fn hash_of([x, y, z]: &[f64; 3]) -> u32 {
+    let first = folded(x.to_bits() ^ ODD[0], y.to_bits() ^ ODD[1]);
+    let [.., a, b, c, d] = folded(first ^ z.to_bits(), ODD[2]).to_be_bytes();
+    u32::from_be_bytes([a, b, c, d])
+}
+
+/// The first bits of the golden ratio, of √2 and of √3.
+const ODD: [u64; 3] = [
+    0x9e37_79b9_7f4a_7c15,
+    0x6a09_e667_f3bc_c909,
+    0xbb67_ae85_84ca_a73b,
+];
+
+/// The halves of a product, one added to the other without carries.
+fn folded(a: u64, b: u64) -> u64 {
+    let product = u128::from(a) * u128::from(b);
+    low_limb(product >> 64) ^ low_limb(product)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{welded, VertexId};
+    use super::{welded, Different, VertexId};
+
+    /// Points on a grid of single precision: their bits differ little, and end in zeros.
+    fn grid(side: u8) -> Vec<[f64; 3]> {
+        let along = || (0..side).map(|k| f64::from(f32::from(k) * 0.1));
+        let across = |x| along().flat_map(move |y| along().map(move |z| [x, y, z]));
+        along().flat_map(across).collect()
+    }
+
+    #[test]
+    fn many_points_keep_their_numbers_as_the_table_grows() {
+        let once = grid(24);
+        let twice = [once.clone(), once.clone()].concat();
+        let found = welded(&twice);
+        assert_eq!(found.points, once);
+        let numbers: Vec<_> = (0u32..).map(VertexId).take(once.len()).collect();
+        assert_eq!(found.same, [numbers.clone(), numbers].concat());
+    }
+
+    #[test]
+    fn a_point_without_numbers_equals_itself() {
+        let points = [[f64::NAN, 0.0, 1.0], [0.0; 3], [f64::NAN, 0.0, 1.0]];
+        assert_eq!(welded(&points).same, [0, 1, 0].map(VertexId));
+    }
+
+    #[test]
+    fn points_of_single_precision_spread_over_the_table() {
+        let mut different = Different::default();
+        for point in grid(24) {
+            different.number_of(point);
+        }
+        let slots = &different.slots;
+        let away = |place: usize| {
+            let home = different.home(slots[place].hash);
+            (place + slots.len() - home) % slots.len()
+        };
+        let taken: Vec<_> = (0..slots.len()).filter(|&k| slots[k].next != 0).collect();
+        // At half of the slots taken, a random hash ends half a slot from home on average.
+        assert!(taken.iter().map(|&place| away(place)).sum::<usize>() < taken.len());
+    }
 
     #[test]
     fn the_first_of_equal_points_stands_for_them() {
