@@ -71,9 +71,9 @@ def _read_binary(source: Source) -> RawMesh:
 
 
 def _check_finite(source: Source, corners: FloatArray) -> None:
-    finite = np.isfinite(corners).all(axis=1)
+    finite = np.isfinite(corners)
     if not finite.all():
-        triangle = int(np.flatnonzero(~finite)[0]) // 3
+        triangle = int(np.flatnonzero(~finite)[0]) // 9
         offset = _HEADER + triangle * _RECORD.itemsize
         message = f"triangle {triangle} has a coordinate that is not a finite number."
         raise source.error(message, "non_finite", offset=offset)

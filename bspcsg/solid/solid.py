@@ -323,11 +323,14 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             If the solid reaches to infinity.
         """
         if self._mesh is None:
-            with core_errors():
-                tree = self.tree
-                carried = later_attributes(tree, self._sayings)
-                self._mesh = Mesh(*tree.to_mesh(), tree.origins(), carried).frozen()
+            self._mesh = self._made_mesh()
         return self._mesh
+
+    def _made_mesh(self) -> Mesh:
+        with core_errors():
+            tree = self.tree
+            carried = later_attributes(tree, self._sayings)
+            return Mesh(*tree.to_mesh(), tree.origins(), carried).frozen()
 
     def normalized(self) -> "Solid":
         """Return the same set with the reduced boundary as its mesh.
@@ -515,6 +518,11 @@ class LastOperation:
 def from_node(node: ExpressionNode, factors: FactorChain = UNMOVED) -> Solid:
     """Return the solid of an expression under a transform."""
     return Solid._of(node, factors)
+
+
+def passing_mesh(solid: Solid) -> Mesh:
+    """Return the mesh of a solid, which keeps it only if it was asked for it before."""
+    return solid._made_mesh() if solid._mesh is None else solid._mesh
 
 
 def solid_of_mesh(mesh: Mesh, **options: Any) -> Solid:

@@ -33,7 +33,7 @@ from ..parameters import of_kind
 from ..shapes.primitives import box as box_of
 from ..solid.counting import uncounted
 from ..solid.program import name_of, program_of
-from ..solid.solid import Solid
+from ..solid.solid import Solid, passing_mesh
 from . import oracle
 from .discrepancy import SetDifference, difference_of
 from .likeness import SUMMING, areas_differ, measures_differ, sides_differ, volume_of_film
@@ -122,8 +122,8 @@ class Examination:
     ----------
     report : CheckReport
     program : sequence of (str, list of int)
-    operands : list of Mesh
-        As they came; cut to a box if an operand is unbounded, fewer if manifold3d was not asked.
+    came : list of Solid
+        The operands; cut to a box if one is unbounded, fewer if manifold3d was not asked.
     ours : Mesh
     theirs : Mesh or None
         manifold3d's, if it gave one.
@@ -133,10 +133,15 @@ class Examination:
 
     report: CheckReport
     program: Sequence[ProgramLine]
-    operands: list[Mesh]
+    came: list[Solid]
     ours: Mesh
     theirs: Mesh | None = None
     difference: Mesh | None = None
+
+    @property
+    def operands(self) -> list[Mesh]:
+        """The operands' meshes, as they came."""
+        return _meshes_of(self.came)
 
 
 def examine(
@@ -181,7 +186,7 @@ class _Check:
     result: Solid
     depth: Depth
     notes: list[str] = field(default_factory=list)
-    came: list[Mesh] = field(default_factory=list)
+    came: list[Solid] = field(default_factory=list)
     set_volume: float = 0.0
     theirs: Mesh | None = None
     difference: Mesh | None = None
@@ -199,8 +204,10 @@ class _Check:
             return self._report(Verdict.SUBJECT_FAILED, fault, ours)
         try:
             box = self._box(mesh)
-            given = [self._operand(n, operand, box) for n, operand in enumerate(self.operands, 1)]
+            self.came = [self._cut(n, solid, box) for n, solid in enumerate(self.operands, 1)]
             inside = None if box is None else box.to_mesh()
+            # A mesh is made when manifold3d takes it, and let go: it has a copy of its own.
+            given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
             answer = oracle.ask(self.program, given, inside)
         except oracle.OracleRefusedError as error:
             return self._report(Verdict.ORACLE_REFUSED, str(error), ours)
@@ -238,19 +245,25 @@ class _Check:
         low, high = np.floor(low - margin), np.ceil(high + margin)
         return box_of(high - low).translate(low)
 
-    def _operand(self, number: int, solid: Solid, box: Solid | None) -> Mesh:
-        if box is not None and not solid.is_bounded:
-            self.notes.append(
-                f"operand {number} is unbounded; results were compared inside a box around the rest"
-            )
-            solid = solid & box
-        mesh, reduced = solid.to_mesh(), solid.normalized().to_mesh()
-        self.came.append(mesh)
-        if not np.array_equal(mesh.faces, reduced.faces):
-            self.notes.append(
-                f"operand {number} overlaps itself; manifold3d got its reduced boundary,"
-                f" {len(reduced.faces)} triangles instead of {len(mesh.faces)}"
-            )
+    def _cut(self, number: int, solid: Solid, box: Solid | None) -> Solid:
+        """Return an operand, inside a box if there is one and it is unbounded."""
+        if box is None or solid.is_bounded:
+            return solid
+        self.notes.append(
+            f"operand {number} is unbounded; results were compared inside a box around the rest"
+        )
+        return solid & box
+
+    def _reduced(self, number: int, solid: Solid) -> Mesh:
+        """Return the reduced boundary of an operand, and note if that is another one."""
+        reduced = passing_mesh(solid.normalized())
+        if solid.normalized() is not solid:
+            faces = passing_mesh(solid).faces
+            if not np.array_equal(faces, reduced.faces):
+                self.notes.append(
+                    f"operand {number} overlaps itself; manifold3d got its reduced boundary,"
+                    f" {len(reduced.faces)} triangles instead of {len(faces)}"
+                )
         return reduced
 
     def _compared(self, mesh: Mesh, ours: Facts, answer: Answer) -> CheckReport:
@@ -294,7 +307,7 @@ class _Check:
         """Return whom the operands as they came support in the pieces that rounding leaves."""
         disputed = pieces.thicker_than(rounding)[:_MOST_PIECES]
         points = [pieces.points_in(piece) for piece in disputed]
-        return settle(self.program, self.came, ours, theirs, points)
+        return settle(self.program, _meshes_of(self.came), ours, theirs, points)
 
     def _report(
         self,
@@ -319,6 +332,10 @@ class _Check:
             tuple(self.notes),
             probes,
         )
+
+
+def _meshes_of(solids: Sequence[Solid]) -> list[Mesh]:
+    return [solid.to_mesh() for solid in solids]
 
 
 def _judged(

@@ -4,7 +4,7 @@ manifold3d knows no complements, so every value here is a bounded solid and a fl
 whether its complement is meant; the laws of De Morgan do the rest.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -70,7 +70,7 @@ def status_of(mesh: Mesh) -> str:
 
 
 def ask(
-    program: Sequence[ProgramLine], operands: Sequence[Mesh], inside: Mesh | None = None
+    program: Sequence[ProgramLine], operands: Iterable[Mesh], inside: Mesh | None = None
 ) -> Answer:
     """Return manifold3d's answer to a program.
 
@@ -78,7 +78,7 @@ def ask(
     ----------
     program : sequence of (str, list of int)
         As the core takes it.
-    operands : sequence of Mesh
+    operands : iterable of Mesh
     inside : Mesh, optional
         Only what of the result lies in here is wanted.
 
@@ -89,6 +89,14 @@ def ask(
     OracleFailedError
         If an operation raises, or its result is invalid.
     """
+    result, tolerance = _result_of(program, operands, inside)
+    return Answer(_mesh_of(result), tolerance)
+
+
+def _result_of(
+    program: Sequence[ProgramLine], operands: Iterable[Mesh], inside: Mesh | None
+) -> "tuple[manifold3d.Manifold, float]":
+    """Return manifold3d's result and the largest tolerance, and let go of its operands."""
     solids = [_taken(number, operand) for number, operand in enumerate(operands, 1)]
     limit = None if inside is None else interop.to_manifold(inside)
     # An empty solid's tolerance is negative.
@@ -104,7 +112,7 @@ def ask(
         raise OracleRefusedError("the result is unbounded, and manifold3d has no such solids")
     if status != "NoError":
         raise OracleFailedError(f"manifold3d's result has the status {status}")
-    return Answer(_mesh_of(result), max(tolerance, result.get_tolerance()))
+    return result, max(tolerance, result.get_tolerance())
 
 
 _Value: TypeAlias = "tuple[manifold3d.Manifold, bool]"
