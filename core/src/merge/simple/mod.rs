@@ -5,6 +5,7 @@
 //! the faces of a cap are told to be clear of each other by its outline; such cells need no tree.
 //! The others are labelled, and so is one cell for each shell.
 
+mod copies;
 mod cuts;
 mod flats;
 mod looked;
@@ -146,7 +147,8 @@ fn only_mesh(solid: &Solid) -> Option<(&Deferred, &Source, &TriangleMesh)> {
     Some((leaf, source, source.mesh().filter(|_| alone)?))
 }
 
-/// The shells of a mesh that closes by index, if there are several, and each alone is simple.
+/// The shells of a mesh that closes by index, if there are several, and each alone is simple; of
+/// equal ones the first.
 ///
 /// Where two of them cross or hold each other, their union is what the mesh winds around.
 ///
@@ -165,14 +167,18 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
         return None;
     }
     let faces = faces_of(&shells);
+    let is_first = copies::are_firsts(mesh, &faces);
+    let firsts = || faces.iter().zip(&is_first).filter(|shell| *shell.1);
     let view = View::new(source, mesh);
-    let unclear = Unclear::among(&view, faces.iter().map(Vec::as_slice));
+    let unclear = Unclear::among(&view, firsts().map(|shell| shell.0.as_slice()));
     let mut check = Check::new(sources, &view, shells, unclear);
     for (seen, faces) in check.seen.iter_mut().zip(&faces) {
         *seen.get_mut() = is_outward(mesh, faces.iter().copied());
     }
     let shared = &leaf.groups[0].source;
-    let branches: Vec<Branch> = faces.into_iter().map(|f| shell_of(shared, f)).collect();
+    let branches: Vec<Branch> = firsts()
+        .map(|shell| shell_of(shared, shell.0.clone()))
+        .collect();
     for branch in &branches {
         if let Node::Deferred(leaf) = &*branch.node {
             check.cell(branch.cell, List::open(leaf, branch, sources));
