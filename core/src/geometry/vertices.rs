@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use crate::arith::convert::{as_double, as_number, as_whole};
+use crate::geometry::doubles::folded;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::{Vertex, NEAR};
 
@@ -108,7 +109,7 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
 ///
 /// The digits of a double above zero are ordered as it is, so that two doubles of one coordinate
 /// differ by less than [`Blur::DOUBT`] in them; nearly always they round alike.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct Blur([u64; 3]);
 
 impl Blur {
@@ -147,7 +148,7 @@ impl Blur {
     }
 
     fn fingerprint(&self) -> u64 {
-        FxBuildHasher.hash_one(self)
+        FxBuildHasher.hash_one(self.0.map(folded))
     }
 }
 

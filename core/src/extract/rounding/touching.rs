@@ -6,11 +6,11 @@ use rustc_hash::{FxBuildHasher, FxHashSet as HashSet};
 
 use crate::arith::convert::as_number;
 use crate::extract::mesh::Corner;
-use crate::geometry::doubles::Point;
+use crate::geometry::doubles::{digits, Point};
 use crate::mesh::tasks::each_chunk;
 
-/// The digits of a place, zeros without a sign.
-type Digits = (u64, u64, u64);
+/// The digits of a place.
+type Digits = [u64; 3];
 
 /// The vertices in use, ascending, that have the place of another although they are other points.
 ///
@@ -48,12 +48,6 @@ pub fn touching(
     let mut found: Vec<u64> = several.flatten().map(|v| u64::from(v.1)).collect();
     found.sort_unstable();
     found
-}
-
-#[inline]
-fn digits(place: &Point) -> Digits {
-    let [x, y, z] = place.map(|c| (c + 0.0).to_bits());
-    (x, y, z)
 }
 
 /// Bits by which most places are told not to be in a set.
@@ -109,6 +103,17 @@ impl Filter {
 mod tests {
     use super::*;
     use crate::mesh::handle::{Slot, VertexId};
+
+    /// A product hash alone gives all of them one bit.
+    #[test]
+    fn short_coordinates_are_told_apart() {
+        let line = || (0..16).map(f64::from);
+        let square = || line().flat_map(|x| line().map(move |y| [x, y, 0.5]));
+        let places: HashSet<Digits> = square().map(|p| digits(&p)).collect();
+        let filter = Filter::of(&places);
+        let taken: u32 = filter.words.iter().map(|word| word.count_ones()).sum();
+        assert!(places.len() == 256 && taken > 200, "{taken}");
+    }
 
     #[test]
     fn other_points_in_one_place_are_found_and_copies_of_one_are_not() {

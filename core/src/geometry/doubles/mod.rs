@@ -24,6 +24,31 @@ pub type Point = [f64; 3];
 /// A triangle by its corners.
 pub type Triangle = [Point; 3];
 
+/// A number for each coordinate of a place: equal coordinates, zeros of any sign too, have one.
+///
+/// Meant for hash tables, as [`folded`] has them.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::doubles::digits;
+///
+/// assert_eq!(digits(&[0.0, 1.0, 2.0]), digits(&[-0.0, 1.0, 2.0]));
+/// assert_ne!(digits(&[0.0, 1.0, 2.0]), digits(&[0.0, 1.0, 3.0]));
+/// ```
+#[inline]
+pub fn digits(place: &Point) -> [u64; 3] {
+    place.map(|c| folded((c + 0.0).to_bits()))
+}
+
+/// The bits of a double, the upper half folded into the lower one; different bits stay different.
+///
+/// Short numbers differ in the upper bits of their doubles only. A product hash drops these: it
+/// would put all whole coordinates in the same few places.
+#[inline]
+pub fn folded(bits: u64) -> u64 {
+    bits ^ (bits >> (u64::BITS / 2))
+}
+
 /// Half a unit in the last place of 1.
 const ROUNDING: f64 = f64::EPSILON / 2.0;
 
