@@ -1,6 +1,8 @@
 //! Disjoint sets of numbers: what is connected with what.
 
+use super::handle::VertexId;
 use crate::arith::convert::as_number;
+use crate::interrupt::spend;
 
 /// Numbers from 0 on in sets, each set named by its least.
 ///
@@ -26,6 +28,56 @@ impl DisjointSets {
     pub fn of_one(count: usize) -> Self {
         Self {
             lower: (0..as_number(count)).collect(),
+        }
+    }
+
+    /// So many vertices, in one set if triangles connect them.
+    ///
+    /// Each vertex first takes the least number that is around it when its triangles are passed;
+    /// mostly that is its set's name, and hardly a triangle has different ones to join.
+    ///
+    /// # Example
+    /// ```
+    /// use bspcsg::mesh::disjoint::DisjointSets;
+    /// use bspcsg::mesh::handle::VertexId;
+    ///
+    /// let triangles = VertexId::rows([[5, 1, 2], [0, 3, 4], [2, 1, 6]]);
+    /// let mut sets = DisjointSets::of_triangles(7, &triangles);
+    /// assert_eq!([2, 4, 6].map(|v| sets.least(v)), [1, 0, 1]);
+    /// ```
+    pub fn of_triangles(count: usize, triangles: &[[VertexId; 3]]) -> Self {
+        let mut sets = Self::of_one(count);
+        spend(triangles.len());
+        for corners in triangles {
+            let least = sets.lowest(corners);
+            for v in corners {
+                sets.lower[v.place()] = least;
+            }
+        }
+        sets.shorten();
+        spend(triangles.len());
+        for corners @ [a, b, c] in triangles {
+            let least = sets.lowest(corners);
+            if corners.iter().any(|v| sets.lower[v.place()] != least) {
+                sets.join(a.0, b.0);
+                sets.join(a.0, c.0);
+            }
+        }
+        sets.shorten();
+        sets
+    }
+
+    /// The lowest of the numbers that some vertices name.
+    #[inline]
+    fn lowest(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
+        let lower = |v: &VertexId| self.lower[v.place()];
+        lower(a).min(lower(b)).min(lower(c))
+    }
+
+    /// Makes each number name its set: what it named until now is lower, and comes first.
+    fn shorten(&mut self) {
+        for at in 0..self.lower.len() {
+            self.lower[at] = self.lower[self.lower[at] as usize];
         }
     }
 
@@ -72,5 +124,29 @@ impl DisjointSets {
         let least = a.min(b);
         self.lower[a.max(b) as usize] = least;
         least
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn triangles_connect_as_their_edges_do(
+            rows in prop::collection::vec(prop::array::uniform3(0u32..40), 0..30),
+        ) {
+            let triangles = VertexId::rows(rows.clone());
+            let mut found = DisjointSets::of_triangles(40, &triangles);
+            let mut expected = DisjointSets::of_one(40);
+            for [a, b, c] in rows {
+                expected.join(a, b);
+                expected.join(b, c);
+            }
+            for v in 0..40 {
+                prop_assert_eq!(found.least(v), expected.least(v));
+            }
+        }
     }
 }

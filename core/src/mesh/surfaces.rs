@@ -65,12 +65,7 @@ fn used(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
 ///
 /// Surfaces are numbered in the order of their lowest vertices.
 pub fn surfaces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<u32> {
-    let mut sets = DisjointSets::of_one(vertex_count);
-    for [a, b, c] in faces {
-        poll();
-        sets.join(a.0, b.0);
-        sets.join(b.0, c.0);
-    }
+    let mut sets = DisjointSets::of_triangles(vertex_count, faces);
     let mut number = vec![None; vertex_count];
     for &[vertex, ..] in faces {
         number[sets.least(vertex.0) as usize] = Some(0);

@@ -179,11 +179,7 @@ fn settle_mesh(
 ///
 /// Pieces of an input may touch where one has no vertex, and a transform rounds each by itself.
 fn parties(mesh: &Mesh, exact: &ExactMesh) -> Vec<u32> {
-    let mut pieces = DisjointSets::of_one(mesh.vertices.len());
-    for [a, b, c] in &mesh.triangles {
-        pieces.join(a.0, b.0);
-        pieces.join(a.0, c.0);
-    }
+    let mut pieces = DisjointSets::of_triangles(mesh.vertices.len(), &mesh.triangles);
     let mut numbers: HashMap<(u32, u32), u32> = HashMap::default();
     let mut last = ((NONE, NONE), 0);
     let number = |(triangle, face): (&[VertexId; 3], &OrientedFace)| {

@@ -166,12 +166,7 @@ fn may_hold(body: &[&Point; 4], point: &Point) -> bool {
 
 /// For each vertex the number of the connected part that it belongs to.
 fn connected(count: usize, triangles: &[[VertexId; 3]]) -> Vec<u32> {
-    spend(triangles.len());
-    let mut sets = DisjointSets::of_one(count);
-    for [a, b, c] in triangles {
-        sets.join(a.0, b.0);
-        sets.join(b.0, c.0);
-    }
+    let mut sets = DisjointSets::of_triangles(count, triangles);
     let mut numbers = vec![NONE; count];
     let mut next = 0;
     for v in triangles.as_flattened() {
