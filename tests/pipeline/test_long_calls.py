@@ -61,6 +61,11 @@ CALLS = {
     "boxes in one mesh": ("mesh = arrays(many_boxes(15_000))", "b.Solid(*mesh).volume"),
     "a mesh that is there two hundred times": (
         "mesh = arrays([ball(32)] * 200)",
+        "[b.Solid(*mesh).volume for _ in range(2_000)]",
+    ),
+    "a mesh that is there two hundred times, its faces in another order each time": (
+        "v, f = arrays([ball(32)]); order = rng.permutation;"
+        " mesh = np.tile(v, (200, 1)), np.vstack([order(f) + k * len(v) for k in range(200)])",
         "b.Solid(*mesh).volume",
     ),
     "import": (
