@@ -1,6 +1,6 @@
 //! The choice of cells: some are for a kernel, and others are halved.
 
-use super::state::{State, States};
+use super::state::{within, State, States};
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
@@ -73,6 +73,8 @@ pub struct Round {
     refused: usize,
     /// True if operands are results of groups that the kernel did not refuse yet.
     groups: bool,
+    /// True if the other half of the cell that was halved last is empty.
+    alone: bool,
 }
 
 impl Round {
@@ -83,6 +85,7 @@ impl Round {
         stuck: false,
         refused: usize::MAX,
         groups: false,
+        alone: false,
     };
 
     /// The same, where operands are results of groups that were in one place.
@@ -97,6 +100,7 @@ impl Round {
         if self.depth + 1 < ROUND {
             return Self {
                 depth: self.depth + 1,
+                alone: false,
                 ..self
             };
         }
@@ -104,8 +108,49 @@ impl Round {
             depth: 0,
             start: total,
             stuck: total * 8 > self.start * 7,
+            alone: false,
             ..self
         }
+    }
+
+    /// After a halving of a cell with so many elements that only cuts off what is empty: it tells
+    /// nothing about how the rest separates, if that is small.
+    #[must_use]
+    pub fn next_alone(self, cell: &Cell, extent: i64, total: usize) -> Self {
+        let round = if fills(extent, cell) {
+            self.next(total)
+        } else {
+            self
+        };
+        Self {
+            alone: true,
+            ..round
+        }
+    }
+
+    /// Return whether the other half of the cell that was halved last is empty.
+    pub fn is_alone(&self) -> bool {
+        self.alone
+    }
+
+    /// After the halvings that lead from a cell with so many elements, in a box so long, to one around
+    /// all of them, or to the first one in between in which halving seems stuck; with that cell.
+    pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
+        let (mut cell, mut round) = (cell, self);
+        while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
+            round = round.next_alone(&cell, extent, total);
+            let lower = cell.half(cut, Half::Minus);
+            cell = if lower.holds(inner) {
+                lower
+            } else {
+                cell.half(cut, Half::Plus)
+            };
+            if round.stuck {
+                break;
+            }
+        }
+        let alone = false;
+        (cell, Self { alone, ..round })
     }
 
     /// The kernel for general position refused so many elements.
@@ -145,9 +190,8 @@ impl Round {
     }
 }
 
-/// Return whether what is left where halving cuts off only what is empty is no smaller than the cell: it
-/// spans half of it or more, or is one lattice point.
-pub fn is_filled(cell: &Cell, states: &States) -> bool {
+/// The longest side of the box around what operands have in the cell; `None` if they have nothing.
+pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
     let present = states.iter().filter(|s| s.1.has_surface());
     let boxes = present.map(|s| within(cell, s.1.bounds(cell)));
     let joined = |[low, high]: [Lattice; 2], [least, most]: [Lattice; 2]| {
@@ -156,17 +200,18 @@ pub fn is_filled(cell: &Cell, states: &States) -> bool {
             each_axis(|i| high[i].max(most[i])),
         ]
     };
-    let longest = |[low, high]: [Lattice; 2]| (0..3).map(|i| high[i] - low[i]).max();
-    let content = boxes.reduce(joined).and_then(longest);
-    let side = longest([*cell.low(), cell.high()]);
-    content.is_some_and(|content| content == 0 || Some(2 * content) >= side)
+    boxes.reduce(joined).map(longest)
 }
 
-/// The part of a box in a cell.
-fn within(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
-    let (least, most) = (cell.low(), cell.high());
-    let low = each_axis(|i| low[i].max(least[i]));
-    [low, each_axis(|i| high[i].min(most[i]))]
+/// Return whether what is left where halving a cell cuts off only what is empty is no smaller than the
+/// cell: it spans half of it or more, or is one lattice point.
+pub fn fills(extent: i64, cell: &Cell) -> bool {
+    extent == 0 || 2 * extent >= longest([*cell.low(), cell.high()])
+}
+
+fn longest([low, high]: [Lattice; 2]) -> i64 {
+    let [x, y, z] = each_axis(|i| high[i] - low[i]);
+    x.max(y).max(z)
 }
 
 /// Return whether so many operands are in one place that no kernel should be asked.
@@ -231,7 +276,10 @@ mod tests {
     #[test]
     fn cells_are_filled_by_what_spans_half_of_them_or_is_one_point() {
         let states: States = vec![(0, State::Tree(cuboid([0; 3], [8; 3]).root().clone()))];
-        let filled = |low: i64, high: i64| is_filled(&Cell::around(&[low; 3], &[high; 3]), &states);
+        let filled = |low: i64, high: i64| {
+            let cell = Cell::around(&[low; 3], &[high; 3]);
+            extent(&cell, &states).is_some_and(|extent| fills(extent, &cell))
+        };
         assert!(filled(0, 15));
         assert!(!filled(0, 63));
         // A corner alone.

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::choice::{
-    is_crowded, is_filled, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK, TOGETHER,
+    extent, is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK, TOGETHER,
 };
 use super::join;
 use super::state::{find, has_constant, has_surface, nested, worth, State, States, MANY};
@@ -299,13 +299,8 @@ impl<'a> Descent<'a> {
         states: States,
         round: Round,
     ) -> Visited {
-        if let Some(inner) = nested(&cell, &states) {
-            let outside = self.value_outside(&expression, &states);
-            let branch = self.cell(inner, expression, states, round)?;
-            return Ok(match branch.constant() {
-                Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
-                _ => join::around(inner, branch, i32::from(outside)),
-            });
+        if let Some(inner) = nested(&cell, &states, round.is_alone()) {
+            return self.jump(cell, inner, expression, states, round);
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
         let states = self.opened(&cell, states, opening);
@@ -350,6 +345,46 @@ impl<'a> Descent<'a> {
             }
         }
         self.halves(cell, cut, &expression, states, round, total)
+    }
+
+    /// The result in a cell from that in a smaller one around all operands' boundaries.
+    fn jump(
+        &self,
+        cell: Cell,
+        mut inner: Cell,
+        expression: Arc<Expression>,
+        mut states: States,
+        mut round: Round,
+    ) -> Visited {
+        if let Some(extent) = extent(&cell, &states).filter(|_| round.is_alone()) {
+            let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
+            (inner, round) = round.inward(cell, &inner, extent, total);
+        }
+        let outside = self.value_beside(&cell, &inner, &expression, &states);
+        for (_, state) in &mut states {
+            state.shrink(&inner, self.sources);
+        }
+        let branch = self.cell(inner, expression, states, round)?;
+        Ok(match branch.constant() {
+            Some(w) if (w > 0) == outside => Branch::uniform(cell, w),
+            _ => join::around(inner, branch, i32::from(outside)),
+        })
+    }
+
+    /// The value of an expression in the rest of the cell around a smaller one with all boundaries.
+    fn value_beside(
+        &self,
+        cell: &Cell,
+        inner: &Cell,
+        expression: &Expression,
+        states: &States,
+    ) -> bool {
+        let outside = |k: u32| match find(states, k) {
+            Some(State::Tree(branch)) => self.rule.inside(branch.outside),
+            Some(State::List(list)) => self.rule.inside(list.beside(cell, inner, self.sources)),
+            _ => false,
+        };
+        expression.value(outside, &mut Vec::new())
     }
 
     /// The expression as one of two others, if results of operations need not be reduced.
@@ -427,14 +462,6 @@ impl<'a> Descent<'a> {
         states.into_iter().map(open).collect()
     }
 
-    fn value_outside(&self, expression: &Expression, states: &States) -> bool {
-        let outside = |k: u32| match find(states, k) {
-            Some(State::Tree(branch)) => self.rule.inside(branch.outside),
-            _ => false,
-        };
-        expression.value(outside, &mut Vec::new())
-    }
-
     fn halves(
         &self,
         cell: Cell,
@@ -455,13 +482,15 @@ impl<'a> Descent<'a> {
             below.push((k, minus));
             above.push((k, plus));
         }
-        // Cutting off what is empty tells nothing about how the rest separates, if that is small.
-        let is_counted = match [&below, &above].map(has_surface) {
-            [true, true] => true,
-            [true, false] => is_filled(&cell, &below),
-            [false, _] => is_filled(&cell, &above),
+        let remaining = match [&below, &above].map(has_surface) {
+            [true, true] => None,
+            [true, false] => extent(&cell, &below),
+            [false, _] => extent(&cell, &above),
         };
-        let round = if is_counted { round.next(total) } else { round };
+        let round = remaining.map_or_else(
+            || round.next(total),
+            |extent| round.next_alone(&cell, extent, total),
+        );
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)
         };
@@ -571,7 +600,7 @@ mod tests {
         };
         let solids = [cone(9e11, 5e11), cone(5e11, 9e11)];
         let (_, counters) = run(&solids, Term::And);
-        assert!(counters[0].1 < 400, "{} cells", counters[0].1);
+        assert!(counters[0].1 < 200, "{} cells", counters[0].1);
     }
 
     #[test]

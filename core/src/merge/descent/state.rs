@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::Arc;
 
+use crate::geometry::axes::each_axis;
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
@@ -57,18 +58,29 @@ pub fn find(states: &States, operand: u32) -> Option<&State> {
     Some(&states[at].1)
 }
 
-/// The smallest cell around all operands' boundaries, if it is smaller than `cell`.
-pub fn nested(cell: &Cell, states: &States) -> Option<Cell> {
+/// The smallest cell around all operands' boundaries, if it is smaller than `cell` and known without
+/// opening what is closed; around lists only on demand, since it looks at all their elements.
+pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
     let mut inner: Option<Cell> = None;
     for (_, state) in states {
-        match state {
-            State::Tree(branch) if branch.cell != *cell => {
-                inner = Some(inner.map_or(branch.cell, |c| c.join(&branch.cell)));
+        let home = match state {
+            State::Tree(branch) if branch.cell != *cell => branch.cell,
+            State::List(list) if lists => {
+                let [low, high] = within(cell, list.bounds());
+                Cell::around(&low, &high)
             }
             _ => return None,
-        }
+        };
+        inner = Some(inner.map_or(home, |c| c.join(&home)));
     }
     inner.filter(|c| c != cell)
+}
+
+/// The part of a box in a cell.
+pub fn within(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
+    let (least, most) = (cell.low(), cell.high());
+    let low = each_axis(|i| low[i].max(least[i]));
+    [low, each_axis(|i| high[i].min(most[i]))]
 }
 
 /// Return whether there is an operand without boundary in the cell.
@@ -232,6 +244,13 @@ impl State {
         }
     }
 
+    /// Becomes the state in a smaller cell, given that no boundary meets the rest of the cell.
+    pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
+        if let Self::List(list) = self {
+            list.shrink(inner, sources);
+        }
+    }
+
     /// This operand, perhaps turned inside out, as the result in the cell.
     pub fn shared(self, cell: Cell, negate: bool, sources: &Sources) -> Branch {
         match self {
@@ -338,7 +357,7 @@ mod tests {
         let tree = |s: &crate::tree::solid::Solid| State::Tree(s.root().clone());
         let states: States = (0..).zip(solids.iter().map(tree)).collect();
         assert!(find(&states, 1).is_some() && find(&states, 2).is_none());
-        let inner = nested(&Cell::UNIVERSE, &states);
+        let inner = nested(&Cell::UNIVERSE, &states, false);
         assert_eq!(inner, Some(Cell::around(&[0; 3], &[15; 3])));
     }
 }

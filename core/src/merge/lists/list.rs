@@ -39,6 +39,11 @@ impl Frame {
         index.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
     }
 
+    /// The first index whose coordinates are all `k` or more.
+    fn index_beyond(&self, axis: usize, k: i64) -> i32 {
+        self.index(axis, k + (1 << self.shift) - 1)
+    }
+
     #[inline]
     fn indices(&self, p: &Lattice) -> [i32; 3] {
         [
@@ -255,6 +260,25 @@ impl List {
         (self, plus)
     }
 
+    /// Becomes the list of a smaller cell, given that nothing meets the rest of the cell: so the number
+    /// at the low corner is the same.
+    pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
+        if !self.frame.resolves(inner) {
+            spend(self.len());
+            self.reframe(inner, sources);
+        }
+    }
+
+    /// The winding number in the rest of the cell around a smaller one, given that nothing meets it.
+    pub fn beside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
+        match cell.cut() {
+            Some(cut) if inner.low() == cell.low() => {
+                self.corner + self.change_along_edge(cell, cut, sources)
+            }
+            _ => self.corner,
+        }
+    }
+
     /// Keeps the records of the minus half, in the memory they are in, and returns the others.
     fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
         let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
@@ -304,7 +328,7 @@ impl List {
         };
         let low = *cell.low();
         let at = self.frame.indices(&low);
-        let end = self.frame.index(cut.axis, cut.at);
+        let end = self.frame.index_beyond(cut.axis, cut.at);
         let near = |low: &[i32; 3], high: &[i32; 3]| {
             (0..3).all(|i| high[i] >= at[i] && low[i] < if i == cut.axis { end } else { at[i] })
         };
@@ -434,6 +458,49 @@ mod tests {
         let mesh = scene.sources.get(Slot(0)).mesh().expect("a mesh");
         let meets = |f: FaceId| mesh.face_box(f).1.iter().all(|c| *c == 20);
         assert!(!list.is_empty() && list.records.iter().all(|r| meets(r.face)));
+    }
+
+    /// Around the low corner of a large cell, which lies in the solid, and around boxes elsewhere.
+    #[test]
+    fn shrinking_counts_what_halving_counts() {
+        let ends = [[-100, 20], [3, 20], [12 << 30, (12 << 30) + 9]];
+        for [low, high] in ends {
+            let far = cuboid([1 << 41; 3], [(1 << 41) + 1; 3]);
+            let scene = Shared::of(&[cuboid([low; 3], [high; 3]), far]);
+            let cell = Cell::around(&[0; 3], &[(1 << 41) - 1; 3]);
+            let inner = Cell::around(&[low.max(0); 3], &[high; 3]);
+            let list = down(scene.lists[0].clone(), scene.cell, &cell, &scene.sources).0;
+            let mut shrunk = list.clone();
+            let beside = shrunk.beside(&cell, &inner, &scene.sources);
+            shrunk.shrink(&inner, &scene.sources);
+            let (list, others) = down(list, cell, &inner, &scene.sources);
+            assert_eq!((shrunk.corner, shrunk.len()), (list.corner, list.len()));
+            assert!(shrunk.frame.resolves(&inner) && !others.is_empty());
+            assert!(others.iter().all(|o| o.is_empty() && o.corner == beside));
+        }
+    }
+
+    /// Halve a list from a cell down to an inner one; the other halves come with it.
+    fn down(list: List, from: Cell, inner: &Cell, sources: &Sources) -> (List, Vec<List>) {
+        let (mut list, mut cell, mut others) = (list, from, Vec::new());
+        while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
+            let (minus, plus) = list.divide(&cell, cut, sources);
+            let lower = cell.half(cut, Half::Minus);
+            let is_lower = lower.holds(inner);
+            cell = if is_lower {
+                lower
+            } else {
+                cell.half(cut, Half::Plus)
+            };
+            let (half, other) = if is_lower {
+                (minus, plus)
+            } else {
+                (plus, minus)
+            };
+            others.push(other);
+            list = half;
+        }
+        (list, others)
     }
 
     #[test]
