@@ -18,6 +18,7 @@ symmetric difference comes from the engine that is being judged. A quick check c
 the sides of some points first, and builds the set only where they differ.
 """
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
@@ -205,16 +206,23 @@ class _Check:
         try:
             box = self._box(mesh)
             self.came = [self._cut(n, solid, box) for n, solid in enumerate(self.operands, 1)]
-            inside = None if box is None else box.to_mesh()
-            # A mesh is made when manifold3d takes it, and let go: it has a copy of its own.
-            given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
-            answer = oracle.ask(self.program, given, inside)
+            answer = self._asked(None if box is None else box.to_mesh())
         except oracle.OracleRefusedError as error:
             return self._report(Verdict.ORACLE_REFUSED, str(error), ours)
         except oracle.OracleFailedError as error:
             return self._report(Verdict.ORACLE_FAILED, str(error), ours)
         self.theirs = answer.mesh
         return self._compared(mesh, ours, answer)
+
+    def _asked(self, inside: Mesh | None) -> Answer:
+        """Return the oracle's answer; notes are made of all operands, also if one is refused."""
+        # A mesh is made when manifold3d takes it, and let go: it has a copy of its own.
+        given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
+        try:
+            return oracle.ask(self.program, given, inside)
+        except oracle.OracleRefusedError:
+            deque(given, maxlen=0)
+            raise
 
     def _fault(self, mesh: Mesh, ours: Facts) -> str:
         """Return what is wrong with our own result, whatever the oracle says."""

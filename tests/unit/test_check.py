@@ -250,6 +250,18 @@ def test_operands_the_oracle_refuses() -> None:
         oracle.ask([("leaf", [0])], [mesh])
 
 
+def test_operands_after_a_refused_one_have_their_notes(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(number: int, _: "b.Mesh") -> None:
+        raise oracle.OracleRefusedError(f"no operand {number}")
+
+    monkeypatch.setattr(oracle, "_taken", refuse)
+    double = b.Solid(*joined(cube(), moved(cube(), (0.5, 0.5, 0.5))))
+    report = validate("union", b.cube(0.25), double, double.translate(1, 0, 0))
+    assert (report.verdict, report.reason) == (Verdict.ORACLE_REFUSED, "no operand 1")
+    told = [note.split(";")[0] for note in report.notes]
+    assert told == ["operand 2 overlaps itself", "operand 3 overlaps itself"]
+
+
 def test_the_oracle_knows_complements() -> None:
     a, c = (solid.to_mesh() for solid in boxes())
     leaves: list[tuple[str, list[int]]] = [("leaf", [0]), ("leaf", [1]), ("not", [1])]
