@@ -40,8 +40,8 @@ class SaidMesh:
         """Return the mesh without the crossings that moving its vertices has made.
 
         Rounding moves each vertex by itself, so that surfaces that touched may cross. This is
-        mended by changes of the width of the rounding, where the mesh is closed by index and did
-        not cross itself there before.
+        mended by changes of the width of the rounding, where the mesh is closed, by index or once
+        its vertices are welded as import does, and did not cross itself there before.
 
         Parameters
         ----------

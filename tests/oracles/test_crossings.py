@@ -348,6 +348,23 @@ def test_what_touches_itself_does_not_cross_once_it_is_moved(
         assert moved.volume == pytest.approx(moved.normalized().volume, rel=1e-12)
 
 
+@pytest.mark.parametrize("solid", TOUCHING.values(), ids=TOUCHING)
+def test_what_is_closed_by_its_places_does_not_cross_once_it_is_moved(solid: "b.Solid") -> None:
+    """Each triangle has corners of its own, as many files give it."""
+    rng = np.random.default_rng(1)
+    mesh = solid.to_mesh()
+    soup = b.Solid(
+        mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(mesh.faces.size).reshape(-1, 3)
+    )
+    for _ in range(100 if DEEP else 20):
+        angle, axis, factor = rng.uniform(0, 360), rng.normal(size=3), rng.uniform(0.5, 2)
+        moved = soup.rotate(angle, axis).scale(factor)
+        for same in (moved, moved.normalized(), moved | b.box((1, 1, 1)).translate(50, 0, 0)):
+            mesh = same.to_mesh()
+            assert mesh.certificate.ok and uses_all_vertices(mesh)
+        assert moved == solid.rotate(angle, axis).scale(factor)
+
+
 def test_what_crossed_itself_before_it_was_moved_stays_as_it_is() -> None:
     points, faces = icosphere(1)
     both = np.vstack([points, points + 0.5]), np.vstack([faces, faces + len(points)])

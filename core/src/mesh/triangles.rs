@@ -50,12 +50,7 @@ impl TriangleMesh {
 
     /// For each vertex the first at its place on the lattice.
     pub fn firsts(&self) -> Vec<VertexId> {
-        let mut first: HashMap<Lattice, VertexId> =
-            HashMap::with_capacity_and_hasher(self.vertices.len(), FxBuildHasher);
-        let places = VertexId::all().zip(&self.vertices);
-        places
-            .map(|(vertex, place)| *first.entry(*place).or_insert(vertex))
-            .collect()
+        firsts(&self.vertices)
     }
 
     /// Vertices that are the first at their place, where others have other doubles, sorted.
@@ -89,6 +84,16 @@ impl TriangleMesh {
         };
         Some(self.vertices.iter().fold((first, first), grow))
     }
+}
+
+/// For each point the number of the first at its place.
+pub fn firsts(points: &[Lattice]) -> Vec<VertexId> {
+    let mut first: HashMap<Lattice, VertexId> =
+        HashMap::with_capacity_and_hasher(points.len(), FxBuildHasher);
+    let places = VertexId::all().zip(points);
+    places
+        .map(|(vertex, place)| *first.entry(*place).or_insert(vertex))
+        .collect()
 }
 
 #[cfg(test)]

@@ -47,8 +47,8 @@ pub fn mesh_in_single<'py>(
     settled_mesh(py, mesh, settled)
 }
 
-/// A mesh closed by index whose vertices a transform moved, mended where that made it cross itself;
-/// `None` if it stays as it is.
+/// A mesh closed by index, or once it is welded, whose vertices a transform moved, mended where that
+/// made it cross itself; `None` if it stays as it is.
 #[pyfunction]
 pub fn mesh_moved<'py>(
     py: Python<'py>,

@@ -12,6 +12,8 @@ use crate::geometry::vertex::Vertex;
 use crate::mesh::chain::is_closed;
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::handle::VertexId;
+use crate::mesh::snap::snap_all;
+use crate::mesh::triangles::firsts;
 
 /// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
 const ROUNDS: usize = 4;
@@ -102,13 +104,14 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
 /// Mends what moving the vertices of a mesh made cross; `before` has their old places. Where this leaves
 /// crossings, it is tried again from the lattice.
 ///
-/// A mesh that crossed itself there before stays as it is, and so does one that is not closed by
-/// index.
+/// A mesh that crossed itself there before stays as it is. One that is not closed by index is welded
+/// first, as import does; it stays as it is if that does not close it.
 pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settled {
-    if !is_closed(&mesh.triangles) {
+    if !is_closed(&mesh.triangles) && !mesh.weld(pitch) {
         return Settled::default();
     }
-    let found = all_faults(&mesh.faces());
+    let mut found = all_faults(&mesh.faces());
+    found.flat.retain(|t| !mesh.is_removed(*t));
     if found.crossings.is_empty() || mesh.crossed_before(&found, before) {
         return Settled::default();
     }
@@ -131,6 +134,22 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
 }
 
 impl Rounded {
+    /// Makes the vertices at one place of the lattice one, and removes triangles that then have a
+    /// corner twice; says whether the others are closed by index.
+    fn weld(&mut self, pitch: Pitch) -> bool {
+        let Ok(places) = snap_all(&self.vertices, pitch) else {
+            return false;
+        };
+        let image = firsts(&places);
+        let joined = |t: &[VertexId; 3]| match t.map(|v| image[v.place()]) {
+            [a, b, c] if a == b || b == c || c == a => [a; 3],
+            apart => apart,
+        };
+        self.triangles = self.triangles.iter().map(joined).collect();
+        let left = self.triangles.iter().filter(|t| t[0] != t[1]);
+        is_closed(&left.copied().collect::<Vec<[VertexId; 3]>>())
+    }
+
     /// Mends faults of all triangles.
     fn settle_all(&mut self, found: Faults, exact: impl Fn(VertexId) -> Option<Point>) -> Settled {
         let all = (0..as_number(self.triangles.len())).collect();
@@ -466,6 +485,39 @@ mod tests {
         assert!(!settled.mended.is_empty() && settled.left.is_empty());
         assert!(all_faults(&moved.faces()).is_empty());
         assert_eq!(moved.triangles, before.triangles);
+    }
+
+    /// Gives each triangle corners of its own.
+    fn unwelded(mesh: &Rounded) -> Rounded {
+        let corners = mesh.triangles.iter().flatten();
+        let rows = (0..as_number(mesh.triangles.len())).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+        Rounded {
+            vertices: corners.map(|v| mesh.vertices[v.place()]).collect(),
+            triangles: VertexId::rows(rows),
+        }
+    }
+
+    #[test]
+    fn what_is_closed_by_places_is_welded_and_mended() {
+        let before = unwelded(&touching([1.0, 1.0, 1.0]));
+        let mut moved = unwelded(&touching([1.0, 1.0, 1.0f64.next_down()]));
+        let settled = settle_moved(&mut moved, &before.vertices, Pitch::DEFAULT);
+        assert!(!settled.mended.is_empty() && settled.left.is_empty());
+        assert!(is_closed(&moved.triangles) && all_faults(&moved.faces()).is_empty());
+    }
+
+    #[test]
+    fn a_triangle_that_welding_leaves_no_area_is_removed_and_no_fault() {
+        let mut before = unwelded(&touching([1.0, 1.0, 1.0]));
+        let mut moved = unwelded(&touching([1.0, 1.0, 1.0f64.next_down()]));
+        for mesh in [&mut before, &mut moved] {
+            let again = [mesh.vertices[0], mesh.vertices[0], mesh.vertices[1]];
+            mesh.vertices.extend(again);
+            mesh.triangles.push([24, 25, 26].map(VertexId));
+        }
+        let settled = settle_moved(&mut moved, &before.vertices, Pitch::DEFAULT);
+        assert!(!settled.mended.is_empty() && settled.left.is_empty());
+        assert!(moved.is_removed(8) && !moved.is_removed(7));
     }
 
     #[test]
