@@ -1,7 +1,8 @@
 """`RawMesh`: what a file says, before anything is made of it; polygons become triangles here.
 
-Readers neither weld, orient, repair nor drop anything, with one exception: STL has no indices, so
-its corners with equal coordinates become one vertex.
+Readers neither weld, orient, repair nor drop anything, with two exceptions: STL has no indices, so
+its corners with equal coordinates become one vertex; and where a file places a mesh, what rounding
+makes cross is mended (`bspcsg/formats/placing.py`).
 """
 
 from collections.abc import Callable, Sequence
@@ -46,6 +47,9 @@ class RawMesh:
         faces is no set: what should be in it may have got lost.
     attributes : Attributes, optional
         The values on vertices, corners and faces.
+    is_mended : bool
+        True if placing made surfaces cross, which was mended in doubles: on the lattice they touch,
+        and may cross there.
     """
 
     vertices: FloatArray
@@ -57,6 +61,7 @@ class RawMesh:
     dropped: tuple[str, ...] = ()
     is_empty_set: bool = False
     attributes: Attributes | None = None
+    is_mended: bool = False
 
     @property
     def passed_by(self) -> tuple[str, ...]:

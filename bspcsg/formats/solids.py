@@ -20,7 +20,8 @@ def solid_of(
         return Solid.empty()
     try:
         said = raw.attributes if attributes else None
-        return solid_with(raw.vertices, raw.faces, said, **options)
+        solid = solid_with(raw.vertices, raw.faces, said, **options)
+        return solid.normalized() if raw.is_mended else solid
     except BspcsgError as error:
         message = f"{os.fspath(path)}: {error.message}"
         raise type(error)(message, error.code, error.where) from error

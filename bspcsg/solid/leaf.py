@@ -144,9 +144,10 @@ class MeshLeaf:
         if self._before is None or self._arrays is None or self._chosen_pitch is None:
             return
         moved = SaidMesh(*self._arrays, self._attributes)
-        mesh = moved.mended(self._before, self._chosen_pitch)
+        found = moved.mended(self._before, self._chosen_pitch)
+        mesh = moved if found is None else found.mesh
         self._arrays, self._attributes = (mesh.vertices, mesh.faces), mesh.attributes
-        self._before, self._is_mended = None, mesh is not moved
+        self._before, self._is_mended = None, found is not None
 
     def _grow(self) -> Tree:
         with core_errors():

@@ -36,8 +36,8 @@ class SaidMesh:
             said = said and said.reordered([2, 1, 0])
         return SaidMesh(transform.apply(factors.product, self.vertices), faces, said)
 
-    def mended(self, before: FloatArray, pitch: int) -> "SaidMesh":
-        """Return the mesh without the crossings that moving its vertices has made.
+    def mended(self, before: FloatArray, pitch: int) -> "Mended | None":
+        """Return the mesh without the crossings that moving its vertices has made, if it has any.
 
         Rounding moves each vertex by itself, so that surfaces that touched may cross. This is
         mended by changes of the width of the rounding, where the mesh is closed, by index or once
@@ -53,9 +53,11 @@ class SaidMesh:
         with core_errors():
             found = mesh_moved(before, self.vertices, self.faces, pitch)
         if found is None:
-            return self
-        said = self.attributes and self.attributes.onto(found["triangles"], found["kept"])
-        return SaidMesh(found["vertices"], found["triangles"], said)
+            return None
+        kept, faces = found["kept"], found["triangles"]
+        said = self.attributes and self.attributes.onto(faces, kept)
+        left = np.isin(kept, found["crossings"])
+        return Mended(SaidMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
 
     def suited_pitch(self) -> int | None:
         """Return the pitch that its size suits; None if it has none, which its import tells."""
@@ -64,3 +66,21 @@ class SaidMesh:
         largest = float(np.abs(self.vertices).max())
         with core_errors():
             return suited_pitch(largest, float(np.ptp(self.vertices, axis=0).max()))
+
+
+@dataclass(frozen=True, eq=False)
+class Mended:
+    """A moved mesh of which crossings were mended.
+
+    Parameters
+    ----------
+    mesh : SaidMesh
+    kept : (m,) int64
+        The triangle of the mesh as it was moved that each of these stands for.
+    left : (k,) int64
+        The triangles that cross others still.
+    """
+
+    mesh: SaidMesh
+    kept: IndexArray
+    left: IndexArray

@@ -17,7 +17,8 @@ from ...attributes.attributes import Attributes, Values
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from .. import single
-from ..raw import RawMesh, compacted, joined, parts_of, says_empty_set
+from ..placing import Placed, is_exact, placed
+from ..raw import RawMesh, compacted, parts_of, says_empty_set
 from ..said import said_of
 from ..source import Source
 from .container import container_of
@@ -52,24 +53,28 @@ def read(source: Source) -> RawMesh:
         raise source.error(f"{error}.", "index_out_of_range") from error
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise source.error(f"this GLB cannot be decoded: {error}.") from error
-    mesh = joined([_placed(one) for one in objects if len(one.faces)])
+    mesh = placed([_placed(one) for one in objects if len(one.faces)])
     if not np.isfinite(mesh.vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
-    findings = (*container.findings, *_hidden(hidden), _unit())
+    findings = (*mesh.findings, *container.findings, *_hidden(hidden), _unit())
     return replace(mesh, findings=findings, unit="mm", dropped=container.dropped)
 
 
-def _placed(one: Shown) -> RawMesh:
+def _placed(one: Shown) -> Placed:
     """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
     placing = TO_MILLIMETRES @ one.matrix
+    before = one.vertices.astype(np.float64)
+    linear = placing[:3, :3]
     with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
-        vertices = _moved(one.vertices.astype(np.float64), placing)
-        is_mirrored = np.linalg.det(placing[:3, :3]) < 0
-        said = None if one.attributes is None else one.attributes.turned(placing[:3, :3])
-    if is_mirrored:
-        said = None if said is None else said.reordered([2, 1, 0])
-        return RawMesh(vertices, one.faces[:, ::-1], one.name, attributes=said)
-    return RawMesh(vertices, one.faces, one.name, attributes=said)
+        vertices = _moved(before, placing)
+        size = np.linalg.det(linear)
+        said = None if one.attributes is None else one.attributes.turned(linear)
+        keeps = size == 0 or is_exact(before, linear, placing[:3, 3])
+    faces = one.faces
+    if size < 0:
+        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
+    mesh = RawMesh(vertices, faces, one.name, attributes=said)
+    return Placed(mesh, None if keeps else before, placing.tobytes())
 
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:

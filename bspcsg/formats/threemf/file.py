@@ -16,7 +16,8 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...errors import Finding, FormatError
-from ..raw import RawMesh, empty_set, joined
+from ..placing import Placed, is_exact, placed
+from ..raw import RawMesh, empty_set
 from ..source import Source
 from .part import MILLIMETRES, ModelPart, PartReader, PlacedObject, parse_xml
 from .properties import properties_of
@@ -124,9 +125,10 @@ class Package:
         """Return the mesh of all build items."""
         part = self.part(root)
         pieces, findings = [], list(_unit_finding(part))
+        unit = np.eye(4, 3) * MILLIMETRES[part.unit]
         beams = skipped = triangles = 0
-        placed = self.placed(root, part.items)
-        for path, item, transforms in placed:
+        built = self.placed(root, part.items)
+        for path, item, transforms in built:
             model = self.part(path)
             beams += model.objects[item].beams
             if model.objects[item].kind != "model":
@@ -135,15 +137,15 @@ class Package:
             triangles += len(model.objects[item].triangles)
             if triangles > _MOST_TRIANGLES:
                 raise self._source.error("the build has too many triangles.", "too_large")
-            pieces.append(_moved(model, item, transforms, self.picture))
+            pieces.append(_moved(model, item, (*transforms, unit), self.picture))
         findings += _ignored(beams, "beams")
         findings += _ignored(skipped, "objects that are support or surface")
-        built = {(path, item) for path, item, _ in placed}
-        findings += _ignored(self._meshes() - len(built), "objects outside the build")
+        known = {(path, item) for path, item, _ in built}
+        findings += _ignored(self._meshes() - len(known), "objects outside the build")
         dropped = sorted(set().union(*(part.dropped for part in self._parts.values())))
-        mesh = replace(joined(pieces), findings=tuple(findings), unit="mm", dropped=tuple(dropped))
-        scale = MILLIMETRES[part.unit]
-        return mesh if scale == 1 else replace(mesh, vertices=mesh.vertices * scale)
+        mesh = placed(pieces)
+        told = (*mesh.findings, *findings)
+        return replace(mesh, findings=told, unit="mm", dropped=tuple(dropped))
 
     def _meshes(self) -> int:
         """Return how many objects of the parts read so far have a mesh."""
@@ -223,25 +225,32 @@ def _moved(
     item: str,
     transforms: tuple[FloatArray, ...],
     picture: Callable[[str], bytes],
-) -> RawMesh:
+) -> Placed:
     """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
-    vertices, faces = part.objects[item].arrays()
-    mirrored = False
-    for matrix in transforms:
-        if (matrix == np.eye(4, 3)).all():
-            continue
-        x, y, z = vertices.T
-        columns = [
-            x * matrix[0, k] + y * matrix[1, k] + z * matrix[2, k] + matrix[3, k] for k in range(3)
-        ]
-        vertices = np.stack(columns, axis=1)
-        if np.linalg.det(matrix[:3]) < 0:
-            faces = faces[:, ::-1]
-            mirrored = not mirrored
+    before, faces = part.objects[item].arrays()
+    moving = [matrix for matrix in transforms if (matrix != np.eye(4, 3)).any()]
+    vertices, mirrored, keeps = before, False, True
+    for matrix in moving:
+        with np.errstate(invalid="ignore", over="ignore"):
+            keeps = keeps and is_exact(vertices, matrix[:3].T, matrix[3])
+        vertices = _image(vertices, matrix)
+        mirrored ^= bool(np.linalg.det(matrix[:3]) < 0)
+    faces = faces[:, ::-1] if mirrored else faces
     said = properties_of(part, part.objects[item], faces, picture)
     if said is not None and mirrored:
         said = said.reordered([2, 1, 0])
-    return RawMesh(vertices, faces, part.objects[item].name, attributes=said)
+    mesh = RawMesh(vertices, faces, part.objects[item].name, attributes=said)
+    keeps = keeps or any(np.linalg.det(matrix[:3]) == 0 for matrix in moving)
+    map_ = b"".join(matrix.tobytes() for matrix in moving)
+    return Placed(mesh, None if keeps else before, map_)
+
+
+def _image(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
+    x, y, z = vertices.T
+    columns = [
+        x * matrix[0, k] + y * matrix[1, k] + z * matrix[2, k] + matrix[3, k] for k in range(3)
+    ]
+    return np.stack(columns, axis=1)
 
 
 def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:

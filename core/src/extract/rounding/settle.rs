@@ -18,6 +18,11 @@ use crate::mesh::triangles::firsts;
 /// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
 const ROUNDS: usize = 4;
 
+/// Pairs that cross, for each triangle, that moving a mesh is mended of. Surfaces that touched cross
+/// along curves, in fewer pairs than there are triangles; in more, they lie on each other as a whole,
+/// and no change of the width of the rounding parts them.
+const MOST_CROSSINGS: usize = 1;
+
 /// A mesh whose vertices were rounded, closed by index.
 #[derive(Clone, Debug)]
 pub struct Rounded {
@@ -104,7 +109,8 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
 /// Mends what moving the vertices of a mesh made cross; `before` has their old places. Where this leaves
 /// crossings, it is tried again from the lattice.
 ///
-/// A mesh that crossed itself there before stays as it is. One that is not closed by index is welded
+/// A mesh that crossed itself there before stays as it is (`own`), and so does one of which the map
+/// laid surfaces on each other (`left`). One that is not closed by index is welded
 /// first, as import does; it stays as it is if that does not close it.
 pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settled {
     if !is_closed(&mesh.triangles) && !mesh.weld(pitch) {
@@ -112,8 +118,22 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
     }
     let mut found = all_faults(&mesh.faces());
     found.flat.retain(|t| !mesh.is_removed(*t));
-    if found.crossings.is_empty() || mesh.crossed_before(&found, before) {
+    if found.crossings.is_empty() {
         return Settled::default();
+    }
+    if mesh.crossed_before(&found, before) {
+        let own = found;
+        return Settled {
+            own,
+            ..Settled::default()
+        };
+    }
+    if found.crossings.len() > MOST_CROSSINGS * mesh.triangles.len() {
+        let left = found;
+        return Settled {
+            left,
+            ..Settled::default()
+        };
     }
     let moved = mesh.clone();
     let settled = mesh.settle_all(found.clone(), |_| None);
@@ -498,6 +518,21 @@ mod tests {
     }
 
     #[test]
+    fn what_the_map_has_laid_on_each_other_is_told_and_left_alone() {
+        let before = row(6);
+        let apart = |p: &Point| [16.0 * p[0], p[1], p[2]];
+        let before = before.vertices.iter().map(apart).collect::<Vec<Point>>();
+        let mut moved = row(6);
+        for p in &mut moved.vertices {
+            p[0] = p[0].rem_euclid(3.5);
+        }
+        let triangles = moved.triangles.clone();
+        let settled = settle_moved(&mut moved, &before, Pitch::DEFAULT);
+        assert!(settled.left.crossings.len() > triangles.len() && settled.mended.is_empty());
+        assert_eq!(moved.triangles, triangles);
+    }
+
+    #[test]
     fn what_is_closed_by_places_is_welded_and_mended() {
         let before = unwelded(&touching([1.0, 1.0, 1.0]));
         let mut moved = unwelded(&touching([1.0, 1.0, 1.0f64.next_down()]));
@@ -526,6 +561,7 @@ mod tests {
         let mut moved = touching([1.0, 1.0, 0.500_000_1]);
         let settled = settle_moved(&mut moved, &before.vertices, Pitch::DEFAULT);
         assert!(settled.mended.is_empty() && settled.left.is_empty());
-        assert!(!all_faults(&moved.faces()).is_empty());
+        assert_eq!(settled.own, all_faults(&moved.faces()));
+        assert!(!settled.own.is_empty());
     }
 }

@@ -1,0 +1,137 @@
+"""Meshes that files place: each coordinate is rounded, and surfaces still do not cross."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .._types import FloatArray
+from ..errors import Finding, LimitError
+from ..solid.moving import Mended, SaidMesh
+from .raw import RawMesh, compacted, joined
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A mesh in its place in a file.
+
+    Parameters
+    ----------
+    mesh : RawMesh
+    before : (n, 3) float64 or None
+        The vertices before they were placed; None if placing them rounded none.
+    map : bytes
+        The map that placed them: what has one in common was placed as a whole.
+    """
+
+    mesh: RawMesh
+    before: FloatArray | None = None
+    map: bytes = b""
+
+
+def is_exact(points: FloatArray, linear: FloatArray, shift: FloatArray) -> bool:
+    """Say whether an affine map of points, row by row, rounds no coordinate; errs on no.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+    linear : (3, 3) float64
+    shift : (3,) float64
+    """
+    if (np.count_nonzero(linear, axis=1) != 1).any():
+        return False
+    axes = np.argmax(linear != 0, axis=1)
+    entries = linear[np.arange(3), axes]
+    return _are_products_exact(points, entries) and all(
+        _is_sum_exact(points[:, axis] * entry, offset)
+        for axis, entry, offset in zip(axes.tolist(), entries, shift, strict=True)
+    )
+
+
+def _are_products_exact(points: FloatArray, entries: FloatArray) -> bool:
+    if (np.abs(entries) == 1).all():
+        return True
+    # Two numbers of single precision have a product that doubles hold.
+    return all(bool((one == one.astype(np.float32)).all()) for one in (entries, points))
+
+
+def _is_sum_exact(values: FloatArray, offset: float) -> bool:
+    if offset == 0:
+        return True
+    total = values + offset
+    # Knuth's sum of two: what rounding has left out.
+    taken = total - values
+    return bool(((values - (total - taken)) + (offset - taken) == 0).all())
+
+
+def placed(pieces: Sequence[Placed]) -> RawMesh:
+    """Return meshes in their places as one, each an object of its name.
+
+    Where placing made surfaces cross that did not before, they are mended by changes of the width
+    of the rounding: within a mesh, and among those that one map placed. A finding names what could
+    not be mended.
+    """
+    meshes = [piece.mesh for piece in pieces]
+    whole = joined(meshes)
+    pitch = _pitch_of(whole, pieces)
+    if pitch is None:
+        return whole
+    together: dict[bytes, list[int]] = {}
+    for number, piece in enumerate(pieces):
+        if piece.before is not None:
+            together.setdefault(piece.map, []).append(number)
+    crossing: dict[int, list[int]] = {}
+    for members in together.values():
+        found = _mended([pieces[number] for number in members], pitch)
+        if found is not None:
+            _take(found, members, meshes, crossing)
+            whole = replace(whole, is_mended=True)
+    return _told(joined(meshes), meshes, crossing) if whole.is_mended else whole
+
+
+def _pitch_of(whole: RawMesh, pieces: Sequence[Placed]) -> int | None:
+    """Return the pitch that suits the whole, if there is something to mend and one that does."""
+    if all(piece.before is None for piece in pieces):
+        return None
+    try:
+        return SaidMesh(whole.vertices, whole.faces).suited_pitch()
+    except LimitError:
+        return None
+
+
+def _mended(pieces: Sequence[Placed], pitch: int) -> Mended | None:
+    whole = joined([piece.mesh for piece in pieces])
+    before = np.concatenate([piece.before for piece in pieces if piece.before is not None])
+    return SaidMesh(whole.vertices, whole.faces, whole.attributes).mended(before, pitch)
+
+
+def _take(
+    found: Mended, members: list[int], meshes: list[RawMesh], crossing: dict[int, list[int]]
+) -> None:
+    """Put what was mended as a whole in the place of its pieces."""
+    end = 0
+    for number in members:
+        start, end = end, end + len(meshes[number].faces)
+        rows = np.flatnonzero((found.kept >= start) & (found.kept < end))
+        used, faces = compacted(found.mesh.faces[rows])
+        said = found.mesh.attributes
+        if meshes[number].attributes is not None and said is not None:
+            said = replace(said.taken(rows), faces=faces).with_used_materials()
+        else:
+            said = None
+        vertices = found.mesh.vertices[used]
+        crossing[number] = np.flatnonzero(np.isin(rows, found.left)).tolist()
+        meshes[number] = replace(meshes[number], vertices=vertices, faces=faces, attributes=said)
+
+
+def _told(whole: RawMesh, meshes: list[RawMesh], crossing: dict[int, list[int]]) -> RawMesh:
+    starts = np.cumsum([0] + [len(mesh.faces) for mesh in meshes]).tolist()
+    places = sorted(starts[number] + row for number, rows in crossing.items() for row in rows)
+    findings = (Finding("crossing", "warning", _CROSSING, tuple(places), len(places)),)
+    return replace(whole, is_mended=True, findings=findings if places else ())
+
+
+_CROSSING = (
+    "rounding meshes to where the file places them makes these triangles cross or overlap others,"
+    " which could not be mended"
+)

@@ -1,0 +1,168 @@
+"""Meshes that files place: what touched does not cross, and what is placed exactly stays."""
+
+import functools
+import operator
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg.formats.files import decoded
+from bspcsg.formats.glb import scene as glb
+from bspcsg.formats.placing import Placed, is_exact, placed
+from bspcsg.formats.raw import RawMesh
+from bspcsg.formats.scene import SceneNode
+from bspcsg.formats.solids import solid_of
+from bspcsg.formats.threemf import scene as threemf
+from bspcsg.geometry import transform
+
+SCENES = {".glb": glb.encode, ".3mf": threemf.encode}
+
+#: So many placings of each shape.
+TURNS = 20
+
+UNMOVED = np.eye(4)
+
+
+def chain() -> "b.Solid":
+    """Return boxes that touch along parts of edges and are one piece elsewhere."""
+    ends = [
+        ((0, 0, 0), (2, 2, 2)),
+        ((2, 2, 0.5), (4, 4, 1.5)),
+        ((0, 2, -1), (4, 4, 0)),
+        ((3, 0, -1), (4, 3, 1)),
+        ((1, 0, -1), (4, 1, 0.5)),
+    ]
+    boxes = (b.box(np.subtract(high, low)).translate(low) for low, high in ends)
+    return functools.reduce(operator.or_, boxes)
+
+
+def tip_on_a_face() -> "b.Solid":
+    return b.box((4, 4, 4)) | b.cone(r=1, h=2, segments=8).mirror("z").translate(2, 2, 6)
+
+
+def edges_apart() -> "b.Solid":
+    return b.box((4, 4, 4)) | b.box((2, 2, 2)).translate(4, 4, 1)
+
+
+def raw_of(solid: "b.Solid", is_soup: bool = False) -> RawMesh:
+    mesh = solid.to_mesh()
+    # What single precision moves would cross before it is placed.
+    vertices = mesh.vertices.astype(np.float32).astype(np.float64)
+    faces = mesh.faces
+    if is_soup:
+        vertices, faces = vertices[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3)
+    return RawMesh(vertices, faces, "part")
+
+
+def some_matrix(rng: np.random.Generator) -> np.ndarray:
+    matrix = transform.product(transform.euler_rotation(rng.uniform(0, 360, 3)))
+    matrix = matrix @ np.diag([*rng.uniform(0.3, 3, 3), 1])
+    matrix[:3, 3] = rng.uniform(-100, 100, 3)
+    return matrix
+
+
+def read_back(node: SceneNode, suffix: str) -> RawMesh:
+    return decoded(f"part{suffix}", b"".join(SCENES[suffix](node)), suffix)
+
+
+def crossings(raw: RawMesh) -> int:
+    return len(solid_of(raw, "part").to_mesh().certificate.crossings)
+
+
+@pytest.mark.parametrize("suffix", SCENES)
+@pytest.mark.parametrize("is_soup", [False, True])
+@pytest.mark.parametrize("make", [chain, tip_on_a_face, edges_apart])
+def test_what_touches_itself_does_not_cross_where_a_file_places_it(
+    make: Callable[[], "b.Solid"], is_soup: bool, suffix: str
+) -> None:
+    mesh = raw_of(make(), is_soup)
+    assert crossings(mesh) == 0
+    volume = solid_of(mesh, "part").volume
+    rng = np.random.default_rng(3)
+    mended = 0
+    for _ in range(TURNS):
+        matrix = some_matrix(rng)
+        raw = read_back(SceneNode("part", matrix, mesh), suffix)
+        assert raw.objects == (("part", len(raw.faces)),)
+        assert crossings(raw) == 0 and not {"crossing"} & {one.code for one in raw.findings}
+        size = abs(np.linalg.det(matrix))
+        assert solid_of(raw, "part").volume == pytest.approx(volume * size, rel=1e-9)
+        mended += raw.is_mended
+    assert mended > 0
+
+
+@pytest.mark.parametrize("suffix", SCENES)
+def test_parts_that_one_map_places_do_not_cross_each_other(suffix: str) -> None:
+    boxes = [b.box((4, 4, 4)), b.box((2, 2, 2)).translate(4, 4, 1)]
+    meshes = [replace(raw_of(box), name=f"box {n}") for n, box in enumerate(boxes)]
+    parts = [SceneNode(mesh.name, UNMOVED, mesh) for mesh in meshes]
+    rng = np.random.default_rng(4)
+    mended = 0
+    for _ in range(TURNS):
+        raw = read_back(SceneNode("all", some_matrix(rng), children=tuple(parts)), suffix)
+        assert [name for name, _ in raw.objects] == [part.name for part in parts]
+        assert sum(count for _, count in raw.objects) == len(raw.faces)
+        assert crossings(raw) == 0
+        mended += raw.is_mended
+    assert mended > 0
+
+
+def test_a_mesh_that_crossed_itself_before_it_was_placed_stays_as_it_is() -> None:
+    box = b.box((2, 2, 2)).to_mesh()
+    faces = np.concatenate([box.faces, box.faces + len(box.vertices)])
+    twice = RawMesh(np.concatenate([box.vertices, box.vertices + 1]), faces, "part")
+    matrix = some_matrix(np.random.default_rng(6))
+    for suffix in SCENES:
+        raw = read_back(SceneNode("part", matrix, twice), suffix)
+        assert np.array_equal(raw.faces, faces) and not raw.is_mended
+
+
+def test_what_is_said_of_faces_stays_where_placing_is_mended() -> None:
+    solid = chain().tagged(material="steel")
+    mesh = solid.to_mesh()
+    raw = RawMesh(mesh.vertices, mesh.faces, "part", attributes=mesh.attributes)
+    rng = np.random.default_rng(7)
+    mended = 0
+    for _ in range(TURNS):
+        matrix = some_matrix(rng)
+        moved = replace(raw, vertices=transform.apply(matrix, raw.vertices))
+        found = placed([Placed(moved, raw.vertices, b"a map")])
+        assert found.attributes is not None
+        assert len(found.attributes.face["material"]) == len(found.faces)
+        assert np.array_equal(found.attributes.faces, found.faces)
+        mended += found.is_mended
+    assert mended > 0
+
+
+def test_what_a_map_lays_on_each_other_is_told_at_once() -> None:
+    solid = b.sphere(1, segments=32) - b.sphere(0.5, segments=32).translate(0.9, 0, 0)
+    mesh = solid.to_mesh()
+    flat = mesh.vertices * (1, 1, 1e-20) + (0, 0, 1)
+    began = time.process_time()
+    found = placed([Placed(RawMesh(flat, mesh.faces, "part"), mesh.vertices, b"a map")])
+    assert time.process_time() - began < 1
+    (finding,) = found.findings
+    assert (finding.code, finding.severity) == ("crossing", "warning")
+    assert finding.count == len(finding.where) > len(mesh.faces) / 2
+
+
+@pytest.mark.parametrize(
+    ("linear", "shift", "exact"),
+    [
+        (np.eye(3), (0, 0, 0), True),
+        (np.eye(3) * 1000, (0, 0, 0), True),
+        (np.eye(3)[[1, 2, 0]] * -1, (0, 0, 0), True),
+        (np.eye(3), (1, 2, 3), True),
+        (np.eye(3), (1e9, 0, 0), False),
+        (np.eye(3), (0.1, 0, 0), False),
+        (np.eye(3) * 0.1, (0, 0, 0), False),
+        (np.eye(3) + np.eye(3)[[1, 2, 0]], (0, 0, 0), False),
+    ],
+)
+def test_maps_that_round_nothing(linear: np.ndarray, shift: tuple[float, ...], exact: bool) -> None:
+    points = np.random.default_rng(8).normal(size=(50, 3)).astype(np.float32).astype(np.float64)
+    assert is_exact(points, linear, np.array(shift, dtype=np.float64)) == exact
