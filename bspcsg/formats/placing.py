@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -9,6 +10,8 @@ from .._types import FloatArray
 from ..errors import Finding, LimitError
 from ..solid.moving import Mended, SaidMesh
 from .raw import RawMesh, compacted, joined
+
+SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +32,12 @@ class Placed:
     map: bytes = b""
 
 
-def is_exact(points: FloatArray, linear: FloatArray, shift: FloatArray) -> bool:
+def is_exact(points: FloatArray | SingleArray, linear: FloatArray, shift: FloatArray) -> bool:
     """Say whether an affine map of points, row by row, rounds no coordinate; errs on no.
 
     Parameters
     ----------
-    points : (n, 3) float64
+    points : (n, 3) float64 or float32
     linear : (3, 3) float64
     shift : (3,) float64
     """
@@ -43,25 +46,27 @@ def is_exact(points: FloatArray, linear: FloatArray, shift: FloatArray) -> bool:
     axes = np.argmax(linear != 0, axis=1)
     entries = linear[np.arange(3), axes]
     return _are_products_exact(points, entries) and all(
-        _is_sum_exact(points[:, axis] * entry, offset)
+        _is_sum_exact(points[:, axis].astype(np.float64) * entry, offset)
         for axis, entry, offset in zip(axes.tolist(), entries, shift, strict=True)
+        if offset != 0
     )
 
 
-def _are_products_exact(points: FloatArray, entries: FloatArray) -> bool:
+def _are_products_exact(points: FloatArray | SingleArray, entries: FloatArray) -> bool:
     if (np.abs(entries) == 1).all():
         return True
     # Two numbers of single precision have a product that doubles hold.
-    return all(bool((one == one.astype(np.float32)).all()) for one in (entries, points))
+    return _are_single(entries) and _are_single(points)
+
+
+def _are_single(values: FloatArray | SingleArray) -> bool:
+    return values.dtype == np.float32 or bool((values == values.astype(np.float32)).all())
 
 
 def _is_sum_exact(values: FloatArray, offset: float) -> bool:
-    if offset == 0:
-        return True
     total = values + offset
-    # Knuth's sum of two: what rounding has left out.
-    taken = total - values
-    return bool(((values - (total - taken)) + (offset - taken) == 0).all())
+    # The difference to the larger of the two is exact, and so is the sum if it is the other one.
+    return bool((total - values == offset).all() and (total - offset == values).all())
 
 
 def placed(pieces: Sequence[Placed]) -> RawMesh:

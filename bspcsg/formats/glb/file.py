@@ -69,7 +69,7 @@ def _placed(one: Shown) -> Placed:
         vertices = _moved(before, placing)
         size = np.linalg.det(linear)
         said = None if one.attributes is None else one.attributes.turned(linear)
-        keeps = size == 0 or is_exact(before, linear, placing[:3, 3])
+        keeps = size == 0 or is_exact(one.vertices, linear, placing[:3, 3])
     faces = one.faces
     if size < 0:
         faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])

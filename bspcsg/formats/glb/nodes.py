@@ -9,13 +9,12 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes
 from ...attributes.joining import MeshPart, concatenated
+from ..placing import SingleArray
 from ..raw import compacted
 from .container import Container
 from .said import Named, materials_of, read_columns
 
 _Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
-
-SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
 #: Modes of primitives that are triangles.
 _TRIANGLES, _STRIP = 4, 5

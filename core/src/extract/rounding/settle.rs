@@ -519,15 +519,15 @@ mod tests {
 
     #[test]
     fn what_the_map_has_laid_on_each_other_is_told_and_left_alone() {
-        let before = row(6);
-        let apart = |p: &Point| [16.0 * p[0], p[1], p[2]];
-        let before = before.vertices.iter().map(apart).collect::<Vec<Point>>();
+        let mut before = row(6);
         let mut moved = row(6);
-        for p in &mut moved.vertices {
-            p[0] = p[0].rem_euclid(3.5);
+        for (k, v) in (0..24).map(|v| (f64::from(v / 4), v as usize)) {
+            before.vertices[v][0] += k;
+            moved.vertices[v][0] -= 3.5 * k;
         }
+        assert!(all_faults(&before.faces()).is_empty());
         let triangles = moved.triangles.clone();
-        let settled = settle_moved(&mut moved, &before, Pitch::DEFAULT);
+        let settled = settle_moved(&mut moved, &before.vertices, Pitch::DEFAULT);
         assert!(settled.left.crossings.len() > triangles.len() && settled.mended.is_empty());
         assert_eq!(moved.triangles, triangles);
     }
