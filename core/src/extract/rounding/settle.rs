@@ -521,7 +521,8 @@ mod tests {
     fn what_the_map_has_laid_on_each_other_is_told_and_left_alone() {
         let mut before = row(6);
         let mut moved = row(6);
-        for (k, v) in (0..24).map(|v| (f64::from(v / 4), v as usize)) {
+        for v in 0..24 {
+            let k = f64::from(as_number(v / 4));
             before.vertices[v][0] += k;
             moved.vertices[v][0] -= 3.5 * k;
         }
