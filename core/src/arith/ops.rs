@@ -13,18 +13,21 @@ impl<const N: usize> Add for Int<N> {
 
     #[inline]
     fn add(self, other: Self) -> Self {
+        let (ours, theirs) = (self.limbs(), other.limbs());
         let mut limbs = [0; N];
         let mut carry = false;
-        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs().iter().zip(other.limbs())) {
-            (*limb, carry) = carrying_add(a, b, carry);
+        // A loop over places is unrolled, and none over three iterators at once.
+        let mut i = 0;
+        while i < N {
+            (limbs[i], carry) = carrying_add(ours[i], theirs[i], carry);
+            i += 1;
         }
-        let sum = Self::from_limbs(limbs);
+        let (a, b, c) = (ours[N - 1], theirs[N - 1], limbs[N - 1]);
         // The signs of both terms differ from the sum's.
-        let [a, b, c] = [self, other, sum].map(|x| x.limbs()[N - 1]);
         if ((a ^ c) & (b ^ c)).cast_signed() < 0 {
             exceeds("a sum", N);
         }
-        sum
+        Self::from_limbs(limbs)
     }
 }
 
@@ -33,18 +36,21 @@ impl<const N: usize> Sub for Int<N> {
 
     #[inline]
     fn sub(self, other: Self) -> Self {
+        let (ours, theirs) = (self.limbs(), other.limbs());
         let mut limbs = [0; N];
         let mut borrow = false;
-        for (limb, (&a, &b)) in limbs.iter_mut().zip(self.limbs().iter().zip(other.limbs())) {
-            (*limb, borrow) = borrowing_sub(a, b, borrow);
+        // A loop over places is unrolled, and none over three iterators at once.
+        let mut i = 0;
+        while i < N {
+            (limbs[i], borrow) = borrowing_sub(ours[i], theirs[i], borrow);
+            i += 1;
         }
-        let difference = Self::from_limbs(limbs);
+        let (a, b, c) = (ours[N - 1], theirs[N - 1], limbs[N - 1]);
         // The terms differ in sign, and the difference is on the wrong side.
-        let [a, b, c] = [self, other, difference].map(|x| x.limbs()[N - 1]);
         if ((a ^ b) & (a ^ c)).cast_signed() < 0 {
             exceeds("a difference", N);
         }
-        difference
+        Self::from_limbs(limbs)
     }
 }
 

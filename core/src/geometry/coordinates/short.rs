@@ -24,9 +24,31 @@ pub(super) fn meet(a: &ShortPlane, b: &ShortPlane, c: &ShortPlane) -> Option<Hom
 /// The meet of a lattice edge's line with a plane; `None` if they are parallel.
 pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &ShortPlane) -> Option<Homogeneous<4>> {
     let (va, vb) = (cut.value_at(a), cut.value_at(b));
+    if let (Ok(va), Ok(vb)) = (i64::try_from(va), i64::try_from(vb)) {
+        return on_edge_by_words(a, va, b, vb);
+    }
     let (from, to) = (wide(va), wide(vb));
     let x = |i: usize| -> Int<4> { to.mul_i64(a[i]) - from.mul_i64(b[i]) };
     Homogeneous::positive([x(0), x(1), x(2)], Int::from_i128(vb - va))
+}
+
+/// The point of a line at which a plane is zero, from two lattice points and its values there, as
+/// cuts across axes have them.
+///
+/// # Bits
+/// Each coordinate is a difference of two products of a value in a machine word and a lattice
+/// coordinate: below 2^118.
+fn on_edge_by_words(a: &Lattice, va: i64, b: &Lattice, vb: i64) -> Option<Homogeneous<4>> {
+    let w = i128::from(vb) - i128::from(va);
+    let x = |i: usize| {
+        let x = product(vb, a[i]) - product(va, b[i]);
+        Int::from_i128(if w < 0 { -x } else { x })
+    };
+    let x = [x(0), x(1), x(2)];
+    (w != 0).then_some(Homogeneous {
+        x,
+        w: Int::from_i128(w.abs()),
+    })
 }
 
 /// The axis and the offset of a plane across an axis with a lead of one or two, as cuts have.
