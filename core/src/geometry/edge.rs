@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 
 use super::plane::{normal, Lattice, Plane};
 use super::side::Side;
+use crate::arith::Sign;
 
 /// The corners of a face, in order.
 pub type Ring = SmallVec<[Lattice; 3]>;
@@ -70,6 +71,18 @@ impl LatticeEdge {
     pub fn line_holds(&self, place: &Lattice) -> bool {
         let (a, b) = self.ends();
         normal(a, b, place) == [0; 3]
+    }
+
+    /// The sign at a lattice point of the plane through the edge along an axis.
+    ///
+    /// # Bits
+    /// Steps between lattice points are below 2^54, and a sum of two products of them below 2^110.
+    pub fn sign_beside(&self, place: &Lattice, axis: usize) -> Sign {
+        let (a, b) = self.ends();
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let product = |p: i64, q: i64| i128::from(p) * i128::from(q);
+        let value = product(b[v] - a[v], place[u] - a[u]) + product(a[u] - b[u], place[v] - a[v]);
+        Sign::of(value)
     }
 
     /// The same edge run backwards.

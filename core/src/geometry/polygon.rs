@@ -53,6 +53,19 @@ impl Carrier {
         }
     }
 
+    /// Return whether no corner of a polygon in a support lies on the inner side of this edge.
+    fn has_beyond(&self, support: &Plane, corners: &[Corner]) -> bool {
+        let axis = support.main_axis();
+        let (turned, side): (bool, &dyn Fn(&Vertex) -> Side) = match self {
+            Self::Edge(edge) => (support.normal()[axis] < 0, &|at| {
+                at.side_of_edge(edge, axis)
+            }),
+            Self::Cut(plane, plus) => (*plus, &|at| at.side_of(plane)),
+        };
+        let inner = if turned { Side::Plus } else { Side::Minus };
+        corners.iter().all(|corner| side(&corner.at) != inner)
+    }
+
     /// Return whether this is the border of the universe, which cuts half-spaces off and nothing
     /// else.
     pub fn is_border(&self) -> bool {
@@ -386,11 +399,8 @@ impl Polygon {
     }
 
     fn has_beyond_an_edge(&self, other: &Self) -> bool {
-        self.corners.iter().any(|corner| {
-            let rim = corner.edge.rim(&self.support);
-            let mut corners = other.corners.iter();
-            corners.all(|c| c.at.side_of(&rim) != Side::Minus)
-        })
+        let mut edges = self.corners.iter().map(|corner| &corner.edge);
+        edges.any(|edge| edge.has_beyond(&self.support, &other.corners))
     }
 
     /// A box of doubles around the polygon, widened by the rounding of its corners.

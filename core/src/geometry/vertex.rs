@@ -159,6 +159,39 @@ impl Vertex {
         }
     }
 
+    /// The side on which the point lies of the plane through a lattice edge along an axis.
+    pub fn side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Side {
+        let (a, b) = edge.ends();
+        match &self.place {
+            Place::Lattice(p) => Side::from_sign(edge.sign_beside(p, axis)),
+            _ => match self.near_side_of_edge(edge, axis) {
+                Filtered::Certain(side) => side,
+                Filtered::Doubtful => self.side_of(&Plane::beside_edge(a, b, axis)),
+            },
+        }
+    }
+
+    /// The same where doubles tell it.
+    ///
+    /// Coordinates carry one rounding, products of them with a lattice point's two, differences three
+    /// and the edge's steps one: five relative to the sizes of what is subtracted, and three more for
+    /// the products and their sum.
+    fn near_side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Filtered<Side> {
+        let (a, b) = edge.ends();
+        let w = self.approx[3];
+        let term = |i: usize, step: i64| {
+            let from = as_double(a[i]) * w;
+            let step = as_double(step);
+            let size = step.abs() * (self.approx[i].abs() + from.abs());
+            (step * (self.approx[i] - from), size)
+        };
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (first, second) = (term(u, b[v] - a[v]), term(v, a[u] - b[u]));
+        let value = first.0 + second.0;
+        let side = if value > 0.0 { Side::Plus } else { Side::Minus };
+        Filtered::when(value.abs() > (first.1 + second.1) * FILTER, side)
+    }
+
     /// The plane's value here times a positive number, in doubles, and a bound of its error.
     pub fn near_value(&self, plane: &Plane) -> (f64, f64) {
         let a = plane.approx();
@@ -312,4 +345,35 @@ fn meet_on_lattice(planes: [&Plane; 3]) -> Option<Lattice> {
         point[axis] = Some(plane.lattice_coordinate(axis)?);
     }
     Some([point[0]?, point[1]?, point[2]?])
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Points near each other, and points all over the lattice.
+    fn point() -> impl Strategy<Value = Lattice> {
+        const LIMIT: i64 = (1 << 53) - 1;
+        let coordinate = || prop_oneof![3 => -3i64..=3, 1 => -LIMIT..=LIMIT, 1 => Just(LIMIT)];
+        [coordinate(), coordinate(), coordinate()]
+    }
+
+    proptest! {
+        #[test]
+        fn points_lie_beside_edges_as_beside_the_planes_through_them(
+            [a, b, p, q] in [point(), point(), point(), point()], axis in 0..3usize, place in -4i64..=4,
+        ) {
+            let edge = LatticeEdge::new(a, b);
+            let plane = Plane::beside_edge(&a, &b, axis);
+            let cut = Arc::new(Plane::axis_cut(axis, place));
+            let crossing = Vertex::on_edge(&LatticeEdge::new(p, q), &cut);
+            // What doubles cannot tell: a point of the edge itself.
+            let own = Vertex::on_edge(&edge, &cut);
+            for at in [Some(Vertex::lattice(p)), crossing, own].into_iter().flatten() {
+                prop_assert_eq!(at.side_of_edge(&edge, axis), at.side_of(&plane));
+            }
+        }
+    }
 }
