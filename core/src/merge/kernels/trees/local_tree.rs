@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use crate::arith::convert::as_number;
+use crate::geometry::doubles::extent::Extent;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::geometry::side::{Half, Orientation, Side};
@@ -60,6 +61,8 @@ enum Child {
 struct LocalNode {
     cut: Arc<Plane>,
     children: [Child; 2],
+    /// A box around all fragments in its region.
+    extent: Extent,
 }
 
 /// A labelled autopartition.
@@ -69,14 +72,22 @@ pub struct LocalTree {
     labels: Vec<i32>,
 }
 
-/// One fragment of a node's coplanar set: it ties the labels on both sides of the node together.
-struct Link {
-    polygon: Polygon,
-    weight: i32,
+/// A fragment, or a piece of one, while a tree grows.
+struct Growing {
+    fragment: Weighted,
+    extent: Extent,
+}
+
+/// The fragments and pieces that are divided among nodes, which name them by their places.
+struct Nursery {
+    all: Vec<Growing>,
+    /// One fragment of each node's coplanar set: it ties the labels on both sides of the node together.
+    links: Vec<usize>,
+    open: Vec<Task>,
 }
 
 struct Task {
-    pieces: Vec<Weighted>,
+    pieces: Vec<usize>,
     parent: Option<(NodeId, usize)>,
 }
 
@@ -89,24 +100,20 @@ impl LocalTree {
             nodes: Vec::new(),
             labels: Vec::new(),
         };
-        let mut links = Vec::new();
-        let mut open = vec![Task {
-            pieces: fragments,
-            parent: None,
-        }];
-        while let Some(task) = open.pop() {
+        let mut nursery = Nursery::of(fragments);
+        while let Some(task) = nursery.open.pop() {
             poll();
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
                 Child::Leaf(Region(as_number(tree.labels.len()) - 1))
             } else {
-                tree.grow(task.pieces, &mut links, &mut open)
+                tree.grow(task.pieces, &mut nursery)
             };
             if let Some((node, side)) = task.parent {
                 tree.nodes[node.place()].children[side] = child;
             }
         }
-        tree.spread_labels(links, corner, label);
+        tree.spread_labels(&nursery, corner, label);
         tree
     }
 
@@ -131,37 +138,25 @@ impl LocalTree {
         }
     }
 
-    fn grow(
-        &mut self,
-        mut pieces: Vec<Weighted>,
-        links: &mut Vec<Link>,
-        open: &mut Vec<Task>,
-    ) -> Child {
+    fn grow(&mut self, mut pieces: Vec<usize>, nursery: &mut Nursery) -> Child {
         let node = NodeId::of(self.nodes.len());
+        let extents = pieces.iter().map(|piece| nursery.all[*piece].extent);
+        let extent = extents.reduce(|a, b| a.joined(&b));
         let pivot = pieces.swap_remove(pieces.len() / 2);
-        let cut = Arc::clone(pivot.polygon.support());
-        let (mut minus, mut plus) = (Vec::new(), Vec::new());
-        for piece in pieces {
-            if piece.polygon.support().coincides(&cut).is_none() {
-                divide(piece, &cut, &mut minus, &mut plus);
-            }
-        }
-        links.push(Link {
-            polygon: pivot.polygon,
-            weight: pivot.weight,
-        });
+        let cut = Arc::clone(nursery.all[pivot].fragment.polygon.support());
+        let [minus, plus] = nursery.divide(&pieces, &cut);
+        nursery.links.push(pivot);
         self.nodes.push(LocalNode {
             cut,
             children: [Child::Leaf(Region(0)); 2],
+            extent: extent.unwrap_or(nursery.all[pivot].extent),
         });
-        open.push(Task {
-            pieces: plus,
-            parent: Some((node, 1)),
-        });
-        open.push(Task {
-            pieces: minus,
-            parent: Some((node, 0)),
-        });
+        for (side, pieces) in [(1, plus), (0, minus)] {
+            nursery.open.push(Task {
+                pieces,
+                parent: Some((node, side)),
+            });
+        }
         Child::Node(node)
     }
 
@@ -169,15 +164,14 @@ impl LocalTree {
     ///
     /// The links connect all regions: each ties a region of a node's minus subtree to one of its
     /// plus subtree, and there is one link for every node.
-    fn spread_labels(&mut self, links: Vec<Link>, corner: &Lattice, label: i32) {
+    fn spread_labels(&mut self, nursery: &Nursery, corner: &Lattice, label: i32) {
         let mut neighbours: Vec<Vec<(Region, i32)>> = vec![Vec::new(); self.labels.len()];
-        for (node, link) in links.into_iter().enumerate() {
+        for (node, link) in self.nodes.iter().zip(&nursery.links) {
             poll();
-            let [minus, plus] = self.nodes[node].children;
-            let (below, polygon) = self.any_leaf(minus, link.polygon);
-            let (above, _) = self.any_leaf(plus, polygon);
-            neighbours[below.place()].push((above, -link.weight));
-            neighbours[above.place()].push((below, link.weight));
+            let Weighted { polygon, weight } = &nursery.all[*link].fragment;
+            let [below, above] = node.children.map(|child| self.leaf_beside(child, polygon));
+            neighbours[below.place()].push((above, -weight));
+            neighbours[above.place()].push((below, *weight));
         }
         let start = self.leaf_at(corner);
         let mut known = vec![false; self.labels.len()];
@@ -195,23 +189,23 @@ impl LocalTree {
         }
     }
 
-    /// A leaf that some piece of the polygon borders or lies in, and that piece.
-    fn any_leaf(&self, from: Child, polygon: Polygon) -> (Region, Polygon) {
-        let (mut at, mut polygon) = (from, polygon);
+    /// The leaf of a subtree that a polygon borders, or lies in, near its first corner.
+    ///
+    /// A point of the polygon near a corner, next to the edge that leaves it, lies in a plane only if
+    /// all of the polygon does.
+    fn leaf_beside(&self, from: Child, polygon: &Polygon) -> Region {
+        let corners = polygon.corners();
+        let nearest = [0, 1, corners.len() - 1].map(|i| &corners[i].at);
+        let mut at = from;
         loop {
             poll();
             let node = match at {
-                Child::Leaf(leaf) => return (leaf, polygon),
+                Child::Leaf(leaf) => return leaf,
                 Child::Node(node) => &self.nodes[node.place()],
             };
-            at = match polygon.split(&node.cut) {
-                PolygonSplit::Plus => node.children[1],
-                PolygonSplit::Minus | PolygonSplit::Coplanar => node.children[0],
-                PolygonSplit::Both(minus, _) => {
-                    polygon = minus;
-                    node.children[0]
-                }
-            };
+            let sides = nearest.iter().map(|corner| corner.side_of(&node.cut));
+            let side = sides.into_iter().find(|side| *side != Side::On);
+            at = node.children[usize::from(side == Some(Side::Plus))];
         }
     }
 
@@ -248,22 +242,19 @@ impl LocalTree {
         let mut open = vec![(self.root(), polygon)];
         while let Some((at, polygon)) = open.pop() {
             poll();
-            let node = match at {
-                Child::Leaf(leaf) => {
+            let (polygon, ended) = self.descend(at, polygon, &mut open);
+            match ended {
+                Ended::Within(leaf) => {
                     let label = self.labels[leaf.place()];
                     found.push(Sided {
                         polygon,
                         minus: label,
                         plus: label,
                     });
-                    continue;
                 }
-                Child::Node(node) => &self.nodes[node.place()],
-            };
-            if let Some(orientation) = polygon.support().coincides(&node.cut) {
-                self.coplanar_sides(node, polygon, orientation, &mut found);
-            } else {
-                descend(polygon, node, &mut open);
+                Ended::Coplanar(node, orientation) => {
+                    self.coplanar_sides(node, polygon, orientation, &mut found);
+                }
             }
         }
         found
@@ -298,44 +289,116 @@ impl LocalTree {
         let mut found = Vec::new();
         let mut open = vec![(from, polygon)];
         while let Some((at, polygon)) = open.pop() {
-            match at {
-                Child::Leaf(leaf) => found.push((polygon, self.labels[leaf.place()])),
-                Child::Node(node) => descend(polygon, &self.nodes[node.place()], &mut open),
+            poll();
+            let (polygon, ended) = self.descend(at, polygon, &mut open);
+            if let Ended::Within(leaf) = ended {
+                found.push((polygon, self.labels[leaf.place()]));
             }
         }
         found
     }
-}
 
-fn descend(polygon: Polygon, node: &LocalNode, open: &mut Vec<(Child, Polygon)>) {
-    poll();
-    match polygon.split(&node.cut) {
-        PolygonSplit::Minus | PolygonSplit::Coplanar => open.push((node.children[0], polygon)),
-        PolygonSplit::Plus => open.push((node.children[1], polygon)),
-        PolygonSplit::Both(minus, plus) => {
-            open.push((node.children[1], plus));
-            open.push((node.children[0], minus));
+    /// Push a polygon down a subtree to where its labels are known; what is cut off waits.
+    ///
+    /// Where no fragment of the subtree is near, all of the polygon has the labels of any leaf that it
+    /// borders.
+    fn descend(
+        &self,
+        from: Child,
+        polygon: Polygon,
+        open: &mut Vec<(Child, Polygon)>,
+    ) -> (Polygon, Ended<'_>) {
+        let (mut at, mut polygon) = (from, polygon);
+        let mut extent = extent(&polygon);
+        loop {
+            poll();
+            let node = match at {
+                Child::Leaf(leaf) => return (polygon, Ended::Within(leaf)),
+                Child::Node(node) => &self.nodes[node.place()],
+            };
+            if extent.misses(&node.extent) {
+                let leaf = self.leaf_beside(at, &polygon);
+                return (polygon, Ended::Within(leaf));
+            }
+            if let Some(orientation) = polygon.support().coincides(&node.cut) {
+                return (polygon, Ended::Coplanar(node, orientation));
+            }
+            at = match polygon.split(&node.cut) {
+                PolygonSplit::Minus | PolygonSplit::Coplanar => node.children[0],
+                PolygonSplit::Plus => node.children[1],
+                PolygonSplit::Both(minus, plus) => {
+                    open.push((node.children[1], plus));
+                    polygon = minus;
+                    extent = self::extent(&polygon);
+                    node.children[0]
+                }
+            };
         }
     }
 }
 
-fn divide(piece: Weighted, cut: &Arc<Plane>, minus: &mut Vec<Weighted>, plus: &mut Vec<Weighted>) {
-    poll();
-    let weight = piece.weight;
-    match piece.polygon.split(cut) {
-        PolygonSplit::Minus | PolygonSplit::Coplanar => minus.push(piece),
-        PolygonSplit::Plus => plus.push(piece),
-        PolygonSplit::Both(below, above) => {
-            minus.push(Weighted {
-                polygon: below,
-                weight,
-            });
-            plus.push(Weighted {
-                polygon: above,
-                weight,
-            });
+/// The place where the way of a polygon down a tree ends.
+enum Ended<'t> {
+    /// In a leaf, or somewhere with labels as in that leaf.
+    Within(Region),
+    /// At a node in whose plane it lies.
+    Coplanar(&'t LocalNode, Orientation),
+}
+
+impl Nursery {
+    fn of(fragments: Vec<Weighted>) -> Self {
+        let all: Vec<Growing> = fragments.into_iter().map(Growing::of).collect();
+        let first = Task {
+            pieces: (0..all.len()).collect(),
+            parent: None,
+        };
+        Self {
+            all,
+            links: Vec::new(),
+            open: vec![first],
         }
     }
+
+    /// The pieces on either side of a plane; those that lie in it are left out.
+    fn divide(&mut self, pieces: &[usize], cut: &Arc<Plane>) -> [Vec<usize>; 2] {
+        let (mut minus, mut plus) = (Vec::new(), Vec::new());
+        for &piece in pieces {
+            poll();
+            let Weighted { polygon, weight } = &self.all[piece].fragment;
+            if polygon.support().coincides(cut).is_some() {
+                continue;
+            }
+            match polygon.split(cut) {
+                PolygonSplit::Minus | PolygonSplit::Coplanar => minus.push(piece),
+                PolygonSplit::Plus => plus.push(piece),
+                PolygonSplit::Both(below, above) => {
+                    let part = |polygon: Polygon| {
+                        let weight = *weight;
+                        Growing::of(Weighted { polygon, weight })
+                    };
+                    let (below, above) = (part(below), part(above));
+                    minus.push(piece);
+                    plus.push(self.all.len());
+                    self.all[piece] = below;
+                    self.all.push(above);
+                }
+            }
+        }
+        [minus, plus]
+    }
+}
+
+impl Growing {
+    fn of(fragment: Weighted) -> Self {
+        let extent = extent(&fragment.polygon);
+        Self { fragment, extent }
+    }
+}
+
+/// A box around a polygon.
+pub(super) fn extent(polygon: &Polygon) -> Extent {
+    let (low, high) = polygon.bounds();
+    Extent { low, high }
 }
 
 #[cfg(test)]

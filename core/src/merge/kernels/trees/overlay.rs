@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use super::local_tree::extent;
+use crate::geometry::doubles::extent::Extent;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::geometry::side::Orientation;
@@ -49,24 +51,19 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
 /// A fragment with a box around it.
 struct Placed {
     fragment: Fragment,
-    low: [f64; 3],
-    high: [f64; 3],
+    extent: Extent,
 }
 
 impl Placed {
     fn of(fragment: Fragment) -> Self {
-        let (low, high) = fragment.polygon.bounds();
-        Self {
-            fragment,
-            low,
-            high,
-        }
+        let extent = extent(&fragment.polygon);
+        Self { fragment, extent }
     }
 
     /// Return whether two fragments of one plane have no area in common.
     fn lies_beside(&self, other: &Self) -> bool {
-        let clear = (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]);
-        clear || self.fragment.polygon.lies_beside(&other.fragment.polygon)
+        self.extent.misses(&other.extent)
+            || self.fragment.polygon.lies_beside(&other.fragment.polygon)
     }
 }
 
