@@ -17,7 +17,7 @@ use crate::interrupt::poll;
 use crate::merge::expression::Expression;
 use crate::merge::rule::Rule;
 use crate::tree::node::{Node, Work};
-use local_tree::LocalTree;
+use local_tree::{LocalTree, Sided};
 pub use operand::LeafTree;
 use operand::Operand;
 pub(in crate::merge) use overlay::{disjoint, Fragment};
@@ -98,20 +98,24 @@ fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> V
 impl Piece {
     fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
         poll();
-        let (minus, plus) = (self.minus, self.plus);
-        let with = |labels: &Vec<bool>, w: i32| {
-            let mut labels = labels.clone();
-            labels.push(rule.inside(w));
-            labels
-        };
-        tree.sides(self.polygon)
-            .into_iter()
-            .map(|s| Self {
+        let mut sided = tree.sides(self.polygon);
+        // One piece, as most are left, keeps the memory of the labels.
+        let last = sided.pop();
+        let labelled = |s: Sided, mut minus: Vec<bool>, mut plus: Vec<bool>| {
+            minus.push(rule.inside(s.minus));
+            plus.push(rule.inside(s.plus));
+            Self {
                 polygon: s.polygon,
-                minus: with(&minus, s.minus),
-                plus: with(&plus, s.plus),
-            })
-            .collect()
+                minus,
+                plus,
+            }
+        };
+        let others = sided.into_iter();
+        let mut pieces: Vec<Self> = others
+            .map(|s| labelled(s, self.minus.clone(), self.plus.clone()))
+            .collect();
+        pieces.extend(last.map(|s| labelled(s, self.minus, self.plus)));
+        pieces
     }
 
     /// Return whether this operand is the first whose label differs on the two sides: it owns the
