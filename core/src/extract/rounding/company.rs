@@ -38,6 +38,10 @@ const FEW: usize = 256;
 /// which are near costs more than it saves.
 const MOST: usize = 4;
 
+/// The most cells that a triangle is marked in, on average: comparing it with its neighbours costs as
+/// much. A grid of four cells along an axis has no more.
+const SPREAD: usize = 64;
+
 /// Triangles that one thread looks through: some milliseconds of work, above what marks of its own
 /// cost.
 const SHARE: usize = 1 << 17;
@@ -102,31 +106,61 @@ impl<'a> Others<'a> {
 
     /// Those in a cell with one that is left out, or with one of another party.
     fn near(self, faces: &Faces, party: impl Fn(u32) -> u32 + Sync + Send) -> Vec<(u32, u32)> {
-        let Some(grid) = Grid::around(faces) else {
+        let Some(mut grid) = Grid::around(faces) else {
             return Vec::new();
         };
+        loop {
+            let places = Places::of(faces, grid);
+            if let Some(marks) = self.marks(&places, &party) {
+                let near = each(self.shares(), |share| {
+                    let shared = |t: &u32| marks.is_shared(places.corners(*t));
+                    let near = self.within(share).filter(shared);
+                    near.map(|t| (party(t), t)).collect::<Vec<_>>()
+                });
+                return near.concat();
+            }
+            grid = grid.coarser();
+        }
+    }
+
+    /// The marks of all triangles; `None` if they reach into more cells than are worth marking.
+    fn marks(self, places: &Places, party: impl Fn(u32) -> u32 + Sync + Send) -> Option<Marks> {
+        let marked = each(self.shares(), |share| {
+            let mut marks = places.grid.marks(share.len());
+            let mark = |t: u32| marks.mark(places.corners(t), party(t) + 1);
+            self.within(share).try_for_each(mark).map(|()| marks)
+        });
+        let mut all = places.grid.marks(self.some.len());
+        for marks in marked {
+            all = all.joined(marks?);
+        }
+        let mut some = self.some.iter();
+        some.try_for_each(|t| all.mark(places.corners(*t), SHARED))?;
+        Some(all)
+    }
+}
+
+/// The cells of a grid in which the corners of triangles lie.
+struct Places<'a> {
+    faces: &'a Faces<'a>,
+    grid: Grid,
+    /// Of the vertices.
+    cells: Vec<Cell>,
+}
+
+impl<'a> Places<'a> {
+    fn of(faces: &'a Faces, grid: Grid) -> Self {
         let mut cells = vec![0; faces.vertices.len()];
         fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
             for (place, cell) in places.iter().zip(cells) {
                 *cell = grid.cell(place);
             }
         });
-        let corners = |t: u32| faces.triangles[t as usize].map(|v| cells[v.place()]);
-        let marked = each(self.shares(), |share| {
-            let mut marks = grid.marks();
-            self.within(share)
-                .for_each(|t| marks.mark(corners(t), party(t) + 1));
-            marks
-        });
-        let mut marks = marked.into_iter().fold(grid.marks(), Marks::joined);
-        for t in self.some {
-            marks.mark(corners(*t), SHARED);
-        }
-        let near = each(self.shares(), |share| {
-            let near = self.within(share).filter(|t| marks.is_shared(corners(*t)));
-            near.map(|t| (party(t), t)).collect::<Vec<_>>()
-        });
-        near.concat()
+        Self { faces, grid, cells }
+    }
+
+    fn corners(&self, triangle: u32) -> [Cell; 3] {
+        self.faces.triangles[triangle as usize].map(|v| self.cells[v.place()])
     }
 }
 
@@ -137,6 +171,8 @@ const SHARED: u32 = u32::MAX;
 struct Marks {
     grid: Grid,
     of_cells: Vec<u32>,
+    /// So many more may be set, about.
+    left: usize,
 }
 
 impl Marks {
@@ -148,12 +184,17 @@ impl Marks {
         self
     }
 
-    fn mark(&mut self, corners: [Cell; 3], party: u32) {
+    /// Marks the cells that a triangle may meet; `None` if these are more than may be set.
+    fn mark(&mut self, corners: [Cell; 3], party: u32) -> Option<()> {
         let of_cells = &mut self.of_cells;
+        let mut set = 0;
         self.grid.visit(corners, |cell| {
             of_cells[cell] = joint(of_cells[cell], party);
+            set += 1;
             true
         });
+        self.left = self.left.checked_sub(set)?;
+        Some(())
     }
 
     fn is_shared(&self, corners: [Cell; 3]) -> bool {
@@ -211,11 +252,19 @@ impl Grid {
         })
     }
 
-    /// A mark for each cell, none set.
-    fn marks(self) -> Marks {
+    /// The same with half as many cells along each axis.
+    fn coarser(mut self) -> Self {
+        self.bits -= 1;
+        self.factor = self.factor.map(|x| x / 2.0);
+        self
+    }
+
+    /// A mark for each cell, none set, for so many triangles.
+    fn marks(self, triangles: usize) -> Marks {
         Marks {
             grid: self,
             of_cells: vec![0; 1 << (3 * self.bits)],
+            left: SPREAD * triangles,
         }
     }
 
@@ -276,6 +325,36 @@ mod tests {
         }
         let triangles = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
         (vertices, VertexId::rows(triangles))
+    }
+
+    /// Needles across a cube, side by side.
+    fn needles(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
+        let needle = |k: u32| {
+            let [low, high] = [k, k + 1].map(|k| f64::from(k) / f64::from(count));
+            [[0.0, 0.0, low], [1.0, 1.0, low], [0.0, 0.0, high]]
+        };
+        let triangles = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+        (
+            (0..count).flat_map(needle).collect(),
+            VertexId::rows(triangles),
+        )
+    }
+
+    #[test]
+    fn needles_are_marked_in_few_cells_each() {
+        let (vertices, triangles) = needles(20_000);
+        let faces = Faces {
+            vertices: &vertices,
+            triangles: &triangles,
+        };
+        let others = Others {
+            some: &[0],
+            count: triangles.len(),
+        };
+        let grid = Grid::around(&faces).expect("vertices");
+        assert!(others.marks(&Places::of(&faces, grid), |_| 0).is_none());
+        let company = in_company(&faces, &[0], |_| 0);
+        assert!(company.contains(&(0, 1)) && company.len() < others.count);
     }
 
     #[test]
