@@ -47,6 +47,11 @@ def compare(solid: "b.Solid", expect: dict[str, Any]) -> None:
     if not solid.is_bounded:
         assert not expect
         return
+    if expect.pop("thinner_than_doubles", False):
+        assert not len(solid.to_mesh().faces)
+        assert "mended" in {finding.code for finding in solid.findings}
+        assert solid.volume_exact == Fraction(expect.pop("volume")) > 0 and not expect
+        return
     mesh = assert_sound(solid)
     found = {
         "volume": solid.volume_exact,

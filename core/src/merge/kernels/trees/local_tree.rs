@@ -291,8 +291,10 @@ impl LocalTree {
         while let Some((at, polygon)) = open.pop() {
             poll();
             let (polygon, ended) = self.descend(at, polygon, &mut open);
-            if let Ended::Within(leaf) = ended {
-                found.push((polygon, self.labels[leaf.place()]));
+            match ended {
+                Ended::Within(leaf) => found.push((polygon, self.labels[leaf.place()])),
+                // What lies in a node's plane is no fragment of its subtrees.
+                Ended::Coplanar(node, _) => open.push((node.children[0], polygon)),
             }
         }
         found
