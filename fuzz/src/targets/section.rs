@@ -83,19 +83,31 @@ fn assert_inside_section(
         let Some(turns) = turns_around(edges, flat, flat(&point)) else {
             continue;
         };
-        let inside = |point: &Lattice| holds(scene, &Place::beside(point, steps));
+        let inside_beside = |point: &Lattice, steps| holds(scene, &Place::beside(point, steps));
+        let inside = |point: &Lattice| inside_beside(point, steps);
         let Some(expected) = inside(&point) else {
             continue;
         };
         let found = turns > 0;
-        // What is smaller than a step is rounded to a point, of which no edge is left.
-        let lost = || {
-            let mut around = [i, j].into_iter().flat_map(|k| {
-                [-SMALL, SMALL]
-                    .map(|step| [0, 1, 2].map(|l| point[l] + if l == k { step } else { 0 }))
-            });
-            around.all(|beside| inside(&beside) == Some(found))
+        // What is smaller than a step is rounded to a point, of which no edge is left: each way it ends
+        // within two steps, and others may begin behind it.
+        let ends = |k: usize, sign: i64| {
+            (0..=SMALL).any(|n| {
+                let at = [0, 1, 2].map(|l| point[l] + if l == k { sign * n } else { 0 });
+                let sides: &[i64] = if n == 0 { &[sign] } else { &[-1, 1] };
+                sides.iter().any(|side| {
+                    let aside = steps.map(|step| {
+                        if step[k] == 0 {
+                            step
+                        } else {
+                            along(k, i128::from(*side))
+                        }
+                    });
+                    inside_beside(&at, aside) == Some(found)
+                })
+            })
         };
+        let lost = || [i, j].iter().all(|k| ends(*k, -1) && ends(*k, 1));
         assert!(found == expected || lost(), "{point:?} in {context}");
     }
 }
