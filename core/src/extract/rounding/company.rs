@@ -187,6 +187,12 @@ impl Marks {
     /// Marks the cells that a triangle may meet; `None` if these are more than may be set.
     fn mark(&mut self, corners: [Cell; 3], party: u32) -> Option<()> {
         let of_cells = &mut self.of_cells;
+        let [a, b, c] = corners;
+        if a == b && b == c {
+            let mark = &mut of_cells[usize::from(a)];
+            *mark = joint(*mark, party);
+            return Some(());
+        }
         let mut set = 0;
         self.grid.visit(corners, |cell| {
             of_cells[cell] = joint(of_cells[cell], party);

@@ -314,7 +314,10 @@ impl Sorted {
             let mesh = run.mesh;
             if run.is_most() {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
-                let code = |f: FaceId| mesh.vertices_of(f).map(|v| codes[v.place()]);
+                let code = |f: FaceId| {
+                    let vertices = mesh.vertices_of(f);
+                    each_axis(|i| codes[vertices[i].place()])
+                };
                 sorted.add(window, run, code);
             } else {
                 sorted.add(window, run, |f| mesh.corners(f).map(|p| window.code(&p)));

@@ -117,7 +117,7 @@ impl Window {
     /// The number of the cell with this code; `None` beyond the window.
     #[inline]
     pub fn index_of(&self, code: u32) -> Option<u32> {
-        let at = [20, 10, 0].map(|shift| ((code >> shift) & 0x3ff).cast_signed() - 1);
+        let at = each_axis(|i| ((code >> (20 - 10 * i)) & 0x3ff).cast_signed() - 1);
         let inside = (0..3).all(|i| (0..self.count[i]).contains(&at[i]));
         inside.then(|| as_number(self.index(at)))
     }
