@@ -34,6 +34,23 @@ def at_pitch(tree: Tree, pitch: int) -> Tree:
         return tree.refined(pitch)
 
 
+class LastMoved:
+    """What a leaf became when its coordinates were last moved: copies of it share that."""
+
+    def __init__(self) -> None:
+        self._last: tuple[FactorChain, ExpressionLeaf] | None = None
+
+    def get(self, factors: FactorChain) -> "ExpressionLeaf | None":
+        """Return the leaf moved by these factors, if they were the last."""
+        last = self._last
+        return last[1] if last is not None and last[0] == factors else None
+
+    def keep(self, factors: FactorChain, moved: "ExpressionLeaf") -> "ExpressionLeaf":
+        """Remember a moved leaf in place of the last; return it."""
+        self._last = (factors, moved)
+        return moved
+
+
 class MeshLeaf:
     """A mesh as it was given.
 
@@ -70,6 +87,7 @@ class MeshLeaf:
         self._before: FloatArray | None = None
         self._given_pitch = pitch
         self._is_mended = False
+        self.last_moved = LastMoved()
 
     @property
     def pitch(self) -> int | None:
@@ -184,6 +202,7 @@ class TreeLeaf:
     record: Record | None = None
     extent: "Extent" = None
     sayings: "Sayings" = ()
+    last_moved: LastMoved = field(default_factory=LastMoved, init=False, repr=False)
 
     @property
     def pitch(self) -> int | None:
@@ -457,9 +476,9 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
 def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     """Move a leaf: exactly by the outer factors that allow it, by coordinates for the rest."""
     inner = factors.inner
-    base = (yield from _transforming(leaf, inner)) if inner else leaf
     if len(inner) == len(factors):
-        return base
+        return (yield from _transforming(leaf, factors)) if factors else leaf
+    base = (yield from _base(leaf, inner)) if inner else leaf
     motion = factors.outer_motion(_common_pitch([base]))
     if motion is None:
         return (yield from _transforming(leaf, factors))
@@ -471,6 +490,14 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
         # off by the border of the universe, which does not move with it.
         return (yield from _transforming(leaf, factors))
+
+
+def _base(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
+    """Move the mesh of a leaf, once for all its placements by motions of the lattice."""
+    known = leaf.last_moved.get(factors)
+    if known is not None:
+        return known
+    return leaf.last_moved.keep(factors, (yield from _transforming(leaf, factors)))
 
 
 def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:

@@ -28,6 +28,7 @@ pub struct Source {
     blurred: Cached<Vec<VertexId>>,
     topology: Cached<Topology>,
     cell: Cached<Option<Cell>>,
+    snapped: [Cached<bool>; 8],
     findings: Vec<Finding>,
 }
 
@@ -61,6 +62,7 @@ impl Source {
             blurred: Cached::new(),
             topology: Cached::new(),
             cell: Cached::new(),
+            snapped: Default::default(),
             findings,
         }
     }
@@ -211,6 +213,13 @@ impl Source {
             Some(mesh) if self.is_welded() => self.blurred.get_or_make(|| mesh.blurred()),
             _ => &[],
         }
+    }
+
+    /// Whether it crosses itself once its doubles along some axes are those of the lattice, as soon as
+    /// somebody has looked.
+    pub fn crosses_once_snapped(&self, axes: [bool; 3]) -> &Cached<bool> {
+        let [x, y, z] = axes.map(usize::from);
+        &self.snapped[x + 2 * y + 4 * z]
     }
 
     /// The half-edges' mates, paired on first use; `None` for a half-space.

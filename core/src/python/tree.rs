@@ -501,7 +501,8 @@ impl Tree {
     fn moved(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<Self> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
         self.run(py, "moved", 0, self.size(), || {
-            self.mapped(&motion, self.solid.pitch())
+            let data = Snapshot::movable(&self.solid, &motion)?;
+            mapped(&data, &motion, self.solid.pitch())
         })
     }
 
@@ -523,7 +524,7 @@ impl Tree {
             ..Motion::IDENTITY
         };
         self.run(py, "refined", 0, self.size(), || {
-            self.mapped(&motion, finer)
+            mapped(&Snapshot::of(&self.solid), &motion, finer)
         })
     }
 
@@ -568,11 +569,8 @@ impl Tree {
     }
 }
 
-impl Tree {
-    fn mapped(&self, motion: &Motion, pitch: Pitch) -> Result<Self> {
-        let image = Snapshot::of(&self.solid).moved(motion, pitch)?;
-        Ok(Self::of(image.solid()?))
-    }
+fn mapped(data: &Snapshot, motion: &Motion, pitch: Pitch) -> Result<Tree> {
+    Ok(Tree::of(data.moved(motion, pitch)?.solid()?))
 }
 
 fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {

@@ -12,6 +12,7 @@ use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::{collect, CutFace};
 use crate::extract::boundary::leaves::Fate;
+use crate::extract::rounding::snapping::crosses_once_snapped;
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
@@ -22,7 +23,9 @@ use crate::geometry::side::{Half, Orientation, Side};
 use crate::geometry::spaces::motion::Motion;
 use crate::geometry::vertex::{cross, Vertex};
 use crate::interrupt::poll;
+use crate::merge::evaluate::normalize;
 use crate::merge::lists::list::Sources;
+use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
 use crate::mesh::handle::{FaceId, Slot, VertexId};
 use crate::mesh::import::is_flat;
@@ -222,6 +225,29 @@ impl Snapshot {
         ))
     }
 
+    /// The data of a solid that a motion is going to move.
+    ///
+    /// A motion takes vertices to doubles of the lattice along axes on which it shifts them. If that
+    /// makes a mesh cross itself, the solid is united with itself, and its doubles are the lattice's
+    /// already.
+    ///
+    /// # Errors
+    /// `Internal`.
+    pub fn movable(solid: &Solid, motion: &Motion) -> Result<Self> {
+        let mut axes = [false; 3];
+        for ((axis, _), shift) in motion.axes.iter().zip(motion.shift) {
+            axes[*axis] = shift != 0;
+        }
+        if !crosses_once_snapped(solid, axes) {
+            return Ok(Self::of(solid));
+        }
+        let mut data = Self::of(&normalize(solid, Rule::Positive)?);
+        for source in &mut data.sources {
+            source.snap(solid.pitch());
+        }
+        Ok(data)
+    }
+
     /// The image under a motion of the lattice, on a lattice of the given pitch.
     ///
     /// # Errors
@@ -356,6 +382,18 @@ impl SourceData {
             }
         };
         Ok(Source::new(pitch, shape, Vec::new()))
+    }
+
+    /// Takes the doubles of vertices to those of the lattice.
+    fn snap(&mut self, pitch: Pitch) {
+        if let Self::Mesh {
+            vertices, doubles, ..
+        } = self
+        {
+            for (place, double) in vertices.iter().zip(doubles) {
+                *double = place.map(|k| pitch.coordinate(k));
+            }
+        }
     }
 
     fn apply(&mut self, motion: &Motion, pitch: Pitch) -> Result<()> {

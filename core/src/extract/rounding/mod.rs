@@ -7,6 +7,7 @@ pub mod mend;
 pub mod places;
 pub mod round;
 pub mod settle;
+pub mod snapping;
 mod star;
 mod terrains;
 mod touching;

@@ -5,6 +5,7 @@ use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use super::company::{in_company, Faces};
 use super::crossings::{all_faults, faults, Faults};
 use super::mend::{Mending, Precision};
+use super::snapping::crossed;
 use crate::arith::convert::as_number;
 use crate::extract::mesh::edges;
 use crate::geometry::doubles::Point;
@@ -121,7 +122,11 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
     if found.crossings.is_empty() {
         return Settled::default();
     }
-    if mesh.crossed_before(&found, before) {
+    let earlier = Faces {
+        vertices: before,
+        triangles: &mesh.triangles,
+    };
+    if crossed(&earlier, &found) {
         let own = found;
         return Settled {
             own,
@@ -175,18 +180,6 @@ impl Rounded {
         let all = (0..as_number(self.triangles.len())).collect();
         let double = Precision::Double;
         settle(self, all, found, double, exact, |_| false, |_| 0)
-    }
-
-    /// Return whether triangles that cross others crossed some in these places, too.
-    fn crossed_before(&self, found: &Faults, before: &[Point]) -> bool {
-        let mut some: Vec<u32> = found.crossings.iter().flatten().copied().collect();
-        some.sort_unstable();
-        some.dedup();
-        let faces = Faces {
-            vertices: before,
-            triangles: &self.triangles,
-        };
-        !faults(&faces, &some, |_| 0).crossings.is_empty()
     }
 
     /// The triangles.
