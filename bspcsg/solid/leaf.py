@@ -137,6 +137,16 @@ class MeshLeaf:
         said = SaidMesh(*self.arrays(), self._attributes)
         return MeshLeaf.moved(said, factors, self._given_pitch, self._winding)
 
+    def touches_itself(self, motion: transform.LatticeMotion) -> bool:
+        """Return whether rounding has made it cross itself, or would where the motion takes it.
+
+        On the lattice it may touch itself still, and places of the lattice are rounded to doubles:
+        so its coordinates have to be moved and mended, not its tree.
+        """
+        tree = self.grown()
+        with core_errors():
+            return self._is_mended or tree.moving_crosses(list(motion.axes), list(motion.shift))
+
     @classmethod
     def moved(
         cls,
@@ -481,6 +491,8 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     base = (yield from _base(leaf, inner)) if inner else leaf
     motion = factors.outer_motion(_common_pitch([base]))
     if motion is None:
+        return (yield from _transforming(leaf, factors))
+    if isinstance(base, MeshLeaf) and base.touches_itself(motion):
         return (yield from _transforming(leaf, factors))
     try:
         with core_errors():

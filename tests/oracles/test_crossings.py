@@ -6,13 +6,14 @@ import pickle
 import random
 from fractions import Fraction
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
 
 import bspcsg as b
-from bspcsg._core import mesh_faults, mesh_in_single
+from bspcsg._core import mesh_faults, mesh_in_single, mesh_moved
 from bspcsg.formats.single import _rounded, settled
 from bspcsg.geometry.transform import apply, rotation
 from support import DEEP
@@ -346,6 +347,32 @@ def test_what_touches_itself_does_not_cross_once_it_is_moved(
             mesh = same.to_mesh()
             assert mesh.certificate.ok and not any(faults(mesh))
         assert moved.volume == pytest.approx(moved.normalized().volume, rel=1e-12)
+
+
+@pytest.mark.parametrize("solid", TOUCHING.values(), ids=TOUCHING)
+def test_what_touches_itself_does_not_cross_where_the_lattice_takes_it(solid: "b.Solid") -> None:
+    """A motion of the lattice takes what a rotation has rounded to places of the lattice."""
+    rng = np.random.default_rng(1)
+    for _ in range(100 if DEEP else 30):
+        turned = solid.rotate(rng.uniform(0, 360), rng.normal(size=3)).scale(rng.uniform(0.5, 2))
+        offset = rng.uniform(-100, 100, 3).round(2)
+        along = np.where(rng.random(3) < 0.5, offset, 0)
+        for moved in (turned.translate(offset), turned.mirror("x").translate(along)):
+            assert not moved.to_mesh().certificate.crossings
+            assert moved.volume == pytest.approx(turned.volume, rel=1e-6)
+
+
+def test_placements_of_a_turned_part_look_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[int] = []
+
+    def look(before: Any, vertices: Any, faces: Any, pitch: int) -> Any:
+        looks.append(len(faces))
+        return mesh_moved(before, vertices, faces, pitch)
+
+    monkeypatch.setattr("bspcsg.solid.moving.mesh_moved", look)
+    turned = b.box((1, 2, 3)).rotate(33, (1, 2, 3))
+    copies = [turned.translate(10 * k, 0.5, 0).to_mesh() for k in range(1000)]
+    assert looks == [12] and all(mesh.certificate.ok for mesh in copies)
 
 
 @pytest.mark.parametrize("solid", TOUCHING.values(), ids=TOUCHING)

@@ -234,11 +234,7 @@ impl Snapshot {
     /// # Errors
     /// `Internal`.
     pub fn movable(solid: &Solid, motion: &Motion) -> Result<Self> {
-        let mut axes = [false; 3];
-        for ((axis, _), shift) in motion.axes.iter().zip(motion.shift) {
-            axes[*axis] = shift != 0;
-        }
-        if !crosses_once_snapped(solid, axes) {
+        if !crosses_once_snapped(solid, motion.shifted()) {
             return Ok(Self::of(solid));
         }
         let mut data = Self::of(&normalize(solid, Rule::Positive)?);

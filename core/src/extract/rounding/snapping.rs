@@ -30,9 +30,12 @@ fn source_crosses(source: &Source, axes: [bool; 3]) -> bool {
 
 fn mesh_crosses(mesh: &TriangleMesh, source: &Source, axes: [bool; 3]) -> bool {
     let snapped = |(double, place): (&Point, &Lattice)| -> Point {
-        let coordinate = |i: usize| match axes[i] {
-            true => source.pitch().coordinate(place[i]),
-            false => double[i],
+        let coordinate = |i: usize| {
+            if axes[i] {
+                source.pitch().coordinate(place[i])
+            } else {
+                double[i]
+            }
         };
         [0, 1, 2].map(coordinate)
     };

@@ -26,6 +26,15 @@ impl Motion {
         scale: 1,
     };
 
+    /// Return for each old axis whether coordinates along it are shifted.
+    pub fn shifted(&self) -> [bool; 3] {
+        let mut shifted = [false; 3];
+        for ((axis, _), shift) in self.axes.iter().zip(self.shift) {
+            shifted[*axis] = shift != 0;
+        }
+        shifted
+    }
+
     /// The motion of a space of at most three dimensions: for each new axis the number of the old
     /// one, counted from 1, with its sign.
     ///
