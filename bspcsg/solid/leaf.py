@@ -35,7 +35,7 @@ def at_pitch(tree: Tree, pitch: int) -> Tree:
 
 
 class LastMoved:
-    """What a leaf became when its coordinates were last moved: copies of it share that."""
+    """A leaf as its coordinates were last moved: copies of it share that."""
 
     def __init__(self) -> None:
         self._last: tuple[FactorChain, ExpressionLeaf] | None = None

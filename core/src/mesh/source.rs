@@ -215,8 +215,8 @@ impl Source {
         }
     }
 
-    /// Whether it crosses itself once its doubles along some axes are those of the lattice, as soon as
-    /// somebody has looked.
+    /// The answer to whether it crosses itself once its doubles along some axes are those of the lattice,
+    /// once somebody has looked.
     pub fn crosses_once_snapped(&self, axes: [bool; 3]) -> &Cached<bool> {
         let [x, y, z] = axes.map(usize::from);
         &self.snapped[x + 2 * y + 4 * z]

@@ -1,4 +1,4 @@
-//! Whether meshes cross themselves once their doubles give way to those of the lattice.
+//! Meshes that cross themselves once their doubles give way to those of the lattice.
 //!
 //! A motion of the lattice keeps the doubles on axes along which it shifts nothing. On the others it
 //! snaps each vertex by itself, so that surfaces that touched may cross.
