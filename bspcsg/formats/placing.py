@@ -15,7 +15,7 @@ SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
 
 @dataclass(frozen=True, eq=False)
-class Placed:
+class PlacedMesh:
     """A mesh in its place in a file.
 
     Parameters
@@ -69,7 +69,7 @@ def _is_sum_exact(values: FloatArray, offset: float) -> bool:
     return bool((total - values == offset).all() and (total - offset == values).all())
 
 
-def placed(pieces: Sequence[Placed]) -> RawMesh:
+def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
     """Return meshes in their places as one, each an object of its name.
 
     Where placing made surfaces cross that did not before, they are mended by changes of the width
@@ -94,7 +94,7 @@ def placed(pieces: Sequence[Placed]) -> RawMesh:
     return _told(joined(meshes), meshes, crossing) if whole.is_mended else whole
 
 
-def _pitch_of(whole: RawMesh, pieces: Sequence[Placed]) -> int | None:
+def _pitch_of(whole: RawMesh, pieces: Sequence[PlacedMesh]) -> int | None:
     """Return the pitch that suits the whole, if there is something to mend and one that does."""
     if all(piece.before is None for piece in pieces):
         return None
@@ -104,7 +104,7 @@ def _pitch_of(whole: RawMesh, pieces: Sequence[Placed]) -> int | None:
         return None
 
 
-def _mended(pieces: Sequence[Placed], pitch: int) -> Mended | None:
+def _mended(pieces: Sequence[PlacedMesh], pitch: int) -> Mended | None:
     whole = joined([piece.mesh for piece in pieces])
     before = np.concatenate([piece.before for piece in pieces if piece.before is not None])
     return SaidMesh(whole.vertices, whole.faces, whole.attributes).mended(before, pitch)

@@ -181,7 +181,7 @@ class _Trial:
             yield f"mesh: its volume is {float(volume)}, the set's {float(exact)}"
 
     def _nothing_left(self, exact: Fraction) -> Any:
-        """Allow a mesh without triangles only of what is too thin for doubles, and if it is told."""
+        """Allow a mesh without triangles only of what is too thin for doubles, and if told."""
         delivered = self.result.normalized()
         delivered.to_mesh()
         is_told = any(finding.code == "mended" for finding in delivered.findings)

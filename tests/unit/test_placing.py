@@ -12,7 +12,7 @@ import pytest
 import bspcsg as b
 from bspcsg.formats.files import decoded
 from bspcsg.formats.glb import scene as glb
-from bspcsg.formats.placing import Placed, is_exact, placed
+from bspcsg.formats.placing import PlacedMesh, is_exact, placed
 from bspcsg.formats.raw import RawMesh
 from bspcsg.formats.scene import SceneNode
 from bspcsg.formats.solids import solid_of
@@ -130,7 +130,7 @@ def test_what_is_said_of_faces_stays_where_placing_is_mended() -> None:
     for _ in range(TURNS):
         matrix = some_matrix(rng)
         moved = replace(raw, vertices=transform.apply(matrix, raw.vertices))
-        found = placed([Placed(moved, raw.vertices, b"a map")])
+        found = placed([PlacedMesh(moved, raw.vertices, b"a map")])
         assert found.attributes is not None
         assert len(found.attributes.face["material"]) == len(found.faces)
         assert np.array_equal(found.attributes.faces, found.faces)
@@ -143,7 +143,7 @@ def test_what_a_map_lays_on_each_other_is_told_at_once() -> None:
     mesh = solid.to_mesh()
     flat = mesh.vertices * (1, 1, 1e-20) + (0, 0, 1)
     began = time.process_time()
-    found = placed([Placed(RawMesh(flat, mesh.faces, "part"), mesh.vertices, b"a map")])
+    found = placed([PlacedMesh(RawMesh(flat, mesh.faces, "part"), mesh.vertices, b"a map")])
     assert time.process_time() - began < 1
     (finding,) = found.findings
     assert (finding.code, finding.severity) == ("crossing", "warning")

@@ -17,7 +17,7 @@ from ...attributes.attributes import Attributes, Values
 from ...errors import Finding
 from ...mesh.mesh import Mesh
 from .. import single
-from ..placing import Placed, is_exact, placed
+from ..placing import PlacedMesh, is_exact, placed
 from ..raw import RawMesh, compacted, parts_of, says_empty_set
 from ..said import said_of
 from ..source import Source
@@ -60,7 +60,7 @@ def read(source: Source) -> RawMesh:
     return replace(mesh, findings=findings, unit="mm", dropped=container.dropped)
 
 
-def _placed(one: Shown) -> Placed:
+def _placed(one: Shown) -> PlacedMesh:
     """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
     placing = TO_MILLIMETRES @ one.matrix
     before = one.vertices.astype(np.float64)
@@ -74,7 +74,7 @@ def _placed(one: Shown) -> Placed:
     if size < 0:
         faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
     mesh = RawMesh(vertices, faces, one.name, attributes=said)
-    return Placed(mesh, None if keeps else before, placing.tobytes())
+    return PlacedMesh(mesh, None if keeps else before, placing.tobytes())
 
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:

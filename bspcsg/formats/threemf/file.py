@@ -16,7 +16,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...errors import Finding, FormatError
-from ..placing import Placed, is_exact, placed
+from ..placing import PlacedMesh, is_exact, placed
 from ..raw import RawMesh, empty_set
 from ..source import Source
 from .part import MILLIMETRES, ModelPart, PartReader, PlacedObject, parse_xml
@@ -225,7 +225,7 @@ def _moved(
     item: str,
     transforms: tuple[FloatArray, ...],
     picture: Callable[[str], bytes],
-) -> Placed:
+) -> PlacedMesh:
     """Return the mesh of an object under transforms; a mirrored one is turned right side out."""
     before, faces = part.objects[item].arrays()
     moving = [matrix for matrix in transforms if (matrix != np.eye(4, 3)).any()]
@@ -242,7 +242,7 @@ def _moved(
     mesh = RawMesh(vertices, faces, part.objects[item].name, attributes=said)
     keeps = keeps or any(np.linalg.det(matrix[:3]) == 0 for matrix in moving)
     map_ = b"".join(matrix.tobytes() for matrix in moving)
-    return Placed(mesh, None if keeps else before, map_)
+    return PlacedMesh(mesh, None if keeps else before, map_)
 
 
 def _image(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
