@@ -1,4 +1,4 @@
-"""Meshes that files place: each coordinate is rounded, and surfaces still do not cross."""
+"""Meshes that files place or units scale: what rounding makes cross is mended."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -78,7 +78,8 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
     """
     meshes = [piece.mesh for piece in pieces]
     whole = joined(meshes)
-    pitch = _pitch_of(whole, pieces)
+    is_rounded = any(piece.before is not None for piece in pieces)
+    pitch = _pitch_of(whole) if is_rounded else None
     if pitch is None:
         return whole
     together: dict[bytes, list[int]] = {}
@@ -94,10 +95,47 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
     return _told(joined(meshes), meshes, crossing) if whole.is_mended else whole
 
 
-def _pitch_of(whole: RawMesh, pieces: Sequence[PlacedMesh]) -> int | None:
-    """Return the pitch that suits the whole, if there is something to mend and one that does."""
-    if all(piece.before is None for piece in pieces):
-        return None
+def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
+    """Return a mesh with its coordinates in another unit; its objects stay apart.
+
+    Where rounding made surfaces cross that did not before, they are mended, and a finding names
+    what could not be.
+
+    Parameters
+    ----------
+    raw : RawMesh
+    unit, new_unit : float
+        The lengths of both units; one of them is 1, so that each coordinate is rounded once.
+    """
+    if unit == new_unit:
+        return raw
+    scaled = replace(raw, vertices=raw.vertices * unit / new_unit)
+    is_rounded = new_unit != 1 or not is_exact(raw.vertices, np.eye(3) * unit, np.zeros(3))
+    pitch = _pitch_of(scaled) if is_rounded else None
+    if pitch is None:
+        return scaled
+    mesh = SaidMesh(scaled.vertices, scaled.faces, scaled.attributes)
+    found = mesh.mended(raw.vertices, pitch)
+    return scaled if found is None else _with_mended(scaled, found)
+
+
+def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
+    ends = np.cumsum([0] + [count for _, count in raw.objects])
+    counts = np.diff(np.searchsorted(found.kept, ends)).tolist()
+    names = [name for name, _ in raw.objects]
+    return replace(
+        raw,
+        vertices=found.mesh.vertices,
+        faces=found.mesh.faces,
+        attributes=found.mesh.attributes,
+        objects=tuple(zip(names, counts, strict=True)),
+        findings=(*raw.findings, *_crossing(found.left.tolist())),
+        is_mended=True,
+    )
+
+
+def _pitch_of(whole: RawMesh) -> int | None:
+    """Return the pitch that suits a mesh, if one does."""
     try:
         return SaidMesh(whole.vertices, whole.faces).suited_pitch()
     except LimitError:
@@ -132,11 +170,17 @@ def _take(
 def _told(whole: RawMesh, meshes: list[RawMesh], crossing: dict[int, list[int]]) -> RawMesh:
     starts = np.cumsum([0] + [len(mesh.faces) for mesh in meshes]).tolist()
     places = sorted(starts[number] + row for number, rows in crossing.items() for row in rows)
-    findings = (Finding("crossing", "warning", _CROSSING, tuple(places), len(places)),)
-    return replace(whole, is_mended=True, findings=findings if places else ())
+    return replace(whole, is_mended=True, findings=_crossing(places))
+
+
+def _crossing(places: list[int]) -> tuple[Finding, ...]:
+    """Return what is to be told of triangles that cross others still."""
+    if not places:
+        return ()
+    return (Finding("crossing", "warning", _CROSSING, tuple(places), len(places)),)
 
 
 _CROSSING = (
-    "rounding meshes to where the file places them makes these triangles cross or overlap others,"
-    " which could not be mended"
+    "rounding meshes to where they are placed makes these triangles cross or overlap others, which"
+    " could not be mended"
 )

@@ -12,7 +12,7 @@ import pytest
 import bspcsg as b
 from bspcsg.formats.files import decoded
 from bspcsg.formats.glb import scene as glb
-from bspcsg.formats.placing import PlacedMesh, is_exact, placed
+from bspcsg.formats.placing import PlacedMesh, is_exact, placed, rescaled
 from bspcsg.formats.raw import RawMesh
 from bspcsg.formats.scene import SceneNode
 from bspcsg.formats.solids import solid_of
@@ -67,6 +67,10 @@ def some_matrix(rng: np.random.Generator) -> np.ndarray:
 
 def read_back(node: SceneNode, suffix: str) -> RawMesh:
     return decoded(f"part{suffix}", b"".join(SCENES[suffix](node)), suffix)
+
+
+def crosses(solid: "b.Solid") -> bool:
+    return bool(solid.to_mesh().certificate.crossings)
 
 
 def crossings(raw: RawMesh) -> int:
@@ -136,6 +140,31 @@ def test_what_is_said_of_faces_stays_where_placing_is_mended() -> None:
         assert np.array_equal(found.attributes.faces, found.faces)
         mended += found.is_mended
     assert mended > 0
+
+
+@pytest.mark.parametrize("units", [(25.4, 1.0), (1.0, 25.4), (1.0, 10.0)])
+def test_what_touches_itself_does_not_cross_in_another_unit(units: tuple[float, float]) -> None:
+    rng = np.random.default_rng(8)
+    mended = 0
+    for make in (chain, tip_on_a_face, edges_apart) * TURNS:
+        mesh = make().rotate(rng.uniform(0, 360), rng.normal(size=3)).normalized().to_mesh()
+        half = len(mesh.faces) // 2
+        objects = (("one", half), ("two", len(mesh.faces) - half))
+        found = rescaled(RawMesh(mesh.vertices, mesh.faces, objects=objects), *units)
+        assert sum(count for _, count in found.objects) == len(found.faces)
+        assert [name for name, _ in found.objects] == ["one", "two"]
+        # Vertices that import welds may make it cross, which is told.
+        solid = solid_of(found, "part")
+        assert not crosses(solid) or "self_crossing" in {told.code for told in solid.findings}
+        mended += found.is_mended
+    assert mended > 0
+
+
+def test_units_that_round_nothing_change_no_face() -> None:
+    raw = raw_of(chain())
+    found = rescaled(raw, 1000)
+    assert np.array_equal(found.vertices, raw.vertices * 1000) and found.faces is raw.faces
+    assert rescaled(raw, 1, 1) is raw
 
 
 def test_what_a_map_lays_on_each_other_is_told_at_once() -> None:

@@ -130,6 +130,7 @@ class Inputs:
     def raw(self, path: Path) -> "RawMesh":
         """Read a mesh, or make that of a script, in millimetres if a unit is known or said."""
         from ...formats.files import decoded, read_as
+        from ...formats.placing import rescaled
 
         if self.is_script(path):
             raw = self._mesh_of_script(path)
@@ -139,9 +140,7 @@ class Inputs:
             raw = read_as(path, self.suffix_of(path))
         if raw.unit or self.unit is None:
             return raw
-        scale = MILLIMETRES[self.unit]
-        vertices = raw.vertices if scale == 1 else raw.vertices * scale
-        return replace(raw, vertices=vertices, unit="mm")
+        return replace(rescaled(raw, MILLIMETRES[self.unit]), unit="mm")
 
     def _made_by(self, path: Path) -> "Solid":
         """Return the solid of a script, which is text if its name does not say what it is."""

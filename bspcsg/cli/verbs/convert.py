@@ -201,8 +201,9 @@ class _Conversion:
 
     def _in_unit(self, raw: "RawMesh") -> "RawMesh":
         """Return a mesh of millimetres in the unit asked for."""
-        scale = MILLIMETRES[self._settings["to_unit"] or "mm"]
-        return raw if scale == 1 else replace(raw, vertices=raw.vertices / scale)
+        from ...formats.placing import rescaled
+
+        return rescaled(raw, 1, MILLIMETRES[self._settings["to_unit"] or "mm"])
 
     def _tell(self, target: Target, finding: Finding) -> None:
         """Tell about a file; what is so for all files of a format is told once."""

@@ -29,6 +29,7 @@ pub struct Source {
     topology: Cached<Topology>,
     cell: Cached<Option<Cell>>,
     snapped: [Cached<bool>; 8],
+    close: Cached<Vec<[u32; 2]>>,
     findings: Vec<Finding>,
 }
 
@@ -63,6 +64,7 @@ impl Source {
             topology: Cached::new(),
             cell: Cached::new(),
             snapped: Default::default(),
+            close: Cached::new(),
             findings,
         }
     }
@@ -220,6 +222,11 @@ impl Source {
     pub fn crosses_once_snapped(&self, axes: [bool; 3]) -> &Cached<bool> {
         let [x, y, z] = axes.map(usize::from);
         &self.snapped[x + 2 * y + 4 * z]
+    }
+
+    /// The pairs of faces that touch on the lattice but share no edge, once somebody has looked.
+    pub fn close_pairs(&self) -> &Cached<Vec<[u32; 2]>> {
+        &self.close
     }
 
     /// The half-edges' mates, paired on first use; `None` for a half-space.

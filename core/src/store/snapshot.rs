@@ -7,12 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::sealed::{seal, unseal, Kind};
 use super::sound::is_sound;
 use crate::arith::bounds::{self, is_coordinate, COORDINATE_BITS};
-use crate::arith::convert::as_double;
 use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::{collect, CutFace};
 use crate::extract::boundary::leaves::Fate;
-use crate::extract::rounding::snapping::crosses_once_snapped;
+use crate::extract::rounding::snapping::{crosses_once_snapped, moved_doubles};
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
@@ -113,18 +112,6 @@ enum VertexData {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct PlaneData([i128; 3], [u64; 3]);
-
-/// The doubles of a vertex after a motion: those it had, unless it was shifted along an axis.
-fn moved_doubles(motion: &Motion, pitch: Pitch, p: &[f64; 3], image: &Lattice) -> [f64; 3] {
-    [0, 1, 2].map(|i| {
-        let (axis, sign) = motion.axes[i];
-        if motion.shift[i] == 0 {
-            p[axis] * as_double(sign)
-        } else {
-            pitch.coordinate(image[i])
-        }
-    })
-}
 
 fn too_large() -> Error {
     let text = "the moved or refined solid does not fit the lattice of 2^53 steps";

@@ -11,7 +11,7 @@ use super::star::is_star_shaped;
 use super::terrains::terrains;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::meeting::{
-    folds_over, has_no_area, interleave, meeting_of, passes, Meeting,
+    are_clear, folds_over, has_no_area, interleave, meeting_of, passes, Meeting,
 };
 use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::interrupt::poll;
@@ -55,9 +55,7 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + S
     elements.extend(own);
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let candidates: Vec<Candidate> = elements.iter().map(candidate).collect();
-    let mut crossings = Search::among(&candidates).settled(faces);
-    crossings.sort_unstable();
-    crossings.dedup();
+    let crossings = Search::among::<Found>(&candidates).settled(faces);
     Faults { crossings, flat }
 }
 
@@ -81,6 +79,43 @@ pub fn all_faults(faces: &Faces) -> Faults {
     }
     let all: Vec<u32> = (0..as_number(faces.triangles.len())).collect();
     faults(faces, &all, |_| 0)
+}
+
+/// The pairs of triangles of a mesh that are neither clearly apart, but for a common corner, nor mates
+/// at an edge; the lower first, in ascending order.
+///
+/// # Cost
+/// That of `all_faults`.
+pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
+    if is_star_shaped(faces) {
+        return Vec::new();
+    }
+    let all: Vec<u32> = (0..as_number(faces.triangles.len())).collect();
+    let (own, _) = parties(faces, &all, 0);
+    let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
+    let candidates: Vec<Candidate> = own.iter().map(candidate).collect();
+    ascending(Search::among::<Close>(&candidates).0)
+}
+
+/// Those of some pairs of triangles that cross or overlap, in ascending order.
+///
+/// # Cost
+/// A look at each pair, and a pass over the triangles if some meet along edges.
+pub fn crossings_among(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let mut found = Found::default();
+    for pair in pairs {
+        if !pair.iter().any(|t| has_no_area(&faces.corners(*t))) {
+            let [p, q] = pair.map(|t| Candidate::of(faces, (0, t)));
+            found.look_at(&p, &q);
+        }
+    }
+    found.settled(faces)
+}
+
+fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 /// For directed edges the third corner of the triangle there, if there is one.
@@ -127,6 +162,15 @@ impl Candidate {
     }
 }
 
+/// What a search keeps of pairs of triangles that may meet.
+trait Kept: Default + Send {
+    /// Looks at a pair.
+    fn look_at(&mut self, p: &Candidate, q: &Candidate);
+
+    /// What is kept of these, and of others.
+    fn with(self, others: Self) -> Self;
+}
+
 /// The meetings found between pairs of triangles.
 #[derive(Default)]
 struct Found {
@@ -135,22 +179,10 @@ struct Found {
     doubtful: Vec<([u32; 2], Meeting)>,
 }
 
-impl Found {
-    /// These meetings, and others.
-    fn with(mut self, others: Self) -> Self {
-        self.crossings.extend(others.crossings);
-        self.doubtful.extend(others.doubtful);
-        self
-    }
-
-    /// Looks at a pair of triangles.
+impl Kept for Found {
     fn look_at(&mut self, p: &Candidate, q: &Candidate) {
         poll();
-        let [p, q] = if p.triangle < q.triangle {
-            [p, q]
-        } else {
-            [q, p]
-        };
+        let [p, q] = ordered(p, q);
         let pair = [p.triangle, q.triangle];
         if let Some(edge) = p.common_edge(q) {
             if folds_over(&p.facing, &q.facing, edge) {
@@ -165,7 +197,43 @@ impl Found {
         }
     }
 
-    /// The crossings, with those of the doubtful pairs that the neighbours across the edges at which
+    fn with(mut self, others: Self) -> Self {
+        self.crossings.extend(others.crossings);
+        self.doubtful.extend(others.doubtful);
+        self
+    }
+}
+
+/// Pairs of triangles that are close to each other.
+#[derive(Default)]
+struct Close(Vec<[u32; 2]>);
+
+impl Kept for Close {
+    fn look_at(&mut self, p: &Candidate, q: &Candidate) {
+        poll();
+        if p.common_edge(q).is_none() && !are_clear(&p.facing, &q.facing) {
+            let [p, q] = ordered(p, q);
+            self.0.push([p.triangle, q.triangle]);
+        }
+    }
+
+    fn with(mut self, others: Self) -> Self {
+        self.0.extend(others.0);
+        self
+    }
+}
+
+/// Two candidates, the lower triangle first.
+fn ordered<'a>(p: &'a Candidate, q: &'a Candidate) -> [&'a Candidate; 2] {
+    if p.triangle < q.triangle {
+        [p, q]
+    } else {
+        [q, p]
+    }
+}
+
+impl Found {
+    /// The crossings in ascending order, with those of the doubtful pairs that the neighbours across the edges at which
     /// they meet show to be some.
     fn settled(mut self, faces: &Faces) -> Vec<[u32; 2]> {
         let ends = |triangle: u32, edge: usize| {
@@ -191,7 +259,7 @@ impl Found {
                 self.crossings.push(pair);
             }
         }
-        self.crossings
+        ascending(self.crossings)
     }
 }
 
@@ -225,17 +293,17 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Find the meetings of candidates of different parties.
-    fn among(candidates: &'a [Candidate]) -> Found {
+    /// Look at the pairs of candidates of different parties that may meet.
+    fn among<K: Kept>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {
-            return Found::default();
+            return K::default();
         };
         let search = Self { candidates, image };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
         let parts = Part::of(boxes.collect()).divided(SHARE);
-        let found = each(parts, |part| search.meetings(part));
-        found.into_iter().fold(Found::default(), Found::with)
+        let found = each(parts, |part| search.kept(part));
+        found.into_iter().fold(K::default(), K::with)
     }
 
     fn boxed(&self, k: u32) -> Boxed {
@@ -255,9 +323,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The meetings of the pairs that belong to a part of space.
-    fn meetings(&self, part: Part) -> Found {
-        let mut found = Found::default();
+    /// What is kept of the pairs that belong to a part of space.
+    fn kept<K: Kept>(&self, part: Part) -> K {
+        let mut found = K::default();
         let mut waiting = Vec::new();
         pairs_of_many(
             part,
@@ -276,9 +344,9 @@ impl<'a> Search<'a> {
     }
 
     /// Look at pairs that may meet.
-    fn look_at(&self, pairs: &[[u32; 2]], found: &mut Found) {
+    fn look_at<K: Kept>(&self, pairs: &[[u32; 2]], found: &mut K) {
         let looked = each_chunk(pairs, |_, pairs| {
-            let mut found = Found::default();
+            let mut found = K::default();
             for [i, j] in pairs {
                 let candidate = |k: &u32| &self.candidates[*k as usize];
                 found.look_at(candidate(i), candidate(j));
@@ -286,7 +354,7 @@ impl<'a> Search<'a> {
             found
         });
         let before = std::mem::take(found);
-        *found = looked.into_iter().fold(before, Found::with);
+        *found = looked.into_iter().fold(before, K::with);
     }
 }
 

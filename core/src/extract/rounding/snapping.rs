@@ -1,15 +1,79 @@
 //! Meshes that cross themselves once their doubles give way to those of the lattice.
 //!
 //! A motion of the lattice keeps the doubles on axes along which it shifts nothing. On the others it
-//! snaps each vertex by itself, so that surfaces that touched may cross.
+//! snaps each vertex by itself, so that surfaces that touched may cross. Places of the lattice are
+//! rounded to doubles in their turn, each shift in another way: what touches on the lattice is looked
+//! at in each place.
+
+use std::sync::Arc;
 
 use super::company::Faces;
-use super::crossings::{all_faults, faults, Faults};
+use super::crossings::{all_faults, close_pairs, crossings_among, faults, Faults};
+use crate::arith::convert::as_double;
 use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
+use crate::geometry::spaces::motion::Motion;
+use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::solid::Solid;
+
+/// Return whether a motion takes a mesh of a solid to doubles in which it crosses itself, where it did
+/// not before.
+pub fn crosses_once_moved(solid: &Solid, motion: &Motion) -> bool {
+    let shifts = motion.shift.iter().any(|s| *s != 0);
+    let crosses = |s: &Arc<Source>| s.mesh().is_some_and(|mesh| crosses_there(mesh, s, motion));
+    shifts && (crosses_once_snapped(solid, motion.shifted()) || solid.sources().iter().any(crosses))
+}
+
+/// The doubles of a vertex after a motion: those it had, unless it was shifted along an axis.
+pub fn moved_doubles(motion: &Motion, pitch: Pitch, p: &Point, image: &Lattice) -> Point {
+    [0, 1, 2].map(|i| {
+        let (axis, sign) = motion.axes[i];
+        if motion.shift[i] == 0 {
+            p[axis] * as_double(sign)
+        } else {
+            pitch.coordinate(image[i])
+        }
+    })
+}
+
+/// Return whether faces that touch on the lattice cross in the doubles to which a motion takes them.
+fn crosses_there(mesh: &TriangleMesh, source: &Source, motion: &Motion) -> bool {
+    let pairs = source.close_pairs().get_or_make(|| close_on_lattice(mesh));
+    if pairs.is_empty() {
+        return false;
+    }
+    let moved = |(double, place): (&Point, &Lattice)| {
+        let image = motion.point(place)?;
+        Some(moved_doubles(motion, source.pitch(), double, &image))
+    };
+    let vertices = mesh.doubles.iter().zip(&mesh.vertices).map(moved);
+    // What leaves the lattice does not go there.
+    let Some(vertices) = vertices.collect::<Option<Vec<Point>>>() else {
+        return false;
+    };
+    let there = Faces {
+        vertices: &vertices,
+        triangles: &mesh.faces,
+    };
+    !crossings_among(&there, pairs).is_empty()
+}
+
+/// The pairs of faces that touch on the lattice, but cross neither there nor in their doubles.
+fn close_on_lattice(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
+    let steps: Vec<Point> = mesh.vertices.iter().map(|p| p.map(as_double)).collect();
+    let faces = |vertices| Faces {
+        vertices,
+        triangles: &mesh.faces,
+    };
+    let mut pairs = close_pairs(&faces(&steps));
+    for vertices in [&steps, &mesh.doubles] {
+        let crossing = crossings_among(&faces(vertices), &pairs);
+        pairs.retain(|pair| crossing.binary_search(pair).is_err());
+    }
+    pairs
+}
 
 /// Return whether a mesh of a solid crosses itself once its doubles along some axes are those of the
 /// lattice, where it did not before.
@@ -75,19 +139,25 @@ pub fn crossed(before: &Faces, found: &Faults) -> bool {
 mod tests {
     use std::sync::Arc;
 
-    use super::crosses_once_snapped;
+    use super::{crosses_once_moved, crosses_once_snapped};
     use crate::geometry::doubles::Point;
+    use crate::geometry::spaces::motion::Motion;
     use crate::mesh::grid::Pitch;
     use crate::mesh::import::import;
     use crate::tree::solid::Solid;
 
     /// A floor that slants by rounding, and a tip above it, on a lattice of whole steps.
     fn above(tip: Point, trusted: bool) -> Solid {
-        let floor = [[0.0, 0.0, 1.4], [8.0, 0.0, 1.4], [0.0, 8.0, 1.6], [0.0; 3]];
+        spike_over([1.4, 1.6], tip, 0, trusted)
+    }
+
+    /// A floor that rises from one height to another, and a spike over it.
+    fn spike_over([low, high]: [f64; 2], tip: Point, pitch: i64, trusted: bool) -> Solid {
+        let floor = [[0.0, 0.0, low], [8.0, 0.0, low], [0.0, 8.0, high], [0.0; 3]];
         let spike = [tip, [3.0, 1.0, 9.0], [1.0, 3.0, 9.0], [-1.0, -1.0, 9.0]];
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let faces = [faces, faces.map(|t| t.map(|v| v + 4))].concat();
-        let source = import(&[floor, spike].concat(), &faces, Pitch::new(0).ok());
+        let source = import(&[floor, spike].concat(), &faces, Pitch::new(pitch).ok());
         Solid::of_source(Arc::new(source.expect("it is closed")), trusted)
     }
 
@@ -104,6 +174,20 @@ mod tests {
         assert!(!crosses(1.51, ALL));
         // It crossed before.
         assert!(!crosses(0.4, ALL));
+    }
+
+    #[test]
+    fn what_touches_on_the_lattice_is_looked_at_in_each_place() {
+        let crosses = |height: f64, shift: i64| {
+            let solid = spike_over([1.0, 2.0], [1.0, 4.0, height], -1, false);
+            let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, shift], 1).expect("a motion");
+            crosses_once_moved(&solid, &motion)
+        };
+        let places = |height: f64| (0..100).filter(|shift| crosses(height, *shift)).count();
+        let touching = places(1.5);
+        assert!((1..100).contains(&touching), "{touching}");
+        assert_eq!([crosses(1.5, 0), crosses(1.5, 80)], [false; 2]);
+        assert_eq!([places(1.6), places(1.4)], [0; 2]);
     }
 
     #[test]

@@ -69,7 +69,7 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
 
 /// Return whether doubles alone show that two triangles have nothing or one corner in common: most
 /// pairs.
-fn are_clear(p: &Facing, q: &Facing) -> bool {
+pub fn are_clear(p: &Facing, q: &Facing) -> bool {
     let common = Common::of(p.triangle(), q.triangle());
     if common.several() {
         return false;
