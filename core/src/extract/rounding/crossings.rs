@@ -162,12 +162,12 @@ impl Candidate {
     }
 }
 
-/// What a search keeps of pairs of triangles that may meet.
+/// The findings of a search about pairs of triangles that may meet.
 trait Kept: Default + Send {
     /// Looks at a pair.
     fn look_at(&mut self, p: &Candidate, q: &Candidate);
 
-    /// What is kept of these, and of others.
+    /// These findings, and others.
     fn with(self, others: Self) -> Self;
 }
 
@@ -323,7 +323,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// What is kept of the pairs that belong to a part of space.
+    /// The findings about the pairs that belong to a part of space.
     fn kept<K: Kept>(&self, part: Part) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
