@@ -119,3 +119,14 @@ def test_what_the_lattice_moves_crosses_itself_nowhere_in_silence(seed: int) -> 
         placed = moved_on_the_lattice(rng, solid)
         assert is_embedded_or_said(placed)
         assert is_embedded_or_said(moved_on_the_lattice(rng, placed))
+
+
+@pytest.mark.xfail(strict=True, reason="evaluated solids are not looked at where they touch")
+def test_what_is_evaluated_and_then_translated_crosses_itself_nowhere_in_silence() -> None:
+    rng = np.random.default_rng([79, 318])
+    mesh = moved(rng, some_parts(rng, 1, 5)).normalized().to_mesh()
+    beside = b.box((1, 1, 1)).translate(np.round(mesh.vertices.min(axis=0)) - 5)
+    both = b.Solid(mesh.vertices, mesh.faces) | beside
+    assert both.volume > 1
+    offsets = rng.uniform(-100, 100, (20, 3)).round(2)
+    assert all(is_embedded_or_said(both.translate(offset)) for offset in offsets)
