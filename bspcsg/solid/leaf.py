@@ -34,6 +34,11 @@ def at_pitch(tree: Tree, pitch: int) -> Tree:
         return tree.refined(pitch)
 
 
+def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
+    with core_errors():
+        return tree.moving_crosses(list(motion.axes), list(motion.shift))
+
+
 class LastMoved:
     """A leaf as its coordinates were last moved: copies of it share that."""
 
@@ -143,9 +148,7 @@ class MeshLeaf:
         On the lattice it may touch itself still, and places of the lattice are rounded to doubles:
         so its coordinates have to be moved and mended, not its tree.
         """
-        tree = self.grown()
-        with core_errors():
-            return self._is_mended or tree.moving_crosses(list(motion.axes), list(motion.shift))
+        return self._is_mended or _crosses_there(self.grown(), motion)
 
     @classmethod
     def moved(
@@ -239,6 +242,10 @@ class TreeLeaf:
             return None
         moved = run(Record(COMPLEMENT, (_moved_output(outside, factors),)))
         return TreeLeaf(moved.result, extent=False, sayings=moved.sayings)
+
+    def touches_itself(self, motion: transform.LatticeMotion) -> bool:
+        """Return whether a mesh in the tree would cross itself where the motion takes it."""
+        return _crosses_there(self.result, motion)
 
     def forgetful(self) -> "TreeLeaf":
         """Return the leaf without its history, unless a later transform would need that.
@@ -492,7 +499,7 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     motion = factors.outer_motion(_common_pitch([base]))
     if motion is None:
         return (yield from _transforming(leaf, factors))
-    if isinstance(base, MeshLeaf) and base.touches_itself(motion):
+    if isinstance(base, (MeshLeaf, TreeLeaf)) and base.touches_itself(motion):
         return (yield from _transforming(leaf, factors))
     try:
         with core_errors():

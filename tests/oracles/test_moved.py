@@ -121,7 +121,6 @@ def test_what_the_lattice_moves_crosses_itself_nowhere_in_silence(seed: int) -> 
         assert is_embedded_or_said(moved_on_the_lattice(rng, placed))
 
 
-@pytest.mark.xfail(strict=True, reason="evaluated solids are not looked at where they touch")
 def test_what_is_evaluated_and_then_translated_crosses_itself_nowhere_in_silence() -> None:
     rng = np.random.default_rng([79, 318])
     mesh = moved(rng, some_parts(rng, 1, 5)).normalized().to_mesh()

@@ -91,6 +91,15 @@ impl Source {
         self
     }
 
+    /// The source with its close pairs, which are those of the source that it is an image of.
+    #[must_use]
+    pub fn with_close_pairs(self, pairs: Vec<[u32; 2]>) -> Self {
+        Self {
+            close: Cached::of(pairs),
+            ..self
+        }
+    }
+
     /// A number that tells sources apart.
     pub fn id(&self) -> u64 {
         self.id

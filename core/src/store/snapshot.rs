@@ -70,6 +70,9 @@ enum SourceData {
         doubles: Vec<[f64; 3]>,
         faces: Vec<[VertexId; 3]>,
         numbers: Option<Vec<u32>>,
+        /// The source's close pairs, if they are known: images of it need no look of their own.
+        #[serde(skip)]
+        close: Option<Vec<[u32; 2]>>,
     },
     HalfSpace(PlaneData),
 }
@@ -333,6 +336,7 @@ impl SourceData {
                 doubles: m.doubles.clone(),
                 faces: m.faces.clone(),
                 numbers: m.numbers.clone(),
+                close: source.close_pairs().get().cloned(),
             },
             Shape::HalfSpace(plane) => Self::HalfSpace(PlaneData::of(plane)),
         }
@@ -346,6 +350,7 @@ impl SourceData {
                 doubles,
                 faces,
                 numbers,
+                ..
             } => {
                 let count = vertices.len();
                 let named = faces.iter().flatten().all(|v| v.place() < count);
@@ -364,7 +369,13 @@ impl SourceData {
                 })
             }
         };
-        Ok(Source::new(pitch, shape, Vec::new()))
+        let source = Source::new(pitch, shape, Vec::new());
+        Ok(match self {
+            Self::Mesh {
+                close: Some(pairs), ..
+            } => source.with_close_pairs(pairs.clone()),
+            _ => source,
+        })
     }
 
     /// Takes the doubles of vertices to those of the lattice.
@@ -579,5 +590,51 @@ impl PlaneData {
             return Err(bad_snapshot());
         }
         Plane::new(self.0, offset).ok_or_else(bad_snapshot)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::Snapshot;
+    use crate::extract::rounding::snapping::crosses_once_moved;
+    use crate::geometry::spaces::motion::Motion;
+    use crate::mesh::grid::Pitch;
+    use crate::mesh::import::import;
+    use crate::tree::solid::Solid;
+
+    #[test]
+    fn an_image_has_the_close_pairs_of_its_solid() {
+        let floor = [[0.0, 0.0, 1.0], [8.0, 0.0, 1.0], [0.0, 8.0, 2.0], [0.0; 3]];
+        let spike = [
+            [1.0, 4.0, 1.5],
+            [3.0, 1.0, 9.0],
+            [1.0, 3.0, 9.0],
+            [-1.0, -1.0, 9.0],
+        ];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let faces = [faces, faces.map(|t| t.map(|v| v + 4))].concat();
+        let source = import(&[floor, spike].concat(), &faces, Pitch::new(-1).ok());
+        let solid = Solid::of_source(Arc::new(source.expect("it is closed")), false);
+        let motion = Motion::of_axes(&[-2, 1, 3], &[0, 0, 1], 1).expect("a motion");
+        let pairs = |solid: &Solid| {
+            solid
+                .sources()
+                .iter()
+                .find_map(|s| s.close_pairs().get().cloned())
+        };
+        let image = || {
+            let data = Snapshot::of(&solid).moved(&motion, solid.pitch());
+            data.and_then(|data| data.solid()).expect("an image")
+        };
+        assert_eq!(pairs(&image()), None);
+        crosses_once_moved(&solid, &motion);
+        let found = pairs(&solid).expect("they were looked for");
+        assert!(!found.is_empty());
+        assert_eq!(pairs(&image()), Some(found.clone()));
+        let again = image();
+        crosses_once_moved(&again, &motion);
+        assert_eq!(pairs(&again), Some(found));
     }
 }
