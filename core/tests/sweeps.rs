@@ -172,10 +172,13 @@ fn many_questions_about_one_point_make_a_tree() {
 #[test]
 fn moved_boundaries_are_those_of_moved_outlines() {
     let motions = [
-        Motion::of_axes(&[1, 2], &[5, -7], 1),
-        Motion::of_axes(&[-2, 1], &[1, 0], 1),
-        Motion::of_axes(&[2, 1], &[0, 3], 10),
-        Motion::of_axes(&[1, -2], &[0, 0], 1),
+        Motion::of_axes(&[1, 2], &[5, -7]),
+        Motion::of_axes(&[-2, 1], &[1, 0]),
+        Motion::of_axes(&[2, 1], &[0, 3]).map(|motion| Motion {
+            scale: 10,
+            ..motion
+        }),
+        Motion::of_axes(&[1, -2], &[0, 0]),
     ];
     for (seed, motion) in (0..).zip(motions.into_iter().map(Option::unwrap)) {
         let corners = random_corners(&mut Numbers::new(seed), 25, 20);
@@ -187,7 +190,7 @@ fn moved_boundaries_are_those_of_moved_outlines() {
         let moved = swept(&corners, RULES[0]).moved(&motion).unwrap();
         assert_same(&moved, &swept(&image, RULES[0]), &format!("{motion:?}"));
     }
-    let far = Motion::of_axes(&[1, 2], &[REACH, 0], 1).unwrap();
+    let far = Motion::of_axes(&[1, 2], &[REACH, 0]).unwrap();
     assert!(swept(&vec![[0, 0], [1, 0], [0, 1]], RULES[0])
         .moved(&far)
         .is_none());

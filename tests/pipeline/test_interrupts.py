@@ -129,7 +129,7 @@ def test_interrupts_are_quiet_while_the_package_is_imported(program: str, name: 
         text=True,
         timeout=60,
         check=False,
-        preexec_fn=heed_interrupts if os.name == "posix" else None,  # noqa: PLW1509
+        preexec_fn=heed_interrupts if os.name == "posix" else None,
     )
     if name == "nothing":
         assert (done.returncode, done.stdout, done.stderr) == (0, "imported\n", "")

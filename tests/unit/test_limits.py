@@ -12,7 +12,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg import csg
-from bspcsg.bsp import Region, load_dxf, load_svg
+from bspcsg.bsp import Intervals, Region, load_dxf, load_svg
 from bspcsg.formats.registry import MAKERS, Format
 from bspcsg.io import decoded
 
@@ -39,6 +39,29 @@ def test_absurd_numbers_are_refused_at_once(make: Callable[[], Any]) -> None:
         make()
     assert caught.value.code in ("too_many", "too_large") and len(str(caught.value)) < 200
     assert time.perf_counter() - begun < 5
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: (b.cube(1e25) | b.cube(3)).volume,
+        lambda: Region.rectangle(1e25, 1e25) | Region.rectangle(1, 1),
+        lambda: Region.compose([Region.rectangle(1e25, 1e25), Region.rectangle(1, 1)]),
+        lambda: Intervals([(0, 1e25)]) - Intervals([(0, 1)]),
+    ],
+)
+def test_what_fits_no_common_lattice_is_refused(make: Callable[[], Any]) -> None:
+    with pytest.raises(b.LimitError, match=r"does not fit the lattice of 2\^53 steps") as caught:
+        make()
+    assert caught.value.code == "too_large"
+
+
+def test_nothing_and_everything_fit_any_lattice() -> None:
+    solid, region = b.cube(1e25), Region.rectangle(1e25, 1e25)
+    nothing = solid & solid.translate(2e25, 0, 0)
+    assert nothing.is_empty
+    assert nothing | b.cube(1) == ~nothing & b.cube(1) == b.cube(1)
+    assert (region & region.translate(2e25, 0) | Region.rectangle(1, 1)).area == 1
 
 
 @pytest.mark.parametrize("make", [b.cube, lambda huge: b.cube(1).translate(huge, 0, 0)])

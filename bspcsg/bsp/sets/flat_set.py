@@ -87,7 +87,7 @@ class FlatSet(TreeSet):
     def _moved(self, axes: list[int], shift: list[int]) -> Self:
         """Return the set moved by whole lattice steps."""
         with core_errors():
-            return self._of(self._tree.moved(axes, shift, 1, self.pitch))
+            return self._of(self._tree.moved(axes, shift))
 
     def __reduce__(self) -> tuple[Any, tuple[type["FlatSet"], bytes]]:
         """Pickle the nodes, exactly."""

@@ -175,12 +175,8 @@ class ObjectTree(TreeQueries):
     def _refined(self, pitch: int) -> CoreTree:
         if pitch == self.pitch:
             return self._tree
-        if self.is_empty or self.is_full:
-            return CoreTree.uniform(self.dimension, self.is_full, pitch)
-        axes = list(range(1, self.dimension + 1))
-        scale = 10 ** (self.pitch - pitch)
         with core_errors():
-            return self._tree.moved(axes, [0] * self.dimension, scale, pitch)
+            return self._tree.refined(pitch)
 
     def trace_merge(self, other: TreeSet, op: SetOp) -> MergeTrace:
         """Return a set operation step by step: pairs of nodes, cases, what was shared or dropped.

@@ -521,19 +521,9 @@ impl Tree {
         if finer == self.solid.pitch() {
             return Ok(Self::of(self.solid.clone()));
         }
-        let scale = finer.refinement(self.solid.pitch()).ok_or_else(|| {
-            let text = format!(
-                "10^{pitch} does not refine 10^{} within 64 bits",
-                self.pitch()
-            );
-            to_python(py, &Error::new(ErrorKind::PitchMismatch, text))
-        })?;
-        let motion = Motion {
-            scale,
-            ..Motion::IDENTITY
-        };
         self.run(py, "refined", 0, self.size(), || {
-            mapped(&Snapshot::of(&self.solid), &motion, finer)
+            let data = Snapshot::of(&self.solid).refined(finer)?;
+            Ok(Self::of(data.solid()?))
         })
     }
 
@@ -597,7 +587,7 @@ fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {
 }
 
 fn motion(axes: [i64; 3], shift: [i64; 3]) -> Result<Motion> {
-    Motion::of_axes(&axes, &shift, 1).ok_or_else(|| {
+    Motion::of_axes(&axes, &shift).ok_or_else(|| {
         let text = format!("{axes:?} is not a signed permutation of [1, 2, 3]");
         Error::new(ErrorKind::Shape, text)
     })

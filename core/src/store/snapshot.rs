@@ -255,6 +255,31 @@ impl Snapshot {
         Ok(image)
     }
 
+    /// The same solid on a finer lattice; nothing and everything live on any.
+    ///
+    /// # Errors
+    /// `TooLarge` if something leaves the lattice; one that is not finer is `PitchMismatch`.
+    pub fn refined(&self, finer: Pitch) -> Result<Self> {
+        let own = Pitch::new(self.pitch)?;
+        if self.wholes.is_empty() && self.parts.is_empty() {
+            return Ok(Self {
+                pitch: finer.exponent(),
+                sources: Vec::new(),
+                ..self.clone()
+            });
+        }
+        if finer > own {
+            let text = format!("10^{} does not refine 10^{}", finer.exponent(), self.pitch);
+            return Err(Error::new(ErrorKind::PitchMismatch, text));
+        }
+        let scale = finer.refinement(own).ok_or_else(too_large)?;
+        let motion = Motion {
+            scale,
+            ..Motion::IDENTITY
+        };
+        self.moved(&motion, finer)
+    }
+
     /// Return whether an unbounded face is boundary beside others, or cut at the border of the
     /// universe.
     fn reaches_infinity(&self) -> bool {
@@ -617,7 +642,7 @@ mod tests {
         let faces = [faces, faces.map(|t| t.map(|v| v + 4))].concat();
         let source = import(&[floor, spike].concat(), &faces, Pitch::new(-1).ok());
         let solid = Solid::of_source(Arc::new(source.expect("it is closed")), false);
-        let motion = Motion::of_axes(&[-2, 1, 3], &[0, 0, 1], 1).expect("a motion");
+        let motion = Motion::of_axes(&[-2, 1, 3], &[0, 0, 1]).expect("a motion");
         let pairs = |solid: &Solid| {
             solid
                 .sources()

@@ -180,7 +180,7 @@ mod tests {
     fn what_touches_on_the_lattice_is_looked_at_in_each_place() {
         let crosses = |height: f64, shift: i64| {
             let solid = spike_over([1.0, 2.0], [1.0, 4.0, height], -1, false);
-            let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, shift], 1).expect("a motion");
+            let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, shift]).expect("a motion");
             crosses_once_moved(&solid, &motion)
         };
         let places = |height: f64| (0..100).filter(|shift| crosses(height, *shift)).count();

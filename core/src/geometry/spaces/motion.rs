@@ -38,18 +38,15 @@ impl Motion {
     /// The motion of a space of at most three dimensions: for each new axis the number of the old
     /// one, counted from 1, with its sign.
     ///
-    /// `None` if these are no signed permutation of the axes, or the scale is not positive.
-    pub fn of_axes(axes: &[i64], shift: &[i64], scale: i64) -> Option<Self> {
+    /// `None` if these are no signed permutation of the axes.
+    pub fn of_axes(axes: &[i64], shift: &[i64]) -> Option<Self> {
         let mut sorted: Vec<u64> = axes.iter().map(|a| a.unsigned_abs()).collect();
         sorted.sort_unstable();
         let permutes = (1..).zip(&sorted).all(|(i, a)| i == *a);
-        if axes.len() > 3 || axes.len() != shift.len() || !permutes || scale < 1 {
+        if axes.len() > 3 || axes.len() != shift.len() || !permutes {
             return None;
         }
-        let mut motion = Self {
-            scale,
-            ..Self::IDENTITY
-        };
+        let mut motion = Self::IDENTITY;
         for (i, (axis, shift)) in axes.iter().zip(shift).enumerate() {
             let old = sorted.iter().position(|a| *a == axis.unsigned_abs())?;
             motion.axes[i] = (old, axis.signum());
@@ -116,7 +113,7 @@ mod tests {
 
     /// A quarter turn about z and a step along x.
     fn turned() -> Motion {
-        Motion::of_axes(&[-2, 1, 3], &[1, 0, 0], 1).expect("a motion")
+        Motion::of_axes(&[-2, 1, 3], &[1, 0, 0]).expect("a motion")
     }
 
     #[test]
@@ -134,25 +131,24 @@ mod tests {
     #[test]
     fn a_mirror_is_told_from_a_turn() {
         assert!(!turned().mirrors());
-        assert!(Motion::of_axes(&[1, 2, -3], &[0; 3], 1)
+        assert!(Motion::of_axes(&[1, 2, -3], &[0; 3])
             .expect("a motion")
             .mirrors());
-        assert!(Motion::of_axes(&[2, 1, 3], &[0; 3], 1)
+        assert!(Motion::of_axes(&[2, 1, 3], &[0; 3])
             .expect("a motion")
             .mirrors());
     }
 
     #[test]
     fn what_is_no_motion_is_refused() {
-        assert!(Motion::of_axes(&[1, 1, 3], &[0; 3], 1).is_none());
-        assert!(Motion::of_axes(&[1, 0], &[0; 2], 1).is_none());
-        assert!(Motion::of_axes(&[1, 2, 3], &[0; 2], 1).is_none());
-        assert!(Motion::of_axes(&[1, 2, 3], &[0; 3], 0).is_none());
+        assert!(Motion::of_axes(&[1, 1, 3], &[0; 3]).is_none());
+        assert!(Motion::of_axes(&[1, 0], &[0; 2]).is_none());
+        assert!(Motion::of_axes(&[1, 2, 3], &[0; 2]).is_none());
     }
 
     #[test]
     fn nothing_leaves_the_lattice() {
-        let far = Motion::of_axes(&[1, 2, 3], &[REACH - 1, 0, 0], 1).expect("a motion");
+        let far = Motion::of_axes(&[1, 2, 3], &[REACH - 1, 0, 0]).expect("a motion");
         assert_eq!(far.point(&[0; 3]), Some([REACH - 1, 0, 0]));
         assert_eq!(far.point(&[1, 0, 0]), None);
     }

@@ -208,6 +208,17 @@ impl Set {
             Self::Space(tree) => Self::Space(mapped(tree, plane)?),
         })
     }
+
+    /// The same set on a finer lattice; nothing and everything live on any.
+    pub fn refined(&self, own: Pitch, finer: Pitch) -> Result<Self> {
+        if finer == own || self.uniform_label().is_some() {
+            return Ok(self.clone());
+        }
+        self.moved(&Motion {
+            scale: finer.refinement(own).ok_or_else(too_large)?,
+            ..Motion::IDENTITY
+        })
+    }
 }
 
 fn too_large() -> Error {

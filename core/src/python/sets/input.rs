@@ -94,10 +94,10 @@ pub fn same_lattice(a: Pitch, b: Pitch) -> Result<()> {
     Err(Error::new(ErrorKind::PitchMismatch, text))
 }
 
-/// The map of the lattice that signed axis numbers from 1, a shift and a scale describe.
-pub fn lattice_map(dimension: usize, axes: &[i64], shift: &[i64], scale: i64) -> Result<Motion> {
-    let found = Motion::of_axes(axes, shift, scale).filter(|_| axes.len() == dimension);
-    found.ok_or_else(|| shape("the axes, shift and scale are no map of the lattice"))
+/// The map of the lattice that signed axis numbers from 1 and a shift describe.
+pub fn lattice_map(dimension: usize, axes: &[i64], shift: &[i64]) -> Result<Motion> {
+    let found = Motion::of_axes(axes, shift).filter(|_| axes.len() == dimension);
+    found.ok_or_else(|| shape("the axes and the shift are no map of the lattice"))
 }
 
 /// Rows made into something, the first failure if there is one.

@@ -263,19 +263,16 @@ impl ObjectTree {
         Ok(self.with(self.work(py, |set, _| set.condensed())?))
     }
 
-    fn moved(
-        &self,
-        py: Python<'_>,
-        axes: Vec<i64>,
-        shift: Vec<i64>,
-        scale: i64,
-        pitch: i64,
-    ) -> PyResult<Self> {
-        let fail = |e| to_python(py, &e);
-        let map = input::lattice_map(self.set.dimension(), &axes, &shift, scale).map_err(fail)?;
-        let pitch = Pitch::new(pitch).map_err(fail)?;
-        let set = self.work(py, |set, _| set.moved(&map))?;
-        Ok(Self::of(set, pitch))
+    fn moved(&self, py: Python<'_>, axes: Vec<i64>, shift: Vec<i64>) -> PyResult<Self> {
+        let map = input::lattice_map(self.set.dimension(), &axes, &shift)
+            .map_err(|e| to_python(py, &e))?;
+        Ok(self.with(self.work(py, |set, _| set.moved(&map))?))
+    }
+
+    fn refined(&self, py: Python<'_>, pitch: i64) -> PyResult<Self> {
+        let finer = Pitch::new(pitch).map_err(|e| to_python(py, &e))?;
+        let set = self.work(py, |set, own| set.refined(own, finer))?;
+        Ok(Self::of(set, finer))
     }
 
     fn boundary<'py>(&self, py: Python<'py>) -> PyResult<Pieces<'py>> {
