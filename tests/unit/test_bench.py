@@ -300,7 +300,9 @@ def test_short_work_is_repeated_and_counted_by_call() -> None:
     began = time.perf_counter()
     perform(task, said.append)
     first, second = (line for line in said if line["say"] == "run")
-    assert second["seconds"] < first["seconds"] < time.perf_counter() - began
+    rest = time.perf_counter() - began - first["seconds"]
+    # A first call of less than 2 ms plans ten for the second run, and all fit into what is left.
+    assert 0 < 10 * second["seconds"] < rest
     assert first["faults"] >= 0 < first["answer_mb"]
 
 
