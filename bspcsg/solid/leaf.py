@@ -143,10 +143,9 @@ class MeshLeaf:
         return MeshLeaf.moved(said, factors, self._given_pitch, self._winding)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
-        """Return whether rounding has made it cross itself, or would where the motion takes it.
+        """Return whether rounding has made it cross itself, or would once put on the lattice.
 
-        On the lattice it may touch itself still, and places of the lattice are rounded to doubles:
-        so its coordinates have to be moved and mended, not its tree.
+        Then its coordinates have to be moved and mended, not its tree.
         """
         return self._is_mended or _crosses_there(self.grown(), motion)
 
@@ -244,7 +243,7 @@ class TreeLeaf:
         return TreeLeaf(moved.result, extent=False, sayings=moved.sayings)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
-        """Return whether a mesh in the tree would cross itself where the motion takes it."""
+        """Return whether a mesh in the tree would cross itself once put on the lattice."""
         return _crosses_there(self.result, motion)
 
     def forgetful(self) -> "TreeLeaf":

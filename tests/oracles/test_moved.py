@@ -131,10 +131,6 @@ def test_what_is_evaluated_and_then_translated_crosses_itself_nowhere_in_silence
     assert all(is_embedded_or_said(both.translate(offset)) for offset in offsets)
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="of what would cross itself at its place the mended mesh is moved, not the exact solid",
-)
 def test_a_moved_solid_united_with_itself_stays_the_same_set() -> None:
     # Two shells of one tetrahedron, a corner moved by a step (scripts/fuzz scenes, seed 1124).
     corners = np.array([[2, 1, 3], [1, 3, 2], [2, 0, 2], [1, 2, 2]], dtype=float)

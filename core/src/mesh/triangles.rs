@@ -2,13 +2,15 @@
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
+use serde::{Deserialize, Serialize};
+
 use super::grid::Pitch;
 use super::handle::{FaceId, VertexId};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 
 /// Lattice triangles, and the doubles they came from.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct TriangleMesh {
     /// Vertices in lattice steps.
     pub vertices: Vec<Lattice>,

@@ -17,7 +17,7 @@ use crate::extract::boundary::collect::has_no_boundary;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::Mesh;
 use crate::extract::rounding::round;
-use crate::extract::rounding::snapping::crosses_once_moved;
+use crate::extract::rounding::snapping::crosses_once_snapped;
 use crate::extract::simplify::result::simplified;
 use crate::geometry::plane::Lattice;
 use crate::geometry::spaces::motion::Motion;
@@ -499,11 +499,11 @@ impl Tree {
         self.solid.pitch().exponent()
     }
 
-    /// Return whether a motion takes a mesh of the solid to doubles in which it crosses itself, where it
-    /// did not before.
+    /// Return whether a mesh of the solid crosses itself once a motion has taken its doubles to those of
+    /// the lattice, where it did not before.
     fn moving_crosses(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<bool> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
-        let crosses = || Ok(crosses_once_moved(&self.solid, &motion));
+        let crosses = || Ok(crosses_once_snapped(&self.solid, motion.shifted()));
         self.run(py, "moving_crosses", 0, self.size(), crosses)
     }
 

@@ -11,7 +11,9 @@ use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::{collect, CutFace};
 use crate::extract::boundary::leaves::Fate;
-use crate::extract::rounding::snapping::{crosses_once_snapped, moved_doubles};
+use crate::extract::rounding::snapping::{
+    crosses_once_snapped, crossing_faces, look_at_contacts, moved_doubles,
+};
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
@@ -65,16 +67,10 @@ pub struct Snapshot {
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum SourceData {
-    Mesh {
-        vertices: Vec<Lattice>,
-        doubles: Vec<[f64; 3]>,
-        faces: Vec<[VertexId; 3]>,
-        numbers: Option<Vec<u32>>,
-        /// The source's close pairs, if they are known: images of it need no look of their own.
-        #[serde(skip)]
-        close: Option<Vec<[u32; 2]>>,
-    },
+    Mesh(TriangleMesh),
     HalfSpace(PlaneData),
+    /// A mesh and its close pairs, where they are known: images of it need no look of their own.
+    Searched(TriangleMesh, Vec<[u32; 2]>),
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -225,9 +221,12 @@ impl Snapshot {
     /// `Internal`.
     pub fn movable(solid: &Solid, motion: &Motion) -> Result<Self> {
         if !crosses_once_snapped(solid, motion.shifted()) {
+            look_at_contacts(solid, motion);
             return Ok(Self::of(solid));
         }
-        let mut data = Self::of(&normalize(solid, Rule::Positive)?);
+        let solid = normalize(solid, Rule::Positive)?;
+        look_at_contacts(&solid, motion);
+        let mut data = Self::of(&solid);
         for source in &mut data.sources {
             source.snap(solid.pitch());
         }
@@ -317,7 +316,12 @@ impl Snapshot {
     /// # Errors
     /// `Internal` if encoding fails.
     pub fn to_bytes(&self) -> Result<Vec<u8>> {
-        seal(Kind::Solid, self)
+        let sources = self.sources.iter().cloned().map(SourceData::written);
+        let written = Self {
+            sources: sources.collect(),
+            ..self.clone()
+        };
+        seal(Kind::Solid, &written)
     }
 
     /// The solid that bytes hold; they are looked at in full.
@@ -356,87 +360,97 @@ impl WholeFaces {
 impl SourceData {
     fn of(source: &Source) -> Self {
         match source.shape() {
-            Shape::Mesh(m) => Self::Mesh {
-                vertices: m.vertices.clone(),
-                doubles: m.doubles.clone(),
-                faces: m.faces.clone(),
-                numbers: m.numbers.clone(),
-                close: source.close_pairs().get().cloned(),
+            Shape::Mesh(mesh) => match source.close_pairs().get() {
+                Some(pairs) => Self::Searched(mesh.clone(), pairs.clone()),
+                None => Self::Mesh(mesh.clone()),
             },
             Shape::HalfSpace(plane) => Self::HalfSpace(PlaneData::of(plane)),
         }
     }
 
+    fn mesh(&mut self) -> Option<&mut TriangleMesh> {
+        match self {
+            Self::Mesh(mesh) | Self::Searched(mesh, _) => Some(mesh),
+            Self::HalfSpace(_) => None,
+        }
+    }
+
     fn source(&self, pitch: Pitch) -> Result<Source> {
-        let shape = match self {
-            Self::HalfSpace(plane) => Shape::HalfSpace(Arc::new(plane.plane()?)),
-            Self::Mesh {
-                vertices,
-                doubles,
-                faces,
-                numbers,
-                ..
-            } => {
-                let count = vertices.len();
-                let named = faces.iter().flatten().all(|v| v.place() < count);
-                let fits = vertices.iter().flatten().all(|k| is_coordinate(*k));
-                let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
-                let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.place()]));
-                let sound = named && fits && numbered && doubles.len() == count;
-                if !sound || faces.iter().any(flat) {
-                    return Err(bad_snapshot());
-                }
-                Shape::Mesh(TriangleMesh {
-                    vertices: vertices.clone(),
-                    doubles: doubles.clone(),
-                    faces: faces.clone(),
-                    numbers: numbers.clone(),
-                })
-            }
+        let of_mesh = |mesh: &TriangleMesh| {
+            let shape = Shape::Mesh(mesh.clone());
+            let is_sound = is_sound_mesh(mesh);
+            is_sound.then(|| Source::new(pitch, shape, Vec::new()))
         };
-        let source = Source::new(pitch, shape, Vec::new());
-        Ok(match self {
-            Self::Mesh {
-                close: Some(pairs), ..
-            } => source.with_close_pairs(pairs.clone()),
-            _ => source,
-        })
+        match self {
+            Self::HalfSpace(plane) => {
+                let shape = Shape::HalfSpace(Arc::new(plane.plane()?));
+                Ok(Source::new(pitch, shape, Vec::new()))
+            }
+            Self::Mesh(mesh) => of_mesh(mesh).ok_or_else(bad_snapshot),
+            Self::Searched(mesh, pairs) => {
+                let named = pairs
+                    .iter()
+                    .flatten()
+                    .all(|t| (*t as usize) < mesh.faces.len());
+                let source = of_mesh(mesh).filter(|_| named).ok_or_else(bad_snapshot)?;
+                Ok(source.with_close_pairs(pairs.clone()))
+            }
+        }
+    }
+
+    /// The data as they are written: with close pairs only where some cross, which nobody would look for.
+    fn written(self) -> Self {
+        match self {
+            Self::Searched(mesh, pairs) if crossing_faces(&mesh, &pairs).is_empty() => {
+                Self::Mesh(mesh)
+            }
+            other => other,
+        }
     }
 
     /// Takes the doubles of vertices to those of the lattice.
     fn snap(&mut self, pitch: Pitch) {
-        if let Self::Mesh {
-            vertices, doubles, ..
-        } = self
-        {
-            for (place, double) in vertices.iter().zip(doubles) {
+        if let Some(mesh) = self.mesh() {
+            for (place, double) in mesh.vertices.iter().zip(&mut mesh.doubles) {
                 *double = place.map(|k| pitch.coordinate(k));
             }
         }
     }
 
     fn apply(&mut self, motion: &Motion, pitch: Pitch) -> Result<()> {
-        match self {
-            Self::HalfSpace(plane) => *plane = plane.moved(motion)?,
-            Self::Mesh {
-                vertices,
-                doubles,
-                faces,
-                ..
-            } => {
-                for (vertex, double) in vertices.iter_mut().zip(doubles) {
-                    *vertex = motion.point(vertex).ok_or_else(too_large)?;
-                    *double = moved_doubles(motion, pitch, double, vertex);
-                }
-                if motion.mirrors() {
-                    for face in faces {
-                        face.swap(1, 2);
-                    }
-                }
+        if let Self::HalfSpace(plane) = self {
+            *plane = plane.moved(motion)?;
+        }
+        let Some(mesh) = self.mesh() else {
+            return Ok(());
+        };
+        for (vertex, double) in mesh.vertices.iter_mut().zip(&mut mesh.doubles) {
+            *vertex = motion.point(vertex).ok_or_else(too_large)?;
+            *double = moved_doubles(motion, pitch, double, vertex);
+        }
+        if motion.mirrors() {
+            for face in &mut mesh.faces {
+                face.swap(1, 2);
             }
         }
         Ok(())
     }
+}
+
+/// Return whether lists fit each other, and no face is flat or names what is not there.
+fn is_sound_mesh(mesh: &TriangleMesh) -> bool {
+    let TriangleMesh {
+        vertices,
+        doubles,
+        faces,
+        numbers,
+    } = mesh;
+    let count = vertices.len();
+    let named = faces.iter().flatten().all(|v| v.place() < count);
+    let fits = vertices.iter().flatten().all(|k| is_coordinate(*k));
+    let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
+    let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.place()]));
+    named && fits && numbered && doubles.len() == count && !faces.iter().any(flat)
 }
 
 impl PartData {
@@ -623,7 +637,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::Snapshot;
-    use crate::extract::rounding::snapping::crosses_once_moved;
+    use crate::extract::rounding::snapping::look_at_contacts;
     use crate::geometry::spaces::motion::Motion;
     use crate::mesh::grid::Pitch;
     use crate::mesh::import::import;
@@ -654,12 +668,12 @@ mod tests {
             data.and_then(|data| data.solid()).expect("an image")
         };
         assert_eq!(pairs(&image()), None);
-        crosses_once_moved(&solid, &motion);
+        look_at_contacts(&solid, &motion);
         let found = pairs(&solid).expect("they were looked for");
         assert!(!found.is_empty());
         assert_eq!(pairs(&image()), Some(found.clone()));
         let again = image();
-        crosses_once_moved(&again, &motion);
+        look_at_contacts(&again, &motion);
         assert_eq!(pairs(&again), Some(found));
     }
 }

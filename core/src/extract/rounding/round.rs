@@ -6,6 +6,7 @@ use super::crossings::Faults;
 use super::mend::Precision;
 use super::places::places;
 use super::settle::{settle, Rounded, Settled};
+use super::snapping::crossing_faces;
 use super::touching::touching;
 use super::unfold::{turned, unfold};
 use super::upright::keeps_order;
@@ -125,6 +126,7 @@ fn settle_mesh(
 ) -> Result<Settled> {
     let mut changed = at_blurred(solid, exact);
     changed.extend(with_others_corners(mesh, sources, exact));
+    changed.extend(where_moving_crosses(sources, exact));
     changed.sort_unstable();
     changed.dedup();
     changed.extend(as_number(exact.untouched)..as_number(mesh.triangles.len()));
@@ -212,6 +214,24 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
         };
         if !blurred.is_empty() {
             let numbered = (first..).zip(run).filter(|(_, face)| at_blurred(face));
+            found.extend(numbered.map(|(triangle, _)| triangle));
+        }
+        first += as_number(run.len());
+    }
+    found
+}
+
+/// The triangles that are faces as they came, but cross others where a motion has taken them; ascending.
+fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut first = 0;
+    for run in exact.faces[..exact.untouched].chunk_by(|a, b| a.slot() == b.slot()) {
+        let source = sources.get(run[0].slot());
+        let close = source.mesh().zip(source.close_pairs().get());
+        let crossing = close.map_or_else(Vec::new, |(mesh, pairs)| crossing_faces(mesh, pairs));
+        if !crossing.is_empty() {
+            let crosses = |face: &OrientedFace| crossing.binary_search(&face.id().0).is_ok();
+            let numbered = (first..).zip(run).filter(|(_, face)| crosses(face));
             found.extend(numbered.map(|(triangle, _)| triangle));
         }
         first += as_number(run.len());

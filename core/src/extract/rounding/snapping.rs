@@ -3,9 +3,7 @@
 //! A motion of the lattice keeps the doubles on axes along which it shifts nothing. On the others it
 //! snaps each vertex by itself, so that surfaces that touched may cross. Places of the lattice are
 //! rounded to doubles in their turn, each shift in another way: what touches on the lattice is looked
-//! at in each place.
-
-use std::sync::Arc;
+//! at wherever it is made into a mesh.
 
 use super::company::Faces;
 use super::crossings::{all_faults, close_pairs, crossings_among, faults, Faults};
@@ -18,12 +16,29 @@ use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::solid::Solid;
 
-/// Return whether a motion takes a mesh of a solid to doubles in which it crosses itself, where it did
-/// not before.
-pub fn crosses_once_moved(solid: &Solid, motion: &Motion) -> bool {
-    let shifts = motion.shift.iter().any(|s| *s != 0);
-    let crosses = |s: &Arc<Source>| s.mesh().is_some_and(|mesh| crosses_there(mesh, s, motion));
-    shifts && (crosses_once_snapped(solid, motion.shifted()) || solid.sources().iter().any(crosses))
+/// Look for the faces of a solid's meshes that touch, before a motion takes them elsewhere.
+pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
+    if motion.shifted() != [false; 3] {
+        for source in solid.sources().iter() {
+            if let Some(mesh) = source.mesh() {
+                source.close_pairs().get_or_make(|| close_on_lattice(mesh));
+            }
+        }
+    }
+}
+
+/// The faces of a mesh that cross others in its doubles, of close pairs of faces; ascending.
+///
+/// They are there where a motion took the mesh to places that were rounded anew.
+pub fn crossing_faces(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<u32> {
+    let faces = Faces {
+        vertices: &mesh.doubles,
+        triangles: &mesh.faces,
+    };
+    let mut found: Vec<u32> = crossings_among(&faces, pairs).into_flattened();
+    found.sort_unstable();
+    found.dedup();
+    found
 }
 
 /// The doubles of a vertex after a motion: those it had, unless it was shifted along an axis.
@@ -36,28 +51,6 @@ pub fn moved_doubles(motion: &Motion, pitch: Pitch, p: &Point, image: &Lattice) 
             pitch.coordinate(image[i])
         }
     })
-}
-
-/// Return whether faces that touch on the lattice cross in the doubles to which a motion takes them.
-fn crosses_there(mesh: &TriangleMesh, source: &Source, motion: &Motion) -> bool {
-    let pairs = source.close_pairs().get_or_make(|| close_on_lattice(mesh));
-    if pairs.is_empty() {
-        return false;
-    }
-    let moved = |(double, place): (&Point, &Lattice)| {
-        let image = motion.point(place)?;
-        Some(moved_doubles(motion, source.pitch(), double, &image))
-    };
-    let vertices = mesh.doubles.iter().zip(&mesh.vertices).map(moved);
-    // What leaves the lattice does not go there.
-    let Some(vertices) = vertices.collect::<Option<Vec<Point>>>() else {
-        return false;
-    };
-    let there = Faces {
-        vertices: &vertices,
-        triangles: &mesh.faces,
-    };
-    !crossings_among(&there, pairs).is_empty()
 }
 
 /// The pairs of faces that touch on the lattice, but cross neither there nor in their doubles.
@@ -139,7 +132,7 @@ pub fn crossed(before: &Faces, found: &Faults) -> bool {
 mod tests {
     use std::sync::Arc;
 
-    use super::{crosses_once_moved, crosses_once_snapped};
+    use super::{crosses_once_snapped, crossing_faces, look_at_contacts, moved_doubles};
     use crate::geometry::doubles::Point;
     use crate::geometry::spaces::motion::Motion;
     use crate::mesh::grid::Pitch;
@@ -181,7 +174,15 @@ mod tests {
         let crosses = |height: f64, shift: i64| {
             let solid = spike_over([1.0, 2.0], [1.0, 4.0, height], -1, false);
             let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, shift]).expect("a motion");
-            crosses_once_moved(&solid, &motion)
+            look_at_contacts(&solid, &motion);
+            let source = solid.sources().iter().next().expect("a mesh");
+            let pairs = source.close_pairs().get().cloned().unwrap_or_default();
+            let mut image = source.mesh().expect("a mesh").clone();
+            for (place, double) in image.vertices.iter_mut().zip(&mut image.doubles) {
+                *place = motion.point(place).expect("near");
+                *double = moved_doubles(&motion, solid.pitch(), double, place);
+            }
+            !crossing_faces(&image, &pairs).is_empty()
         };
         let places = |height: f64| (0..100).filter(|shift| crosses(height, *shift)).count();
         let touching = places(1.5);
