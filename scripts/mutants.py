@@ -90,8 +90,8 @@ MUTANTS = [
     Mutant(
         "mirrored snapshots keep their faces as they were",
         "store/snapshot.rs",
-        "                        face.swap(1, 2);\n",
-        "                        face.rotate_left(1);\n",
+        "                face.swap(1, 2);\n",
+        "                face.rotate_left(1);\n",
         ("laws_motions", "motions_of_the_lattice_carry_solids_exactly"),
     ),
     Mutant(

@@ -10,11 +10,12 @@ with ``python``.
 import contextlib
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
@@ -33,9 +34,14 @@ TIMEOUT = 600.0
 #: The exit code of what was stopped.
 _STOPPED = 130
 
+#: Whether a thread can hold signals back.
+_HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
+
 #: The program of the child: Ctrl-C, which reaches it too, ends it without a word; its parent tells.
+#: It starts with Ctrl-C held back, for Python itself would tell of it while it still starts.
 _SERVE = (
     f"import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
+    f" {_HOLDS_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
     " from bspcsg.script.run import serve; serve()"
 )
 
@@ -113,19 +119,36 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     command = [sys.executable, "-P", "-c", _SERVE]
     package = str(Path(__file__).parents[2])
     search = os.pathsep.join([package, *filter(None, [os.environ.get("PYTHONPATH")])])
+    environment = {**os.environ, "PYTHONPATH": search}
+    with contextlib.ExitStack() as start:
+        start.enter_context(_interrupts_held())
+        with subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=_standard_error(), env=environment
+        ) as child:
+            try:
+                start.close()
+                child.communicate(task, timeout)
+            except subprocess.TimeoutExpired as error:
+                child.kill()
+                message = f"{name}: the script took longer than {timeout:g} seconds."
+                raise FormatError(message, "timeout") from error
+            except BaseException:
+                child.kill()
+                raise
+    return child.returncode
+
+
+@contextlib.contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold Ctrl-C back in this thread and in processes that it starts, where the system can."""
+    if not _HOLDS_SIGNALS:
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
-        done = subprocess.run(
-            command,
-            input=task,
-            timeout=timeout,
-            check=False,
-            stdout=_standard_error(),
-            env={**os.environ, "PYTHONPATH": search},
-        )
-    except subprocess.TimeoutExpired as error:
-        message = f"{name}: the script took longer than {timeout:g} seconds."
-        raise FormatError(message, "timeout") from error
-    return done.returncode
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _standard_error() -> int:

@@ -147,6 +147,21 @@ def test_scripts_are_interrupted_quietly(tmp_path: Path, delay: float) -> None:
     assert code == 130 and len(err.splitlines()) <= 1 and b"Traceback" not in err
 
 
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+def test_scripts_are_interrupted_quietly_while_python_starts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "sitecustomize.py").write_text(
+        "import signal\nsignal.raise_signal(signal.SIGINT)\n"
+    )
+    (tmp_path / "cube.py").write_text("import bspcsg\nresult = bspcsg.box(1, 1, 1)\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(b.FormatError, match="with code 130"):
+        run.run_script(str(tmp_path / "cube.py"))
+    assert capfd.readouterr() == ("", "")
+    assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, set())
+
+
 @pytest.mark.parametrize("written", [0, 1, 20])
 def test_scripts_whose_parent_was_stopped_are_quiet(written: int) -> None:
     task = pickle.dumps(("slow.py", [], {}, "answer"))
