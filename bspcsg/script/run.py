@@ -34,7 +34,7 @@ TIMEOUT = 600.0
 #: The exit code of what was stopped.
 _STOPPED = 130
 
-#: Whether a thread can hold signals back.
+#: True if a thread can hold signals back.
 _HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
 
 #: The program of the child: Ctrl-C, which reaches it too, ends it without a word; its parent tells.
