@@ -13,10 +13,16 @@ use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::plane::Lattice;
+use crate::interrupt::handed_over;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
+use crate::mesh::tasks::in_pool;
 use crate::tree::solid::Solid;
 use crate::tree::table::Table;
+
+/// An operand of which kernels took so many elements is likely to be a step of a chain of which the
+/// next step wants as much: that takes a millisecond or more, and to wake a pool some 50 µs.
+const LONG: u64 = 512;
 
 /// The value of an expression whose operands are these solids.
 ///
@@ -68,13 +74,18 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         // Mostly one operand overlaps itself. Where many do, each would cost a descent of its own.
         let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
-        let root = descent.run(expression.clone(), roots)?;
+        let run = |roots| descent.run(expression.clone(), roots);
+        let root = if !in_pool() && operands.iter().any(|s| s.effort() >= LONG) {
+            handed_over(roots, run).unwrap_or_else(run)
+        } else {
+            run(roots)
+        }?;
         let overlaps = descent.overlapping();
         if overlaps.is_empty() {
             let table = sources.table().clone();
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
             let solid = Solid::new(root, pitch, table, false).outgrowing(named);
-            let solid = solid.made_of(&operands);
+            let solid = solid.made_of(&operands).by_effort(descent.counters.taken());
             return Ok((solid, descent.counters));
         }
         let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
@@ -319,4 +330,47 @@ fn joint_table(solids: &[Solid]) -> Table {
             all.joined(one)
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    use super::*;
+    use crate::interrupt::{Call, Means};
+    use crate::merge::scenes::{both, cuboid};
+
+    static SHARES: AtomicUsize = AtomicUsize::new(0);
+
+    const MEANS: Means = Means {
+        wants_to_stop: || false,
+        hand_over: |task, share| {
+            SHARES.fetch_add(1, Ordering::Relaxed);
+            task.run(share);
+        },
+    };
+
+    #[test]
+    fn the_step_after_a_long_one_is_handed_over() {
+        let shared = |solids: &[Solid; 2]| {
+            let before = SHARES.load(Ordering::Relaxed);
+            let work = || evaluate(&both(Term::Or), solids);
+            let (_, counters) = Call::new().run_here(MEANS, work).expect("not stopped");
+            (counters.named(), SHARES.load(Ordering::Relaxed) - before)
+        };
+        let [first, second] = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
+        let (short, none) = shared(&[first.clone(), second.clone()]);
+        let (long, one) = shared(&[first.by_effort(LONG), second]);
+        assert_eq!((none, one), (0, 1));
+        assert_eq!(short, long);
+    }
+
+    #[test]
+    fn a_result_knows_what_kernels_took() {
+        let solids = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
+        let (union, counters) = evaluate(&both(Term::Or), &solids).expect("not stopped");
+        assert_eq!(solids[0].effort(), 0);
+        assert_eq!(union.effort(), counters.taken());
+        assert_eq!(union.effort(), 24);
+    }
 }

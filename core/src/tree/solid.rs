@@ -50,6 +50,8 @@ pub struct Solid {
     doubts: Option<Arc<[Solid]>>,
     simple: Arc<Cached<bool>>,
     united: Arc<Cached<Solid>>,
+    /// The elements in cells that kernels took, when the solid was made.
+    effort: u64,
 }
 
 impl Solid {
@@ -66,7 +68,20 @@ impl Solid {
             doubts: None,
             simple: Arc::default(),
             united: Arc::default(),
+            effort: 0,
         }
+    }
+
+    /// The same solid, made by kernels that took so many elements.
+    #[must_use]
+    pub fn by_effort(self, effort: u64) -> Self {
+        Self { effort, ..self }
+    }
+
+    /// The number of elements that kernels took when the solid was made: in a chain the next step
+    /// will be about as long as the last one.
+    pub fn effort(&self) -> u64 {
+        self.effort
     }
 
     /// The same solid, reduced by the word of stored data that somebody may have forged.

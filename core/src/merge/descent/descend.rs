@@ -125,6 +125,11 @@ impl Counters {
         }
     }
 
+    /// The number of elements in cells that kernels took.
+    pub fn taken(&self) -> u64 {
+        self.leaf_elements.load(Ordering::Relaxed)
+    }
+
     /// The counts with their names.
     pub fn named(&self) -> [(&'static str, u64); 5] {
         [
