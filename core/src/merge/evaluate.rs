@@ -16,7 +16,6 @@ use crate::geometry::plane::Lattice;
 use crate::interrupt::handed_over;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
-use crate::mesh::tasks::in_pool;
 use crate::tree::solid::Solid;
 use crate::tree::table::Table;
 
@@ -75,7 +74,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let run = |roots| descent.run(expression.clone(), roots);
-        let root = if !in_pool() && operands.iter().any(|s| s.effort() >= LONG) {
+        let root = if operands.iter().any(|s| s.effort() >= LONG) {
             handed_over(roots, run).unwrap_or_else(run)
         } else {
             run(roots)
