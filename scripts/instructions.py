@@ -30,7 +30,7 @@ CASES = {
     "small": "the same of two spheres of 320 triangles, warm",
     "cubes": "union of two cubes of 12 triangles, arrays to arrays, warm",
     "built": "difference of two spheres of 81 920 triangles, operands already built",
-    "needles": "difference of two bundles of the same 40 needles, their corners in another order",
+    "needles": "difference of two bundles of 40 needles, one a step further along them",
     "overlap": "one mesh of 30 spheres of 80 triangles that overlap, reduced",
     "chain": "cube minus 200 spheres of 80 triangles, the volume read after each step",
     "holes": "plate minus 64 boxes through it, the volume read after each step",

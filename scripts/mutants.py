@@ -39,6 +39,13 @@ class Mutant(NamedTuple):
 
 MUTANTS = [
     Mutant(
+        "what is left of equal operands is turned inside out",
+        "merge/expression.rs",
+        "            Residual::Literal(operand, outside)\n",
+        "            Residual::Literal(operand, inside)\n",
+        ("revisions",),
+    ),
+    Mutant(
         "a triangle that a path crosses counts with the other sign",
         "geometry/winding/crossing.rs",
         "        return i32::from(-sign);\n",

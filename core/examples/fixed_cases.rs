@@ -160,12 +160,14 @@ fn built(mesh: &Arrays) -> Solid {
     Solid::of_source(Arc::new(source), false)
 }
 
-/// The same thin tetrahedra side by side twice, with their corners in another order.
+/// Thin tetrahedra side by side, and the same a step further along them: the long sides of both lie
+/// in the same planes.
 fn bundles(count: i64) -> [Solid; 2] {
-    let [x, y, z] = [[UNIT / 20, 0, 0], [0, UNIT / 20, 0], [0, 0, 20 * UNIT]];
-    [[x, y, z], [y, z, x]].map(|along| {
+    let along = [[UNIT / 20, 0, 0], [0, UNIT / 20, 0], [0, 0, 20 * UNIT]];
+    [0, 1].map(|step| {
         let needle = |k| {
-            let at = [k % 7, k / 7, k].map(|c| c * UNIT / 8 + k);
+            let [x, y, z] = [k % 7, k / 7, k].map(|c| c * UNIT / 8 + k);
+            let at = [x, y, z + step];
             let corner = |by: &[i64; 3]| [0, 1, 2].map(|i| at[i] + by[i]);
             let corners = [at, corner(&along[0]), corner(&along[1]), corner(&along[2])];
             Shape::tetrahedron(corners).expect("a corner that stands out")

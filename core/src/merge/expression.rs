@@ -148,6 +148,55 @@ impl Expression {
         changed.then_some(Self { terms })
     }
 
+    /// The rest of the expression where some operands are equal: `first` maps each to the one that stands
+    /// for it.
+    ///
+    /// ```
+    /// use bspcsg::merge::expression::{Expression, Residual, Term};
+    ///
+    /// let [a, b] = [0, 1].map(Term::Operand);
+    /// let difference = Expression::new(vec![a, b, Term::Not(1), Term::And(vec![0, 2])])?;
+    /// assert!(matches!(difference.where_equal(|_| 0), Residual::Constant(false)));
+    /// # Ok::<(), bspcsg::error::Error>(())
+    /// ```
+    pub fn where_equal(&self, first: impl Fn(u32) -> u32) -> Residual {
+        // Lists that name one line twice fold.
+        let mut lines: HashMap<u32, u32> = HashMap::default();
+        let mut terms: Vec<Term> = Vec::with_capacity(self.terms.len());
+        let mut image = Vec::with_capacity(self.terms.len());
+        for term in &self.terms {
+            let next = as_number(terms.len());
+            let line = match term {
+                Term::Operand(k) => *lines.entry(first(*k)).or_insert(next),
+                _ => next,
+            };
+            if line == next {
+                terms.push(match term {
+                    Term::Operand(k) => Term::Operand(first(*k)),
+                    _ => renumbered(term.clone(), &image),
+                });
+            }
+            image.push(line);
+        }
+        terms.truncate(image.last().map_or(0, |last| *last as usize + 1));
+        let merged = Self { terms };
+        match merged.operands().as_slice() {
+            [alone] => merged.of_one(*alone),
+            _ => merged.residual(|_| None),
+        }
+    }
+
+    /// The rest of an expression that names one operand only.
+    fn of_one(&self, operand: u32) -> Residual {
+        let mut scratch = Vec::new();
+        let [outside, inside] = [false, true].map(|inside| self.value(|_| inside, &mut scratch));
+        if outside == inside {
+            Residual::Constant(inside)
+        } else {
+            Residual::Literal(operand, outside)
+        }
+    }
+
     /// The expression as one of two others, each with about half of the operands; `None` if its
     /// value is made from one line, or operands occur in both.
     pub fn parted(&self) -> Option<Parted> {
@@ -457,6 +506,53 @@ mod tests {
         assert!(matches!(with_first(false), Residual::Constant(false)));
         assert!(matches!(with_first(true), Residual::Literal(1, false)));
         assert!(matches!(both.residual(|_| None), Residual::Open(_)));
+    }
+
+    #[test]
+    fn equal_operands_fold_away() {
+        let [a, b, c] = [0, 1, 2].map(Term::Operand);
+        // (a ∪ c) − b, (a ∩ c) ∪ b, and a ⊖ c ⊖ b, where b is a.
+        let cases = [
+            (
+                vec![Term::Or(vec![0, 2]), Term::Not(1), Term::And(vec![3, 4])],
+                None,
+            ),
+            (vec![Term::And(vec![0, 2]), Term::Or(vec![3, 1])], None),
+            (vec![Term::Xor(vec![0, 2, 1])], Some(2)),
+        ];
+        for (rest, alone) in cases {
+            let terms = [vec![a.clone(), b.clone(), c.clone()], rest].concat();
+            let whole = Expression::new(terms).expect("an expression");
+            let left = whole.where_equal(|k| if k == 1 { 0 } else { k });
+            let scratch = &mut Vec::new();
+            for bits in 0..4u32 {
+                let holds = |k: u32| bits >> (k / 2) & 1 == 1;
+                let value = match &left {
+                    Residual::Constant(value) => *value,
+                    Residual::Literal(k, negate) => holds(*k) != *negate,
+                    Residual::Open(left) => left.value(holds, scratch),
+                };
+                assert_eq!(value, whole.value(holds, scratch));
+            }
+            let found = match left {
+                Residual::Literal(k, false) => Some(k),
+                _ => None,
+            };
+            assert_eq!(found, alone);
+        }
+        let same = Expression::new(vec![
+            a.clone(),
+            b,
+            c,
+            Term::Or(vec![0, 1]),
+            Term::And(vec![3, 2]),
+        ]);
+        let all = same.expect("an expression").where_equal(|_| 0);
+        assert!(matches!(all, Residual::Literal(0, false)));
+        let alone = Expression::new(vec![a])
+            .expect("an expression")
+            .where_equal(|_| 0);
+        assert!(matches!(alone, Residual::Literal(0, false)));
     }
 
     #[test]

@@ -14,6 +14,7 @@ use super::choice::{
 };
 use super::join;
 use super::state::{find, has_constant, has_surface, nested, worth, State, States, MANY};
+use super::twins::{self, Firsts};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
@@ -279,6 +280,13 @@ impl<'a> Descent<'a> {
     }
 
     fn resolve(&self, cell: Cell, residual: Residual, mut states: States, round: Round) -> Visited {
+        let residual = match residual {
+            Residual::Open(open) => match self.twins(|| twins::of_one_node(&states)) {
+                Some(firsts) => open.where_equal(|k| firsts.of(k)),
+                None => Residual::Open(open),
+            },
+            known => known,
+        };
         match residual {
             Residual::Constant(v) => Ok(Branch::uniform(cell, i32::from(v))),
             Residual::Literal(k, negate) if self.share => {
@@ -294,6 +302,11 @@ impl<'a> Descent<'a> {
                 self.open_cell(cell, expression, states, round)
             }
         }
+    }
+
+    /// Operands that are the same in a cell, unless each has to be looked at.
+    fn twins(&self, found: impl FnOnce() -> Option<Firsts>) -> Option<Firsts> {
+        self.share.then(found).flatten()
     }
 
     /// A cell in which the expression still depends on several operands.
@@ -533,9 +546,35 @@ impl<'a> Descent<'a> {
         total: usize,
         kernels: &[&dyn Kernel],
     ) -> std::result::Result<Option<Branch>, End> {
-        let Some(operands) = self.listed(&cell, states) else {
+        let Some(mut operands) = self.listed(&cell, states) else {
             return Ok(None);
         };
+        let Some(firsts) = self.twins(|| twins::of_one_boundary(&operands, self.sources)) else {
+            return self.solved_by(kernels, cell, expression, operands, total);
+        };
+        match expression.where_equal(|k| firsts.of(k)) {
+            Residual::Constant(v) => Ok(Some(Branch::uniform(cell, i32::from(v)))),
+            Residual::Literal(k, negate) => {
+                let alone = find(states, k).cloned();
+                Ok(alone.map(|state| state.shared(cell, negate, self.sources)))
+            }
+            Residual::Open(left) => {
+                let support = left.operands();
+                operands.retain(|l| support.binary_search(&l.number).is_ok());
+                self.solved_by(kernels, cell, &left, operands, total)
+            }
+        }
+    }
+
+    /// Return what the first of some kernels that takes the cell leaves of listed operands.
+    fn solved_by(
+        &self,
+        kernels: &[&dyn Kernel],
+        cell: Cell,
+        expression: &Expression,
+        operands: Vec<Listed>,
+        total: usize,
+    ) -> std::result::Result<Option<Branch>, End> {
         let problem = CellProblem {
             cell: &cell,
             expression,
@@ -584,6 +623,14 @@ mod tests {
         let (union, counters) = run(&solids, Term::Or);
         assert!(matches!(*union.node, Node::Cut(_)));
         assert_eq!(counters[3], ("kernels", 0));
+    }
+
+    #[test]
+    fn what_is_the_same_costs_no_kernel() {
+        let row = |count: i64| cuboids((0..count).map(|i| [1, 3].map(|c| [c + 4 * i; 3])));
+        let few = run(&[row(40), row(41)], Term::Xor);
+        let many = run(&[row(400), row(401)], Term::Xor);
+        assert!(many.1[3].1 <= few.1[3].1 + 2, "{:?} {:?}", many.1, few.1);
     }
 
     #[test]

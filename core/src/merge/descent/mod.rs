@@ -5,3 +5,4 @@ pub mod choice;
 pub mod descend;
 pub(super) mod join;
 pub(super) mod state;
+pub(super) mod twins;

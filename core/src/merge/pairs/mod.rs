@@ -33,32 +33,30 @@ pub struct Swept {
 }
 
 /// Calls `meet` for all pairs of different operands that may meet, the lower number first; gives up
-/// with `None` where too many elements lie above each other along every line, or a crowd's operands
-/// have a corner in common: all that have it would meet.
+/// where it does, where too many elements lie above each other along every line, or where a crowd's
+/// operands have a corner in common: all that have it would meet.
 ///
 /// Elements of one operand follow each other; `swept` gives the element with a number.
 pub fn pairs(
     elements: Vec<Boxed>,
     swept: impl Fn(u32) -> Swept,
-    meet: impl FnMut(u32, u32),
+    meet: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    let go_on = |i: u32, j: u32| {
-        found(i, j);
-        Some(())
-    };
-    boxes::pairs(Part::of(elements), go_on, |crowd, space| {
+    boxes::pairs(Part::of(elements), found, |crowd, space| {
         let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
         if share_corner(&some) {
             return None;
         }
+        let goes_on = Cell::new(true);
         sweep::pairs(&some, |i, j| {
             let (a, b) = (&crowd[i], &crowd[j]);
-            if space.owns(a, b) {
-                found(a.number, b.number);
+            if goes_on.get() && space.owns(a, b) {
+                goes_on.set(found(a.number, b.number).is_some());
             }
-        })
+        })?;
+        goes_on.get().then_some(())
     })
 }
 
@@ -250,6 +248,7 @@ mod tests {
         let one = |k: u32| elements[k as usize].clone();
         pairs(boxes, one, |i, j| {
             found.insert((i as usize, j as usize));
+            Some(())
         })?;
         Some(found)
     }

@@ -34,6 +34,11 @@ pub fn are_firsts(mesh: &TriangleMesh, shells: &[Vec<FaceId>]) -> Vec<bool> {
     shells.iter().map(Vec::as_slice).map(is_first).collect()
 }
 
+/// Return whether two shells are the same.
+pub fn are_some(mesh: &TriangleMesh, shells: &[Vec<FaceId>]) -> bool {
+    are_firsts(mesh, shells).contains(&false)
+}
+
 fn sample(mesh: &TriangleMesh, shell: &[FaceId]) -> Sample {
     let places = [0, shell.len() / 2, shell.len().saturating_sub(1)];
     let at = |place: usize| shell.get(place).map(|face| mesh.corners(*face));

@@ -115,13 +115,17 @@ pub fn simplicity_and_pairs(
     if all && closed() && is_star_shaped(mesh) {
         return Ok((Simplicity::Simple, None));
     }
+    let shells = shells(source, mesh.faces.len());
+    let some = all && closed() && count_of(&shells) > 1;
+    if some && copies::are_some(mesh, &faces_of(&shells)) {
+        return Ok((Simplicity::Overlapping, None));
+    }
     let view = View::new(source, mesh);
     let unclear = match Unclear::unless_overlapping(&view, &leaf.groups[0].faces) {
         Pairs::Overlap => return Ok((Simplicity::Overlapping, None)),
         Pairs::Unclear(unclear) => Some(unclear),
         Pairs::Many => None,
     };
-    let shells = shells(source, mesh.faces.len());
     let mut check = Check::new(sources, &view, shells, unclear);
     if let [alone] = check.seen.as_mut_slice() {
         // A single shell whose faces keep clear of each other has one number on either side of all

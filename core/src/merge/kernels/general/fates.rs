@@ -20,6 +20,10 @@ use crate::merge::pairs::{pairs, shift_of, Boxed};
 /// Elements that may meet another one, by number: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
 
+/// The number of the first pair that is looked at as soon as it is found; then that of twice the number
+/// each time. Where many meet in a special way, the others need not be found.
+const FIRST: usize = 16;
+
 /// The fate of an element.
 pub(super) enum Fate {
     /// It does not meet the cell.
@@ -117,7 +121,7 @@ impl Scene<'_> {
     }
 
     /// For each element those of other operands that may meet it inside the cell; `None` if they
-    /// are too many to be found by a sweep.
+    /// are too many to be found by a sweep, or two of a sample meet in a special way.
     fn neighbours(&self) -> Option<Vec<Neighbours>> {
         let size = self.cell.size().into_iter().max().unwrap_or(0);
         let shift = shift_of(1 << size);
@@ -129,13 +133,20 @@ impl Scene<'_> {
         let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
         let near: Vec<NearTriangle> = self.elements.iter().map(|e| self.near(e)).collect();
+        let mut count = 0usize;
         pairs(boxes, swept, |a, b| {
             poll();
             let (i, j) = (a as usize, b as usize);
-            if !are_apart(&near[i], &near[j]) {
-                found[i].push(b);
-                found[j].push(a);
+            if are_apart(&near[i], &near[j]) {
+                return Some(());
             }
+            found[i].push(b);
+            found[j].push(a);
+            count += 1;
+            if count >= FIRST && count.is_power_of_two() {
+                self.meeting(i, &[b])?;
+            }
+            Some(())
         })?;
         // The order in which pairs are found is not that of the elements.
         for list in found.iter_mut().filter(|list| list.len() > 1) {

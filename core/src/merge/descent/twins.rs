@@ -1,0 +1,208 @@
+//! Operands that are the same in a cell: one of them can stand for all.
+//!
+//! Two revisions of a part differ in a few places, and so do a solid and the steps that led to it.
+
+use std::hash::BuildHasher;
+use std::sync::Arc;
+
+use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
+use smallvec::SmallVec;
+
+use super::state::{State, States};
+use crate::geometry::plane::Lattice;
+use crate::interrupt::spend;
+use crate::merge::kernels::problem::Listed;
+use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::tree::node::Part;
+
+/// Operands with the one that stands for each, ascending.
+pub struct Firsts(Vec<(u32, u32)>);
+
+impl Firsts {
+    /// The operand that stands for another one.
+    pub fn of(&self, operand: u32) -> u32 {
+        let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
+        at.map_or(operand, |at| self.0[at].1)
+    }
+
+    /// `None` if each stands for itself only.
+    fn found(pairs: Vec<(u32, u32)>) -> Option<Self> {
+        let is_other = |pair: &(u32, u32)| pair.0 != pair.1;
+        pairs.iter().any(is_other).then_some(Self(pairs))
+    }
+}
+
+/// The operands whose subtrees in a cell are the same node; `None` if all differ.
+///
+/// # Cost
+/// A look at each operand.
+pub fn of_one_node(states: &States) -> Option<Firsts> {
+    let is_tree = |s: &&(u32, State)| matches!(s.1, State::Tree(_));
+    states.iter().filter(is_tree).nth(1)?;
+    let mut known = HashMap::default();
+    let pair = |(number, state): &(u32, State)| {
+        let first = match state {
+            State::Tree(branch) => {
+                let node = (Arc::as_ptr(&branch.node), branch.complement, branch.outside);
+                *known.entry((node, branch.cell)).or_insert(*number)
+            }
+            State::Constant(_) | State::List(_) | State::Bins(_) => *number,
+        };
+        (*number, first)
+    };
+    Firsts::found(states.iter().map(pair).collect())
+}
+
+/// The operands whose lists have the same elements and the same number at the cell's corner; `None` if
+/// all differ.
+///
+/// # Cost
+/// A pass over lists of equal length, and a sort of those that are equal.
+pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<Firsts> {
+    let size = |listed: &Listed| (listed.list.len(), listed.list.corner);
+    let mut sizes: SmallVec<[_; 8]> = operands.iter().map(size).collect();
+    sizes.sort_unstable();
+    if sizes.is_sorted_by(|a, b| a < b) {
+        return None;
+    }
+    let is_alone = |listed| {
+        let next = sizes.partition_point(|other| *other < size(listed)) + 1;
+        sizes.get(next) != Some(&size(listed))
+    };
+    let mut known: HashMap<_, &'a Listed<'a>> = HashMap::default();
+    let mut first = |listed: &'a Listed<'a>| {
+        if is_alone(listed) {
+            return None;
+        }
+        let mark = mark(&listed.list, sources)?;
+        let other = *known.entry((size(listed), mark)).or_insert(listed);
+        let is_new = other.number == listed.number;
+        let are_one = is_new || are_equal(&other.list, &listed.list, sources);
+        are_one.then_some(other.number)
+    };
+    let own = operands.iter().map(|listed| listed.number);
+    let pair = |(number, listed)| (number, first(listed).unwrap_or(number));
+    Firsts::found(own.zip(operands).map(pair).collect())
+}
+
+/// A number that equal lists have in common, in whatever order their elements are; `None` if one is no
+/// triangle.
+fn mark(list: &List, sources: &Sources) -> Option<u64> {
+    spend(list.len());
+    let mut sum = 0u64;
+    for record in &list.records {
+        sum = sum.wrapping_add(FxBuildHasher.hash_one(corners(record, sources)?));
+    }
+    let parts = list.parts.iter().map(|p| FxBuildHasher.hash_one(key(p)));
+    Some(parts.fold(sum, u64::wrapping_add))
+}
+
+fn are_equal(a: &List, b: &List, sources: &Sources) -> bool {
+    let faces = |list: &List| {
+        let mut faces: Vec<_> = list.records.iter().map(|r| corners(r, sources)).collect();
+        faces.sort_unstable();
+        faces
+    };
+    let parts = |list: &List| {
+        let mut parts: Vec<_> = list.parts.iter().map(key).collect();
+        parts.sort_unstable();
+        parts
+    };
+    a.records.len() == b.records.len() && faces(a) == faces(b) && parts(a) == parts(b)
+}
+
+/// The corners of a face in its orientation, the least first.
+fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
+    let mesh = sources.get(record.slot()).mesh()?;
+    let [a, b, c] = mesh.corners(record.face);
+    let [a, b, c] = if record.orientation().is_opposite() {
+        [a, c, b]
+    } else {
+        [a, b, c]
+    };
+    Some(if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    })
+}
+
+/// Steps of a chain share parts; equal ones of different solids are not looked for.
+fn key(part: &PartRecord) -> (*const Part, bool) {
+    let element = &part.element;
+    (
+        Arc::as_ptr(&element.part),
+        element.orientation.is_opposite(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::cell::Cell;
+    use crate::merge::scenes::{cuboids, tetrahedron, Shared};
+    use crate::tree::node::{Branch, Node};
+    use crate::tree::solid::Solid;
+
+    const BOXES: [[Lattice; 2]; 3] = [[[1; 3], [3; 3]], [[5; 3], [7; 3]], [[9; 3], [11; 3]]];
+
+    /// For each solid the first that has its boundary in a cell around all.
+    fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
+        let shared = Shared::of(solids);
+        let firsts = of_one_boundary(&shared.operands(), &shared.sources)?;
+        Some((0..).zip(solids).map(|(k, _)| firsts.of(k)).collect())
+    }
+
+    #[test]
+    fn faces_may_come_in_any_order() {
+        let [a, b, c] = BOXES;
+        let solids = [
+            cuboids([a, b, c]),
+            cuboids([a, b]),
+            cuboids([c, a, b]),
+            cuboids([b, a]),
+        ];
+        assert_eq!(firsts(&solids), Some(vec![0, 1, 0, 1]));
+        assert!(firsts(&solids[..2]).is_none());
+    }
+
+    #[test]
+    fn a_surface_turned_inside_out_is_another() {
+        let [a, b, c, d] = [[0; 3], [8, 0, 0], [0, 8, 0], [0, 0, 8]];
+        let solid = tetrahedron([a, b, c, d]);
+        let root = solid.root().complemented();
+        let turned = Solid::new(root, solid.pitch(), solid.sources().clone(), true);
+        let same = tetrahedron([b, c, a, d]);
+        assert_eq!(firsts(&[solid, turned, same]), Some(vec![0, 1, 0]));
+    }
+
+    #[test]
+    fn a_node_in_another_place_is_another() {
+        let node = Arc::new(Node::Leaf(1));
+        let branch = |cell: Cell, complement: bool| {
+            let node = Arc::clone(&node);
+            State::Tree(Branch {
+                cell,
+                outside: 0,
+                complement,
+                node,
+            })
+        };
+        let cells = [
+            Cell::around(&[0; 3], &[3; 3]),
+            Cell::around(&[8; 3], &[9; 3]),
+        ];
+        let states = [
+            branch(cells[0], false),
+            branch(cells[1], false),
+            branch(cells[0], true),
+            branch(cells[0], false),
+        ];
+        let states: States = (4..).zip(states).collect();
+        let found = of_one_node(&states).expect("the last is the first");
+        assert_eq!([4, 5, 6, 7].map(|k| found.of(k)), [4, 5, 6, 4]);
+        assert!(of_one_node(&states[..3].to_vec()).is_none());
+    }
+}
