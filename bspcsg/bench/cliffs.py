@@ -103,6 +103,9 @@ CLIFFS: dict[str, BenchCase] = {
     "dense-film": _doubled(
         "ball minus itself a nanometre beside, by rows", _pair(dense.film), 2500, 50
     ),
+    "dense-revisions": _doubled(
+        "ball minus itself with one corner moved, by triangles", _pair(dense.revisions), 20_000, 50
+    ),
     "dense-moved-copies": _doubled(
         "copies of a ball, each moved by less than a step", _union(dense.moved_copies), 10, 3
     ),

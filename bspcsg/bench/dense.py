@@ -133,6 +133,14 @@ def copies(count: int) -> list[MeshArrays]:
     return [icosphere(2)] * count
 
 
+def revisions(triangles: int) -> tuple[MeshArrays, MeshArrays]:
+    """Return a ball, and the same with a corner further out and its faces in another order."""
+    points, faces = octasphere(round((triangles / 8) ** 0.5))
+    later = points.copy()
+    later[0] *= 1.01
+    return (points, faces), (later, generator(12).permutation(faces))
+
+
 def near_balls(count: int) -> list[MeshArrays]:
     """Return balls that are turned by a hundredth of a radian, and a little larger each."""
     random = generator(8)
