@@ -32,13 +32,19 @@ impl Firsts {
     }
 }
 
-/// The operands whose subtrees in a cell are the same node; `None` if all differ.
+/// So few subtrees are compared in a cell: of more, which are hardly steps of one chain, each would be
+/// looked up in each cell.
+const FEW: usize = 16;
+
+/// The operands whose subtrees in a cell are the same node; `None` if all differ, or they are many.
 ///
 /// # Cost
 /// A look at each operand.
 pub fn of_one_node(states: &States) -> Option<Firsts> {
     let is_tree = |s: &&(u32, State)| matches!(s.1, State::Tree(_));
-    states.iter().filter(is_tree).nth(1)?;
+    if !(2..=FEW).contains(&states.iter().filter(is_tree).count()) {
+        return None;
+    }
     let mut known = HashMap::default();
     let pair = |(number, state): &(u32, State)| {
         let first = match state {
