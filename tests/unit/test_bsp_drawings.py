@@ -1,6 +1,9 @@
 """Regions in SVG and DXF files."""
 
 import math
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -135,6 +138,18 @@ def test_dxf_entities(tmp_path: Path) -> None:
     assert [o.is_hole for o in slot.outlines] == [False, True]
     hole = R.from_dxf(tmp_path / "slot.dxf", layers=["holes"], tolerance=1e-4)
     assert hole.area == pytest.approx(math.pi / 4, rel=1e-3)
+
+
+@pytest.mark.parametrize("suffix", ["svg", "dxf"])
+def test_the_same_region_gives_the_same_bytes_in_every_process(tmp_path: Path, suffix: str) -> None:
+    def data(seed: str) -> bytes:
+        path = tmp_path / f"{seed}.{suffix}"
+        program = f"from bspcsg import bsp; bsp.Region.rectangle(2, 1).to_{suffix}({str(path)!r})"
+        environment = {**os.environ, "PYTHONHASHSEED": seed}
+        subprocess.run([sys.executable, "-c", program], env=environment, check=True)
+        return path.read_bytes()
+
+    assert data("1") == data("2") == data("3")
 
 
 def test_bad_dxf(tmp_path: Path) -> None:

@@ -2,7 +2,8 @@
 
 import io
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -80,13 +81,28 @@ def dxf_data(region: Region) -> bytes:
     """Return what `save_dxf` writes."""
     ezdxf = optional("ezdxf", "ezdxf")
     outlines = region.to_polygons()
-    document = ezdxf.new("R2010")
-    for points in outlines:
-        document.modelspace().add_lwpolyline(points.tolist(), close=True)
     text = io.StringIO()
-    document.write(text)
+    with _without_time(ezdxf.options):
+        document = ezdxf.new("R2010")
+        for points in outlines:
+            document.modelspace().add_lwpolyline(points.tolist(), close=True)
+        # ezdxf names them in the order of a set, which differs from process to process.
+        for name in sorted(document.entitydb.dxf_types_in_use()):
+            document.classes.add_class(name)
+        document.write(text)
     data: bytes = text.getvalue().encode(document.output_encoding, errors="dxfreplace")
     return data
+
+
+@contextmanager
+def _without_time(options: Any) -> Iterator[None]:
+    """Have ezdxf write no time and no random number: the same region gives the same bytes."""
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
 
 
 def read_document(path: str | os.PathLike[str]) -> Any:
