@@ -6,7 +6,7 @@ use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{each, fill_chunks};
+use crate::mesh::tasks::{each, fill_chunks, CHUNK};
 
 /// A mesh in doubles, closed by index.
 #[derive(Clone, Copy, Debug)]
@@ -42,9 +42,8 @@ const MOST: usize = 4;
 /// much. A grid of four cells along an axis has no more.
 const SPREAD: usize = 64;
 
-/// Triangles that one thread looks through: some milliseconds of work, above what marks of its own
-/// cost.
-const SHARE: usize = 1 << 17;
+/// Triangles that one thread looks through: a millisecond of work, above what marks of its own cost.
+const SHARE: usize = CHUNK;
 
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
 /// another party; with their parties, ascending.

@@ -17,7 +17,7 @@ use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{each, each_chunk, CHUNK};
+use crate::mesh::tasks::{both, each, each_chunk, Worth, CHUNK};
 use crate::mesh::topology::NONE;
 
 /// The faults that keep a mesh from being embedded.
@@ -47,24 +47,31 @@ impl Faults {
 /// Others of one party, such as the faces of one input that are as they came, are not compared with
 /// each other.
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
-    let has_area = |t: u32| !has_no_area(&faces.corners(t));
-    let mut elements = in_company(faces, some, &party);
-    elements.retain(|(_, t)| has_area(*t));
-    let next = elements.last().map_or(0, |other| other.0 + 1);
-    let (own, flat) = parties(faces, some, next);
-    elements.extend(own);
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
-    let candidates: Vec<Candidate> = elements.iter().map(candidate).collect();
+    let (mut candidates, (own, flat)) = both(
+        Worth::task_if(some.len() > SHARE),
+        || -> Vec<Candidate> {
+            let near = in_company(faces, some, &party);
+            let has_area = near.iter().filter(|e| !has_no_area(&faces.corners(e.1)));
+            has_area.map(candidate).collect()
+        },
+        || {
+            let (own, flat) = parties(faces, some);
+            (own.iter().map(candidate).collect::<Vec<Candidate>>(), flat)
+        },
+    );
+    let next = candidates.last().map_or(0, |other| other.party + 1);
+    candidates.extend(own.into_iter().map(|own| own.after(next)));
     let crossings = Search::among::<Found>(&candidates).settled(faces);
     Faults { crossings, flat }
 }
 
-/// Some triangles by parties, from a number on, and those that have no area: each is a party of its
-/// own, but for those of one terrain, which do not cross each other.
-fn parties(faces: &Faces, some: &[u32], next: u32) -> (Vec<(u32, u32)>, Vec<u32>) {
+/// Some triangles by parties, and those that have no area: each is a party of its own, but for those
+/// of one terrain, which do not cross each other.
+fn parties(faces: &Faces, some: &[u32]) -> (Vec<(u32, u32)>, Vec<u32>) {
     let pieces = terrains(faces, some);
     let alone = as_number(some.len());
-    let party = |(at, piece): (u32, u32)| next + if piece == NONE { at } else { alone + piece };
+    let party = |(at, piece): (u32, u32)| if piece == NONE { at } else { alone + piece };
     let numbered = (0u32..).zip(pieces).map(party).zip(some.iter().copied());
     let has_area = |e: &(u32, u32)| !has_no_area(&faces.corners(e.1));
     let (mut own, flat): (Vec<_>, Vec<_>) = numbered.partition(has_area);
@@ -91,7 +98,7 @@ pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
         return Vec::new();
     }
     let all: Vec<u32> = (0..as_number(faces.triangles.len())).collect();
-    let (own, _) = parties(faces, &all, 0);
+    let (own, _) = parties(faces, &all);
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let candidates: Vec<Candidate> = own.iter().map(candidate).collect();
     ascending(Search::among::<Close>(&candidates).0)
@@ -143,6 +150,12 @@ impl Candidate {
             vertices: faces.triangles[triangle as usize],
             facing: Facing::of(&faces.corners(triangle)),
         }
+    }
+
+    /// The same, of a party with a number so much higher.
+    fn after(self, first: u32) -> Self {
+        let party = first + self.party;
+        Self { party, ..self }
     }
 
     /// The edge of another triangle at which the two are mates, by its number.
