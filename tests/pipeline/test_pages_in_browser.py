@@ -244,7 +244,7 @@ def test_the_view_turns_cuts_and_hides(browser: Browser, view: Path) -> None:
 def test_a_section_is_filled(browser: Browser, tmp_path: Path) -> None:
     mesh = b.sphere(r=1, segments=48).to_mesh()
     page = tmp_path / "ball.html"
-    page.write_text(view_page([Layer("ball", mesh.vertices, mesh.faces)], "ball"))
+    page.write_text(view_page([Layer("ball", mesh.vertices, mesh.faces)], "ball"), "utf-8")
     browser.open(page)
     browser.wait(_DRAWN)
     browser.choose("Edges", "none")

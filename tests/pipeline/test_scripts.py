@@ -72,7 +72,7 @@ def test_probes_print_their_counts() -> None:
 
 
 def test_fuzzing_goes_on_where_it_stopped(tmp_path: Path) -> None:
-    common = ["scenes", "files", "--minutes", "0.1", "--no-record", "--folder", str(tmp_path)]
+    common = ["scenes", "files", "--minutes", "0.05", "--no-record", "--folder", str(tmp_path)]
     reached = []
     for _ in range(2):
         done = script("fuzz", *common, "--seed", "7")

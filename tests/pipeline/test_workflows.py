@@ -89,7 +89,7 @@ def act(files: str = "", options: str = "") -> tuple[int, str]:
     files = files or action["inputs"]["files"]["default"]
     known = os.environ | {"FILES": files, "OPTIONS": options}
     command = ["bash", "-e", "-o", "pipefail", "-c", action["runs"]["steps"][-1]["run"]]
-    done = subprocess.run(command, env=known, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, env=known, capture_output=True, encoding="utf-8", check=False)
     return done.returncode, done.stdout + done.stderr
 
 
@@ -115,5 +115,5 @@ def test_the_hook_checks_the_files_it_is_given(repository: Path) -> None:
     assert matching == names[:2]
     entry = shlex.split(hook["entry"])
     assert subprocess.run([*entry, matching[0]], check=False, capture_output=True).returncode == 0
-    done = subprocess.run([*entry, *matching], capture_output=True, text=True, check=False)
+    done = subprocess.run([*entry, *matching], capture_output=True, encoding="utf-8", check=False)
     assert done.returncode == 1 and "open.off" in done.stdout

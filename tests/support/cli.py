@@ -71,7 +71,7 @@ def script(name: str, *arguments: str) -> "subprocess.CompletedProcess[str]":
     return subprocess.run(
         [str(root / "scripts" / name), *arguments],
         capture_output=True,
-        text=True,
+        encoding="utf-8",
         env={**os.environ, "PYTHON": sys.executable},
         timeout=280,
         check=False,
