@@ -3,5 +3,6 @@
 pub mod errors;
 pub mod forking;
 pub mod in_use;
+mod places;
 pub mod pool;
 pub mod run;

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::places::Places;
 use crate::error::{Error, ErrorKind, Result};
 
 /// The descent is at most 162 cells deep, three frames each; stolen work nests once more per level.
@@ -19,10 +20,16 @@ pub fn set_default_threads(n: usize) {
     DEFAULT_THREADS.store(n, Ordering::Relaxed);
 }
 
+/// Threads that share the work of calls.
+pub struct Pool {
+    pub threads: ThreadPool,
+    pub places: Places,
+}
+
 /// The pools of one process, by the number of threads that was asked for.
 struct Pools {
     process: u32,
-    by_threads: BTreeMap<usize, Arc<ThreadPool>>,
+    by_threads: BTreeMap<usize, Arc<Pool>>,
 }
 
 static POOLS: Mutex<Pools> = Mutex::new(Pools {
@@ -36,7 +43,7 @@ static POOLS: Mutex<Pools> = Mutex::new(Pools {
 ///
 /// # Errors
 /// `TooMany` if the system does not start the threads.
-pub fn pool(_gil: Python<'_>, threads: usize) -> Result<Arc<ThreadPool>> {
+pub fn pool(_gil: Python<'_>, threads: usize) -> Result<Arc<Pool>> {
     let threads = match threads {
         0 => DEFAULT_THREADS.load(Ordering::Relaxed),
         n => n,
@@ -65,15 +72,15 @@ impl Pools {
 }
 
 /// A pool of which all threads run: none is forked away while it starts.
-fn started(threads: usize) -> Result<ThreadPool> {
+fn started(threads: usize) -> Result<Pool> {
     let built = ThreadPoolBuilder::new()
         .num_threads(threads)
         .stack_size(STACK)
         .build();
-    let pool = built.map_err(|e| {
+    let threads = built.map_err(|e| {
         let text = format!("the system does not start the threads ({e}); ask for fewer threads");
         Error::new(ErrorKind::TooMany, text)
     })?;
-    pool.broadcast(|_| ());
-    Ok(pool)
+    let places = Places::of(&threads);
+    Ok(Pool { threads, places })
 }

@@ -5,10 +5,9 @@ use std::sync::{mpsc, Arc};
 use std::time::Duration;
 
 use pyo3::prelude::*;
-use rayon::ThreadPool;
 
 use super::errors::to_python;
-use super::pool::pool;
+use super::pool::{pool, Pool};
 use crate::error::panics::caught;
 use crate::error::{Error, Result};
 use crate::interrupt::{Call, Means, Share, Task};
@@ -26,7 +25,7 @@ const POLL: Duration = Duration::from_millis(50);
 
 thread_local! {
     /// The pool that does shares of this thread's call, and for how many threads it was asked.
-    static HELPERS: RefCell<(usize, Option<Arc<ThreadPool>>)> = const { RefCell::new((0, None)) };
+    static HELPERS: RefCell<(usize, Option<Arc<Pool>>)> = const { RefCell::new((0, None)) };
 
     /// The exception that a signal handler raised while this thread waited or worked.
     static RAISED: Cell<Option<PyErr>> = const { Cell::new(None) };
@@ -84,11 +83,7 @@ pub fn here<T>(py: Python<'_>, work: impl FnOnce() -> Result<T>) -> PyResult<T> 
 }
 
 /// Has a pool do the work of a call and waits for it.
-fn shared<T: Send>(
-    pool: &ThreadPool,
-    call: &Call,
-    work: impl FnOnce() -> Result<T> + Send,
-) -> Result<T> {
+fn shared<T: Send>(pool: &Pool, call: &Call, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
     let none = || Err(Error::internal("the work ended without an answer"));
     awaited(pool, call.task(), || call.run(work)).unwrap_or_else(none)
 }
@@ -101,20 +96,21 @@ fn hand_over(task: Task, share: Share<'_>) {
 }
 
 /// The pool for this thread's call; `None` if it has one thread, or the system starts none.
-fn helpers() -> Option<Arc<ThreadPool>> {
+fn helpers() -> Option<Arc<Pool>> {
     HELPERS.with_borrow_mut(|(threads, found)| {
         let ask = || Python::attach(|py| pool(py, *threads).ok());
         *found = found.take().or_else(ask);
-        let several = |pool: &&Arc<ThreadPool>| pool.current_num_threads() > 1;
+        let several = |pool: &&Arc<Pool>| pool.threads.current_num_threads() > 1;
         found.as_ref().filter(several).map(Arc::clone)
     })
 }
 
 /// Has a pool do some work of a call and waits for it; stops it when a signal's handler raises.
 /// `None`, or the panic, if the work panicked.
-fn awaited<T: Send>(pool: &ThreadPool, task: Task, work: impl FnOnce() -> T + Send) -> Option<T> {
+fn awaited<T: Send>(pool: &Pool, task: Task, work: impl FnOnce() -> T + Send) -> Option<T> {
     let (done, wait) = mpsc::channel();
-    pool.in_place_scope(|scope| {
+    let mut placed = pool.places.hold();
+    pool.threads.in_place_scope(|scope| {
         scope.spawn(move |_| {
             let _ = done.send(work());
         });
@@ -123,6 +119,7 @@ fn awaited<T: Send>(pool: &ThreadPool, task: Task, work: impl FnOnce() -> T + Se
                 Ok(value) => return Some(value),
                 Err(mpsc::RecvTimeoutError::Disconnected) => return None,
                 Err(mpsc::RecvTimeoutError::Timeout) => {
+                    placed = None;
                     if signal_raised() {
                         task.stop();
                     }

@@ -1,0 +1,182 @@
+//! Processors on which the threads of a pool begin a call.
+//!
+//! Linux wakes a thread beside its waker if the processor where the thread ran last looks busy. That
+//! one still does when the caller has worked there and now waits, or when the host of a virtual machine
+//! has put it to sleep. Threads that meet on one processor share it until the kernel balances loads,
+//! some milliseconds later: longer than many calls take. So where processors are free, a call gives each
+//! thread one of its own to begin on, and soon lets it go again.
+
+#[cfg(target_os = "linux")]
+pub use linux::Places;
+#[cfg(not(target_os = "linux"))]
+pub use others::Places;
+
+#[cfg(target_os = "linux")]
+mod linux {
+    use std::fs::read_to_string;
+    use std::sync::{Mutex, MutexGuard};
+    use std::time::{Duration, Instant};
+
+    use rayon::ThreadPool;
+    use rustix::thread::{gettid, sched_getaffinity, sched_getcpu, sched_setaffinity, CpuSet, Pid};
+
+    /// Threads beyond which the kernel is left alone: each costs a call of the system, and among so
+    /// many processors threads seldom meet.
+    const MOST: usize = 8;
+
+    /// How long processors count as free: a hundred times what it takes to ask.
+    const FRESH: Duration = Duration::from_millis(5);
+
+    /// The threads of a pool.
+    pub struct Places {
+        threads: Vec<Pid>,
+        /// When processors were looked at, and whether they were free. Locked while threads are held.
+        seen: Mutex<Option<(Instant, bool)>>,
+    }
+
+    /// Threads that stay on processors of their own until this is dropped.
+    pub struct Held<'p> {
+        threads: &'p [Pid],
+        allowed: CpuSet,
+        _seen: MutexGuard<'p, Option<(Instant, bool)>>,
+    }
+
+    impl Places {
+        /// The threads of a pool; waits until all of them run.
+        pub fn of(pool: &ThreadPool) -> Self {
+            Self {
+                threads: pool.broadcast(|_| gettid()),
+                seen: Mutex::new(None),
+            }
+        }
+
+        /// Has each thread begin on a processor of its own, the first on the caller's, which is about
+        /// to wait. `None` where other work would lose by it, or another call holds the threads.
+        pub fn hold(&self) -> Option<Held<'_>> {
+            if !(2..=MOST).contains(&self.threads.len()) {
+                return None;
+            }
+            let mut seen = self.seen.try_lock().ok()?;
+            let allowed = sched_getaffinity(None).ok()?;
+            let fresh = seen.filter(|(when, _)| when.elapsed() < FRESH);
+            let (_, free) = *seen.insert(fresh.unwrap_or_else(|| {
+                let others = others_that_run(&self.threads);
+                let room = |n| n + self.threads.len() <= allowed.count() as usize;
+                (Instant::now(), others.is_some_and(room))
+            }));
+            if !free {
+                return None;
+            }
+            for (&thread, processor) in self.threads.iter().zip(from_here(&allowed)) {
+                let mut only = CpuSet::new();
+                only.set(processor);
+                let _ = sched_setaffinity(Some(thread), &only);
+            }
+            Some(Held {
+                threads: &self.threads,
+                allowed,
+                _seen: seen,
+            })
+        }
+    }
+
+    impl Drop for Held<'_> {
+        fn drop(&mut self) {
+            for &thread in self.threads {
+                let _ = sched_setaffinity(Some(thread), &self.allowed);
+            }
+        }
+    }
+
+    /// How many threads of the machine run or wait for a processor, beside this one and its pool's.
+    fn others_that_run(own: &[Pid]) -> Option<usize> {
+        let loads = read_to_string("/proc/loadavg").ok()?;
+        let all: usize = loads.split([' ', '/']).nth(3)?.parse().ok()?;
+        let others = all.saturating_sub(1);
+        // Threads of a pool stay awake for a moment after a call.
+        let awake = || own.iter().filter(|&&thread| runs(thread)).count();
+        Some(if others == 0 {
+            0
+        } else {
+            others.saturating_sub(awake())
+        })
+    }
+
+    /// Return whether a thread of this process runs or waits for a processor.
+    fn runs(thread: Pid) -> bool {
+        let path = format!("/proc/self/task/{}/stat", thread.as_raw_pid());
+        let state = |stat: &str| stat.rsplit(')').next()?.trim_start().chars().next();
+        read_to_string(path).is_ok_and(|stat| state(&stat) == Some('R'))
+    }
+
+    /// The processors of those allowed, from the one where this thread runs.
+    fn from_here(allowed: &CpuSet) -> impl Iterator<Item = usize> + '_ {
+        let here = sched_getcpu();
+        let circle = (here..CpuSet::MAX_CPU).chain(0..here);
+        circle.filter(|&processor| allowed.is_set(processor))
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::*;
+
+        fn pool() -> ThreadPool {
+            let built = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+            built.expect("two threads")
+        }
+
+        fn processors(thread: Pid) -> u32 {
+            sched_getaffinity(Some(thread))
+                .expect("a thread that lives")
+                .count()
+        }
+
+        #[test]
+        fn threads_are_held_apart_and_let_go() {
+            let pool = pool();
+            let places = Places::of(&pool);
+            let all = processors(gettid());
+            *places.seen.lock().expect("nobody else") = Some((Instant::now(), all >= 2));
+            let Some(held) = places.hold() else {
+                assert!(all < 2);
+                return;
+            };
+            assert_eq!(places.threads.iter().map(|&t| processors(t)).max(), Some(1));
+            assert!(places.hold().is_none(), "held by another call");
+            drop(held);
+            assert_eq!(
+                places.threads.iter().map(|&t| processors(t)).min(),
+                Some(all)
+            );
+        }
+
+        #[test]
+        fn threads_are_left_alone_where_processors_are_not_free() {
+            let pool = pool();
+            let places = Places::of(&pool);
+            *places.seen.lock().expect("nobody else") = Some((Instant::now(), false));
+            assert!(places.hold().is_none());
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod others {
+    use rayon::ThreadPool;
+
+    /// The threads of a pool, which the system places.
+    pub struct Places;
+
+    impl Places {
+        /// The threads of a pool; waits until all of them run.
+        pub fn of(pool: &ThreadPool) -> Self {
+            pool.broadcast(|_| ());
+            Self
+        }
+
+        /// Leaves the threads where the system has them begin.
+        pub fn hold(&self) -> Option<()> {
+            None
+        }
+    }
+}
