@@ -128,8 +128,8 @@ fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
 /// For directed edges the third corner of the triangle there, if there is one.
 type Apexes = HashMap<[VertexId; 2], Option<VertexId>>;
 
-/// Triangles that one thread compares: a millisecond of work or more.
-const SHARE: usize = 2048;
+/// Triangles that one thread compares: half a millisecond of work or more.
+const SHARE: usize = 512;
 
 /// Pairs that are looked at together, by several threads where there are any.
 const BATCH: usize = 8 * CHUNK;

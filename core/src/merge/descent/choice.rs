@@ -21,6 +21,10 @@ const GENERAL: usize = 64;
 /// More are halved, to be shared among threads.
 const FRESH: usize = 1 << 13;
 
+/// The same, where nothing was halved yet: with one halving more, two threads share what they would
+/// else not, which on one costs no more than a kernel for all.
+const WHOLE: usize = 1 << 10;
+
 /// The same, for results of groups of operands in one place: the only step that takes one of them
 /// apart is the one that combines it with the other. Where they were halved, walls that both have
 /// would meet in special ways in a larger cell, and each wall makes parts of faces.
@@ -93,6 +97,10 @@ impl Round {
         groups: true,
         ..Self::START
     };
+
+    fn is_first(&self) -> bool {
+        self.depth == 0 && self.start == Self::START.start
+    }
 
     /// After a halving of a cell with so many elements that may separate them.
     #[must_use]
@@ -181,7 +189,8 @@ impl Round {
             return false;
         }
         if states.iter().all(|s| s.1.is_given()) {
-            return total <= FRESH && mixed(cell, states, total) >= MIXED;
+            let most = if self.is_first() { WHOLE } else { FRESH };
+            return total <= most && mixed(cell, states, total) >= MIXED;
         }
         if self.groups {
             return total <= GROUPS && states.iter().all(|s| s.1.is_undivided());
