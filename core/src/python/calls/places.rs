@@ -24,13 +24,14 @@ mod linux {
     /// many processors threads seldom meet.
     const MOST: usize = 8;
 
-    /// How long processors count as free: a hundred times what it takes to ask.
+    /// The time for which processors count as free: a hundred times what it takes to ask.
     const FRESH: Duration = Duration::from_millis(5);
 
     /// The threads of a pool.
     pub struct Places {
         threads: Vec<Pid>,
-        /// When processors were looked at, and whether they were free. Locked while threads are held.
+        /// The last look at processors: its time, and whether they were free. Locked while threads are
+        /// held.
         seen: Mutex<Option<(Instant, bool)>>,
     }
 
@@ -88,7 +89,8 @@ mod linux {
         }
     }
 
-    /// How many threads of the machine run or wait for a processor, beside this one and its pool's.
+    /// The number of threads of the machine that run or wait for a processor, beside this one and its
+    /// pool's.
     fn others_that_run(own: &[Pid]) -> Option<usize> {
         let loads = read_to_string("/proc/loadavg").ok()?;
         let all: usize = loads.split([' ', '/']).nth(3)?.parse().ok()?;
