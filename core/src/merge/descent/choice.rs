@@ -315,4 +315,19 @@ mod tests {
         round.refused(8);
         assert!(!suits(round));
     }
+
+    #[test]
+    fn a_large_cell_is_halved_once_before_a_kernel_takes_it() {
+        let scene = crossing();
+        let listed = scene.lists.iter().cloned().map(State::List);
+        let states: States = (0..).zip(listed).collect();
+        let suits = |round: Round, total| round.suits_general_position(&scene.cell, &states, total);
+        assert!(suits(Round::START, WHOLE));
+        assert!(!suits(Round::START, WHOLE + 1));
+        let later = (0..ROUND).map(|n| (0..=n).fold(Round::START, |r, _| r.next(WHOLE)));
+        assert!(later
+            .into_iter()
+            .all(|round| suits(round, WHOLE + 1) && suits(round, FRESH)));
+        assert!(!suits(Round::START.next(FRESH), FRESH + 1));
+    }
 }

@@ -95,13 +95,12 @@ mod linux {
         let loads = read_to_string("/proc/loadavg").ok()?;
         let all: usize = loads.split([' ', '/']).nth(3)?.parse().ok()?;
         let others = all.saturating_sub(1);
+        if others == 0 {
+            return Some(0);
+        }
         // Threads of a pool stay awake for a moment after a call.
-        let awake = || own.iter().filter(|&&thread| runs(thread)).count();
-        Some(if others == 0 {
-            0
-        } else {
-            others.saturating_sub(awake())
-        })
+        let awake = own.iter().filter(|&&thread| runs(thread)).count();
+        Some(others.saturating_sub(awake))
     }
 
     /// Return whether a thread of this process runs or waits for a processor.
