@@ -124,7 +124,8 @@ impl Assembly<'_> {
         self.mark_irregular(fates, rims);
         self.identify_near(near, fates);
         let frontier = rims.frontier(fates, self.sources);
-        let mut edges = Vec::new();
+        let count: usize = groups.iter().map(|g| g.edges().len()).sum();
+        let mut edges = Vec::with_capacity(count + frontier.len());
         let mut starts = Vec::with_capacity(groups.len());
         for group in &groups {
             poll();

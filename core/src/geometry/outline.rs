@@ -103,17 +103,17 @@ impl OutlineEdge {
 /// their lines once asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
-    edges: Vec<BareEdge>,
+    edges: Box<[BareEdge]>,
     /// As many as there are edges, or none if nobody has asked.
-    lines: Vec<LineKey>,
+    lines: Box<[LineKey]>,
 }
 
 impl Outline {
     /// Such an outline.
     pub fn of_bare(edges: &[BareEdge]) -> Self {
         Self {
-            edges: edges.to_vec(),
-            lines: Vec::new(),
+            edges: edges.into(),
+            lines: Box::default(),
         }
     }
 
@@ -134,7 +134,7 @@ impl Outline {
     pub fn lines(&mut self, plane: &PlaneResidues) -> &[LineKey] {
         if self.lines.is_empty() {
             let carriers = self.edges.iter().map(|e| &e.carrier);
-            self.lines = lines(carriers, plane).into_vec();
+            self.lines = lines(carriers, plane).into_boxed_slice();
         }
         &self.lines
     }
@@ -142,7 +142,7 @@ impl Outline {
     /// The edges with the keys of their lines in a plane.
     pub fn keyed(mut self, plane: &PlaneResidues) -> Vec<OutlineEdge> {
         self.lines(plane);
-        let keyed = self.edges.into_iter().zip(self.lines);
+        let keyed = self.edges.into_vec().into_iter().zip(self.lines);
         keyed.map(|(edge, line)| edge.keyed(line)).collect()
     }
 

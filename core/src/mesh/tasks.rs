@@ -58,12 +58,20 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     chunks.enumerate().map(value).collect()
 }
 
-/// A value for each item, in order: each is a task.
-pub fn each<T: Send, R: Send>(items: Vec<T>, value: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
-    if in_pool() {
-        items.into_par_iter().map(carried(value)).collect()
-    } else {
-        items.into_iter().map(value).collect()
+/// A value for each item, in order: each is a task of this worth.
+pub fn each<T: Send, R: Send>(
+    worth: Worth,
+    items: Vec<T>,
+    value: impl Fn(T) -> R + Sync + Send,
+) -> Vec<R> {
+    let value = carried(value);
+    let at_once = |items: Vec<T>| items.into_par_iter().map(&value).collect();
+    let in_turn = |items: Vec<T>| items.into_iter().map(&value).collect();
+    match worth {
+        Worth::Nothing => in_turn(items),
+        _ if in_pool() => at_once(items),
+        Worth::Pool if items.len() > 1 => handed_over(items, at_once).unwrap_or_else(in_turn),
+        Worth::Task | Worth::Pool => in_turn(items),
     }
 }
 
@@ -88,6 +96,16 @@ impl Worth {
             Self::Nothing
         }
     }
+
+    /// Waking a pool, or nothing.
+    #[must_use]
+    pub const fn pool_if(pays: bool) -> Self {
+        if pays {
+            Self::Pool
+        } else {
+            Self::Nothing
+        }
+    }
 }
 
 /// Two values, made at the same time where that pays.
@@ -108,6 +126,7 @@ pub fn both<A: Send, B: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::interrupt::{Call, Means};
 
     #[test]
     fn chunks_are_the_same_in_a_pool_and_outside() {
@@ -128,6 +147,25 @@ mod tests {
             assert_eq!(copied(), pool.install(copied));
             assert_eq!(ends().len(), len.div_ceil(CHUNK).max(1));
             assert_eq!(copied().1, items);
+        }
+    }
+
+    /// A caller who does shares himself.
+    const ALONE: Means = Means {
+        wants_to_stop: || false,
+        hand_over: |task, share| task.run(share),
+    };
+
+    #[test]
+    fn values_are_in_order_of_their_items_whoever_makes_them() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
+        let pool = pool.expect("two threads");
+        for worth in [Worth::Nothing, Worth::Task, Worth::Pool] {
+            let squares = || each(worth, (0..9).collect(), |n: usize| n * n);
+            let handed = Call::new().run_here(ALONE, || Ok(squares()));
+            assert_eq!(squares(), [0, 1, 4, 9, 16, 25, 36, 49, 64]);
+            assert_eq!(squares(), pool.install(squares));
+            assert_eq!(Ok(squares()), handed);
         }
     }
 }

@@ -163,7 +163,7 @@ impl Shares {
                 open: share.points.iter().map(|p| (*p, 1)).collect(),
             }),
             _ => {
-                let worth = Worth::task_if(shares.len() >= TASK);
+                let worth = Worth::pool_if(shares.len() >= TASK);
                 let (low, high) = halves(shares);
                 let (low, high) = both(worth, || self.partial(low), || self.partial(high));
                 self.joined(low, high)

@@ -115,6 +115,7 @@ pub fn group(
     let groups = grouping.groups.into_iter().filter(|g| !g.faces.is_empty());
     let mut groups: Vec<PlaneGroup> = groups.map(Gathered::joined).collect();
     groups.retain(|g| !g.edges().is_empty());
+    groups.shrink_to_fit();
     (grouping.fates, groups, grouping.rims)
 }
 

@@ -6,7 +6,7 @@ use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{each, fill_chunks, CHUNK};
+use crate::mesh::tasks::{each, fill_chunks, Worth, CHUNK};
 
 /// A mesh in doubles, closed by index.
 #[derive(Clone, Copy, Debug)]
@@ -111,7 +111,7 @@ impl<'a> Others<'a> {
         loop {
             let places = Places::of(faces, grid);
             if let Some(marks) = self.marks(&places, &party) {
-                let near = each(self.shares(), |share| {
+                let near = each(Worth::Task, self.shares(), |share| {
                     let shared = |t: &u32| marks.is_shared(places.corners(*t));
                     let near = self.within(share).filter(shared);
                     near.map(|t| (party(t), t)).collect::<Vec<_>>()
@@ -124,7 +124,7 @@ impl<'a> Others<'a> {
 
     /// The marks of all triangles; `None` if they reach into more cells than are worth marking.
     fn marks(self, places: &Places, party: impl Fn(u32) -> u32 + Sync + Send) -> Option<Marks> {
-        let marked = each(self.shares(), |share| {
+        let marked = each(Worth::Task, self.shares(), |share| {
             let mut marks = places.grid.marks(share.len());
             let mark = |t: u32| marks.mark(places.corners(t), party(t) + 1);
             self.within(share).try_for_each(mark).map(|()| marks)

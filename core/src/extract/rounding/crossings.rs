@@ -49,7 +49,7 @@ impl Faults {
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
-        Worth::task_if(some.len() > SHARE),
+        Worth::pool_if(some.len() > SHARE),
         || -> Vec<Candidate> {
             let near = in_company(faces, some, &party);
             let has_area = near.iter().filter(|e| !has_no_area(&faces.corners(e.1)));
@@ -315,7 +315,7 @@ impl<'a> Search<'a> {
         let search = Self { candidates, image };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
         let parts = Part::of(boxes.collect()).divided(SHARE);
-        let found = each(parts, |part| search.kept(part));
+        let found = each(Worth::Pool, parts, |part| search.kept(part));
         found.into_iter().fold(K::default(), K::with)
     }
 

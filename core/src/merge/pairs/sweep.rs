@@ -12,7 +12,7 @@ use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::dot;
 use crate::interrupt::spend;
-use crate::mesh::tasks::each;
+use crate::mesh::tasks::{each, Worth};
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
@@ -24,13 +24,13 @@ const PAIRS: usize = 16;
 /// lower index first; gives up with `None` where too many elements lie above each other on each.
 pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
     let parties = parties(elements);
-    let sweeps = each(parties.iter().collect(), |numbers| {
+    let sweeps = each(Worth::Task, parties.iter().collect(), |numbers| {
         Sweep::of(elements, numbers)
     });
     if sweeps.iter().map(Sweep::cost).sum::<f64>() > CROWDED {
         return None;
     }
-    let found = each(sweeps.iter().collect(), Sweep::run);
+    let found = each(Worth::Task, sweeps.iter().collect(), Sweep::run);
     found.into_iter().flatten().for_each(|(i, j)| meet(i, j));
     Some(())
 }

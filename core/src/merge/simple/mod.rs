@@ -295,7 +295,7 @@ impl<'a> Check<'a> {
         let (minus, plus) = list.divide(&cell, cut, self.sources);
         let below = || self.cell(cell.half(cut, Half::Minus), minus);
         let above = || self.cell(cell.half(cut, Half::Plus), plus);
-        both(Worth::task_if(total >= TASK), below, above);
+        both(Worth::pool_if(total >= TASK), below, above);
     }
 
     /// Return whether all faces of a list are known to be clear of each other, and their shells to

@@ -12,8 +12,9 @@ use crate::error::panics::caught;
 use crate::error::{Error, Result};
 use crate::interrupt::{Call, Means, Share, Task};
 
-/// Work on fewer elements than this begins on the caller's thread.
-pub const SMALL: usize = 2000;
+/// Work on fewer elements than this begins on the caller's thread: passes over them are not shared,
+/// and what is worth more wakes the pool by itself.
+pub const SMALL: usize = 1 << 13;
 
 /// The abilities of a caller's thread.
 const MEANS: Means = Means {
