@@ -78,6 +78,13 @@ impl Element<'_> {
                     .map(|v| names.anchor(*part, v))
                     .collect()
             }
+            Place::Part(number, apart) => {
+                let corners = apart.part().edges.iter().map(|e| &e.from);
+                corners
+                    .filter(|v| is_well_inside(v, cell))
+                    .map(|v| names.anchor(*number, v))
+                    .collect()
+            }
             Place::Plane(..) => Vec::new(),
         }
     }
@@ -96,7 +103,7 @@ impl Element<'_> {
                 let mut at_corner = |c: &Corner| names.anchor(*part, &c.at);
                 corners.iter().map(&mut at_corner).collect()
             }
-            Place::Plane(..) => Vec::new(),
+            Place::Plane(..) | Place::Part(..) => Vec::new(),
         }
     }
 }
@@ -136,7 +143,7 @@ impl Anchor {
 }
 
 /// Return whether a point certainly lies in a cell.
-fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
+pub(super) fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
     let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
     (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))
 }

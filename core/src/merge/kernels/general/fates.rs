@@ -129,7 +129,8 @@ impl Scene<'_> {
             let [low, high] = element.extent(self.cell);
             Boxed::new(element.operand, number, [&low, &high], shift)
         };
-        let boxes = (0..).zip(&self.elements).map(boxed).collect();
+        let elements = (0..).zip(&self.elements);
+        let boxes = elements.filter(|(_, e)| !e.is_apart()).map(boxed).collect();
         let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
         let near: Vec<NearTriangle> = self.elements.iter().map(|e| self.near(e)).collect();
@@ -189,11 +190,12 @@ impl Scene<'_> {
         for j in neighbours {
             poll();
             let other = &self.elements[*j as usize];
-            match contact(polygon, other.shape()) {
+            let Some(face) = other.shape() else { continue };
+            match contact(polygon, face) {
                 Contact::Special => return None,
                 Contact::None => {}
                 Contact::Crossing(ours, theirs) => crossers.push(Crosser {
-                    face: other.shape(),
+                    face,
                     number: *j,
                     operand: other.operand,
                     weight: other.weight,

@@ -27,7 +27,7 @@ impl Scene<'_> {
             let owner = match &element.place {
                 Place::Face(t) => Owner::Face(t.face),
                 Place::Plane(slot, _) => Owner::Face(SourceFace::new(*slot, FaceId::ONLY)),
-                Place::Piece(part, _) => Owner::Part(*part),
+                Place::Piece(part, _) | Place::Part(part, _) => Owner::Part(*part),
             };
             (i, owner, element.stays(fate, &labels[i], &mut values))
         });

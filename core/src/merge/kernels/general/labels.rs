@@ -93,7 +93,7 @@ impl Scene<'_> {
 
     /// The labels of all operands but one at an exact point of that one's boundary.
     fn count(&self, own: usize, point: &Vertex) -> Option<Labels> {
-        let across = |e: &Element| e.shape().on_path(&self.corner, point);
+        let across = |e: &Element| e.on_path(&self.corner, point);
         self.count_by(own, point.approx(), across)
     }
 
@@ -102,7 +102,7 @@ impl Scene<'_> {
         let exact = Vertex::lattice(*point);
         let across = |e: &Element| match &e.place {
             Place::Face(t) => triangle_on_path(&t.corners, &self.corner, point),
-            _ => e.shape().on_path(&self.corner, &exact),
+            _ => e.on_path(&self.corner, &exact),
         };
         self.count_by(own, point.map(as_double), across)
     }

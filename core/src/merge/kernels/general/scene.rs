@@ -1,20 +1,23 @@
-//! The elements of a cell: whole faces, faces of half-spaces, and convex pieces of parts.
+//! The elements of a cell: whole faces, faces of half-spaces, and parts or their convex pieces.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
+use super::anchors::is_well_inside;
 use super::cutting::Face;
 use super::Labels;
 use crate::arith::convert::as_double;
+use crate::arith::Filtered;
 use crate::geometry::apart::NearTriangle;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
+use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::kernels::problem::Listed;
-use crate::merge::lists::list::{List, Record, Sources};
+use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::merge::pairs::Swept;
 use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
@@ -39,7 +42,7 @@ pub(super) struct Scene<'a> {
     pub(super) overlapping: OnceCell<usize>,
 }
 
-/// A whole face or a convex piece of a part.
+/// A whole face, or a part or a convex piece of one.
 pub(super) struct Element<'a> {
     pub(super) operand: usize,
     /// By how much the winding number behind the face exceeds that in front of it.
@@ -58,6 +61,14 @@ pub(super) enum Place<'a> {
     Plane(Slot, Box<Face<'a>>),
     /// A piece of a part: the part's number in the scene.
     Piece(usize, Box<Face<'a>>),
+    /// A part of which a box is apart from all other operands.
+    Part(usize, ApartPart<'a>),
+}
+
+/// A part that nothing can cross: its pieces are made if a path may.
+pub(super) struct ApartPart<'a> {
+    record: &'a PartRecord,
+    pieces: OnceCell<Vec<Face<'a>>>,
 }
 
 /// A whole face.
@@ -77,7 +88,10 @@ impl<'a> Scene<'a> {
             corners: operands.iter().map(|l| l.list.corner).collect(),
             elements: Vec::with_capacity(operands.iter().map(|l| l.list.len()).sum()),
             ends: Vec::with_capacity(operands.len()),
-            boxes: Vec::with_capacity(operands.len()),
+            boxes: operands
+                .iter()
+                .map(|l| box_around(&l.list, sources))
+                .collect(),
             parts: Vec::new(),
             overlapping: OnceCell::new(),
         };
@@ -88,7 +102,6 @@ impl<'a> Scene<'a> {
             scene.elements.extend(faces);
             scene.add_parts(operand, list, sources);
             scene.ends.push(scene.elements.len());
-            scene.boxes.push(box_around(scene.of_operand(operand)));
         }
         scene
     }
@@ -100,6 +113,19 @@ impl<'a> Scene<'a> {
             let slot = sources.slot(&p.element.part.source);
             self.parts.push((&p.element.part, slot));
             let inside = self.cell.holds(&p.element.part.home);
+            if self.is_apart(operand, &p.element.part) {
+                let pieces = OnceCell::new();
+                let [low, high] = p.element.part.around;
+                self.elements.push(Element {
+                    operand,
+                    weight: p.element.orientation.signed(1),
+                    place: Place::Part(part, ApartPart { record: p, pieces }),
+                    inside,
+                    low: low.map(|x| x - 1),
+                    high: high.map(|x| x + 1),
+                });
+                continue;
+            }
             for piece in p.pieces().iter().filter(|p| p.may_meet(self.cell)) {
                 poll();
                 let [low, high] = piece.around;
@@ -115,12 +141,23 @@ impl<'a> Scene<'a> {
         }
     }
 
+    /// Return whether other operands keep out of a box around a part that has a corner in the cell.
+    fn is_apart(&self, operand: usize, part: &Part) -> bool {
+        // The places of the box are up to half a step inside it.
+        let [low, high] = [part.around[0].map(|x| x - 1), part.around[1].map(|x| x + 1)];
+        let meets =
+            |[least, most]: &[Lattice; 2]| (0..3).all(|i| low[i] <= most[i] && high[i] >= least[i]);
+        let others = self.boxes.iter().enumerate().filter(|(k, _)| *k != operand);
+        let mut corners = part.edges.iter().map(|e| &e.from);
+        !others.map(|(_, other)| other).any(meets) && corners.any(|c| is_well_inside(c, self.cell))
+    }
+
     /// An element to be compared with others: what keeps clear of a face does so of its pieces. The
     /// face of a half-space is apart from nothing.
     pub(super) fn near(&self, element: &Element) -> NearTriangle {
         let corners = match &element.place {
             Place::Face(triangle) => Some(triangle.corners),
-            Place::Piece(part, _) => {
+            Place::Piece(part, _) | Place::Part(part, _) => {
                 let part = self.parts[*part].0;
                 part.source.mesh().map(|mesh| mesh.corners(part.face))
             }
@@ -156,15 +193,49 @@ pub(super) enum Name {
     Crossing(Slot, [VertexId; 2], u8),
 }
 
-/// A box around elements; one that holds nothing if there are none.
-fn box_around(elements: &[Element]) -> [Lattice; 2] {
+/// A box around what is listed; one that holds nothing if that is nothing.
+fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
+    let faces = list.records.iter();
+    let faces = faces.map(|r| sources.get(r.slot()).face_box(r.face));
+    let parts = list.parts.iter().map(|p| {
+        // The places of the box are up to half a step inside it.
+        let [low, high] = p.element.part.around;
+        (low.map(|x| x - 1), high.map(|x| x + 1))
+    });
     let nothing = [[i64::MAX; 3], [i64::MIN; 3]];
-    elements.iter().fold(nothing, |[low, high], e| {
-        [
-            each_axis(|i| low[i].min(e.low[i])),
-            each_axis(|i| high[i].max(e.high[i])),
-        ]
-    })
+    faces
+        .chain(parts)
+        .fold(nothing, |[least, most], (low, high)| {
+            [
+                each_axis(|i| least[i].min(low[i])),
+                each_axis(|i| most[i].max(high[i])),
+            ]
+        })
+}
+
+impl ApartPart<'_> {
+    /// The part.
+    pub(super) fn part(&self) -> &Part {
+        &self.record.element.part
+    }
+
+    fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+        let pieces = self.pieces.get_or_init(|| {
+            let pieces = self.record.pieces().iter();
+            pieces
+                .map(|p| Face::new(Cow::Borrowed(&p.polygon)))
+                .collect()
+        });
+        let mut sum = 0;
+        for piece in pieces {
+            poll();
+            let Filtered::Certain(change) = piece.on_path(from, to) else {
+                return Filtered::Doubtful;
+            };
+            sum += change;
+        }
+        Filtered::Certain(sum)
+    }
 }
 
 impl Triangle<'_> {
@@ -223,7 +294,7 @@ impl<'a> Element<'a> {
         let inside = match &self.place {
             Place::Face(_) if self.inside => [true; 3],
             Place::Face(triangle) => triangle.corners.map(|p| cell.holds_box(&p, &p)),
-            Place::Plane(..) | Place::Piece(..) => [false; 3],
+            Place::Plane(..) | Place::Piece(..) | Place::Part(..) => [false; 3],
         };
         (0..3).filter(move |i| inside[*i])
     }
@@ -250,23 +321,40 @@ impl<'a> Element<'a> {
             high,
             corners: match &self.place {
                 Place::Face(t) => Some(each_axis(|i| relative(&t.corners[i]))),
-                Place::Plane(..) | Place::Piece(..) => None,
+                Place::Plane(..) | Place::Piece(..) | Place::Part(..) => None,
             },
         }
     }
 
-    pub(super) fn shape(&self) -> &Face<'a> {
+    /// Return whether the element is a part that is apart from all other operands.
+    pub(super) fn is_apart(&self) -> bool {
+        matches!(self.place, Place::Part(..))
+    }
+
+    /// The change of the winding number across the element along a path, as [`Face::on_path`].
+    pub(super) fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         match &self.place {
+            Place::Part(_, part) => part.on_path(from, to),
+            _ => self
+                .shape()
+                .map_or(Filtered::Certain(0), |s| s.on_path(from, to)),
+        }
+    }
+
+    /// The convex shape; none of a part that is apart.
+    pub(super) fn shape(&self) -> Option<&Face<'a>> {
+        Some(match &self.place {
             Place::Face(t) => t.shape.get_or_init(|| {
                 let plane = t.source.plane(t.face.id);
                 Box::new(Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane))))
             }),
             Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
-        }
+            Place::Part(..) => return None,
+        })
     }
 
     pub(super) fn polygon_in(&self, cell: &Cell) -> Option<Polygon> {
-        let polygon = self.shape().polygon.as_ref().clone();
+        let polygon = self.shape()?.polygon.as_ref().clone();
         if self.inside {
             return Some(polygon);
         }
@@ -277,7 +365,9 @@ impl<'a> Element<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::merge::scenes::crossing;
+    use crate::merge::expression::Term;
+    use crate::merge::kernels::general::fates::Fate;
+    use crate::merge::scenes::{crossing, made_of, tetrahedra, tetrahedron, Shared};
 
     #[test]
     fn elements_stand_by_operand_in_a_box_around_them() {
@@ -291,5 +381,40 @@ mod tests {
         assert_eq!(scene.boxes[0], [[0; 3], [16; 3]]);
         // Only the second is inside at the corner.
         assert_eq!(scene.at_corner(), 0b10);
+    }
+
+    #[test]
+    fn parts_away_from_other_operands_are_not_taken_apart() {
+        let union = made_of(&tetrahedra(), Term::Or);
+        let small = tetrahedron([[-3, -3, -3], [1, -2, -1], [-2, 1, -2], [-1, -1, 1]]);
+        let shared = Shared::of(&[union, small]);
+        let operands = shared.operands();
+        let scene = Scene::new(&shared.cell, &operands, &shared.sources);
+        // The three cut faces of the second tetrahedron; that of the first may meet the small one.
+        let apart = |e: &&Element| e.is_apart();
+        assert_eq!(scene.elements.iter().filter(apart).count(), 3);
+        let fates = scene.fates(usize::MAX).expect("general position");
+        let uncut = scene
+            .elements
+            .iter()
+            .zip(&fates)
+            .filter(|(e, _)| e.is_apart());
+        assert!(uncut
+            .clone()
+            .all(|(_, fate)| matches!(fate, Fate::Uncut(_))));
+        let winding = |point: Lattice| {
+            let point = Vertex::lattice(point);
+            let crossed = scene.of_operand(0).iter().map(|e| {
+                let Filtered::Certain(change) = e.on_path(&scene.corner, &point) else {
+                    panic!("the path is in general position");
+                };
+                e.weight * change
+            });
+            scene.corners[0] + crossed.sum::<i32>()
+        };
+        assert_eq!(
+            [[11, 9, 7], [3, 2, 5], [7, 20, 19]].map(winding),
+            [1, 1, 0]
+        );
     }
 }
