@@ -412,9 +412,6 @@ mod tests {
             });
             scene.corners[0] + crossed.sum::<i32>()
         };
-        assert_eq!(
-            [[11, 9, 7], [3, 2, 5], [7, 20, 19]].map(winding),
-            [1, 1, 0]
-        );
+        assert_eq!([[11, 9, 7], [3, 2, 5], [7, 20, 19]].map(winding), [1, 1, 0]);
     }
 }
