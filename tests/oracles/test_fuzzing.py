@@ -93,7 +93,7 @@ def test_random_scenes_of_sizes() -> None:
 
 def test_sizes_lie_on_both_sides_of_each_threshold_of_the_core() -> None:
     found = thresholds()
-    assert {16, 512, 2000, 1 << 14} <= set(found) and len(found) > 12
+    assert {16, 512, 1 << 13, 1 << 14} <= set(found) and len(found) > 12
     drawn = {a_size(np.random.default_rng([3, k])) for k in range(1000)}
     assert drawn == {size + more for size in found for more in (-1, 0, 1)}
     counts = {k: len(ball(np.random.default_rng(k)).faces) for k in range(60)}

@@ -5,8 +5,7 @@
 
 use std::sync::Arc;
 
-use super::scene::{Element, Name, Place, Scene, Triangle};
-use crate::arith::convert::as_double;
+use super::scene::{is_well_inside, Element, Name, Place, Scene, Triangle};
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::{Carrier, Corner, Polygon};
@@ -140,12 +139,6 @@ impl Anchor {
             Spot::Exact(vertex) => Arc::ptr_eq(vertex, corner),
         }
     }
-}
-
-/// Return whether a point certainly lies in a cell.
-pub(super) fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
-    let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
-    (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))
 }
 
 #[cfg(test)]

@@ -4,7 +4,6 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use super::anchors::is_well_inside;
 use super::cutting::Face;
 use super::Labels;
 use crate::arith::convert::as_double;
@@ -211,6 +210,12 @@ fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
                 each_axis(|i| most[i].max(high[i])),
             ]
         })
+}
+
+/// Return whether a point certainly lies in a cell.
+pub(super) fn is_well_inside(vertex: &Vertex, cell: &Cell) -> bool {
+    let ((least, most), low, high) = (vertex.bounds(), cell.low(), cell.high());
+    (0..3).all(|i| least[i] >= as_double(low[i]) && most[i] <= as_double(high[i]))
 }
 
 impl ApartPart<'_> {
