@@ -87,16 +87,6 @@ pub enum Worth {
 }
 
 impl Worth {
-    /// A task, or nothing.
-    #[must_use]
-    pub const fn task_if(pays: bool) -> Self {
-        if pays {
-            Self::Task
-        } else {
-            Self::Nothing
-        }
-    }
-
     /// Waking a pool, or nothing.
     #[must_use]
     pub const fn pool_if(pays: bool) -> Self {

@@ -238,6 +238,12 @@ impl Part {
         OutlineEdge::keyed(self.edges.to_vec(), &support)
     }
 
+    /// A lattice box that holds all of the part; `around` may be half a step smaller.
+    pub fn enclosing(&self) -> [Lattice; 2] {
+        let [low, high] = self.around;
+        [low.map(|x| x - 1), high.map(|x| x + 1)]
+    }
+
     /// A box of doubles around the part.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         bounds(self.edges.iter().map(|edge| &*edge.from))

@@ -77,7 +77,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     let sources = Sources::new(solid.sources().clone());
     let unfolded = unfold(&mut mesh, &exact, &sources);
     let (parties, names) = both(
-        Worth::task_if(exact.faces.len() > CHUNK),
+        Worth::pool_if(exact.faces.len() > CHUNK),
         || parties(&mesh, &exact),
         || names(&exact.faces, &sources),
     );

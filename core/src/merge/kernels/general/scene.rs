@@ -114,14 +114,14 @@ impl<'a> Scene<'a> {
             let inside = self.cell.holds(&p.element.part.home);
             if self.is_apart(operand, &p.element.part) {
                 let pieces = OnceCell::new();
-                let [low, high] = p.element.part.around;
+                let [low, high] = p.element.part.enclosing();
                 self.elements.push(Element {
                     operand,
                     weight: p.element.orientation.signed(1),
                     place: Place::Part(part, ApartPart { record: p, pieces }),
                     inside,
-                    low: low.map(|x| x - 1),
-                    high: high.map(|x| x + 1),
+                    low,
+                    high,
                 });
                 continue;
             }
@@ -142,8 +142,7 @@ impl<'a> Scene<'a> {
 
     /// Return whether other operands keep out of a box around a part that has a corner in the cell.
     fn is_apart(&self, operand: usize, part: &Part) -> bool {
-        // The places of the box are up to half a step inside it.
-        let [low, high] = [part.around[0].map(|x| x - 1), part.around[1].map(|x| x + 1)];
+        let [low, high] = part.enclosing();
         let meets =
             |[least, most]: &[Lattice; 2]| (0..3).all(|i| low[i] <= most[i] && high[i] >= least[i]);
         let others = self.boxes.iter().enumerate().filter(|(k, _)| *k != operand);
@@ -196,15 +195,12 @@ pub(super) enum Name {
 fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
     let faces = list.records.iter();
     let faces = faces.map(|r| sources.get(r.slot()).face_box(r.face));
-    let parts = list.parts.iter().map(|p| {
-        // The places of the box are up to half a step inside it.
-        let [low, high] = p.element.part.around;
-        (low.map(|x| x - 1), high.map(|x| x + 1))
-    });
+    let faces = faces.map(|(low, high)| [low, high]);
+    let parts = list.parts.iter().map(|p| p.element.part.enclosing());
     let nothing = [[i64::MAX; 3], [i64::MIN; 3]];
     faces
         .chain(parts)
-        .fold(nothing, |[least, most], (low, high)| {
+        .fold(nothing, |[least, most], [low, high]| {
             [
                 each_axis(|i| least[i].min(low[i])),
                 each_axis(|i| most[i].max(high[i])),
