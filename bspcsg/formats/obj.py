@@ -31,7 +31,11 @@ _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
 @dataclass
 class _Found:
-    """The content of the statements, in their order; lines are those of the rows beside them."""
+    """The content of the statements, in their order; lines are those of the rows beside them.
+
+    Corners are the rows of textures and of normals that the corners of some polygons name, from 0;
+    -1 where they name none.
+    """
 
     rows: list[list[bytes]] = field(default_factory=list)
     row_lines: list[int] = field(default_factory=list)
@@ -42,7 +46,7 @@ class _Found:
     surfaces: int = 0
     textures: list[list[bytes]] = field(default_factory=list)
     normals: list[list[bytes]] = field(default_factory=list)
-    corners: dict[int, list[bytes]] = field(default_factory=dict)
+    corners: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
     materials: list[tuple[str, int]] = field(default_factory=list)
     libraries: list[str] = field(default_factory=list)
 
@@ -90,8 +94,8 @@ def _said(
         found.dropped.add("colours")
     corner: dict[str, Values] = {}
     for name, rows, place, width in (
-        ("uv", found.textures, 1, 2),
-        ("normal", found.normals, 2, 3),
+        ("uv", found.textures, 0, 2),
+        ("normal", found.normals, 1, 3),
     ):
         if rows and found.corners:
             numbers = _references_at(found, place, len(rows))[positions]
@@ -119,25 +123,22 @@ def _number(row: list[bytes], place: int) -> float:
 
 
 def _references_at(found: _Found, place: int, count: int) -> IndexArray:
-    """Return what each corner of each polygon names, from 0; -1 if it names nothing."""
+    """Return which of some rows each corner of each polygon names; -1 if it names none."""
     numbers = []
     for polygon, corners in enumerate(found.polygons):
-        words = found.corners.get(polygon)
-        numbers += (
-            [-1] * len(corners) if words is None else [_named(w, place, count) for w in words]
-        )
+        named = found.corners.get(polygon)
+        rows = [-1] * len(corners) if named is None else [pair[place] for pair in named]
+        numbers += [row if row < count else -1 for row in rows]
     return np.array(numbers, dtype=np.int64)
 
 
-def _named(word: bytes, place: int, count: int) -> int:
-    """Return which row a corner names; negative numbers count back from the last of all."""
-    parts = word.split(b"/")
+def _row(parts: list[bytes], place: int, known: int) -> int:
+    """Return which row a corner names; negative numbers count back from the last that is known."""
     try:
         number = whole(parts[place])
     except (ValueError, IndexError):
         return -1
-    index = number - 1 if number > 0 else count + number
-    return index if 0 <= index < count and number != 0 else -1
+    return number - 1 if number > 0 else max(known + number, -1) if number < 0 else -1
 
 
 def _material_names(found: _Found) -> Values:
@@ -167,7 +168,10 @@ def _collected(source: Source) -> _Found:
             found.polygons.append(_references(source, number, words, len(found.rows)))
             found.face_lines.append(number)
             if len(words) > 1 and b"/" in words[1]:
-                found.corners[len(found.polygons) - 1] = words[1:]
+                known = len(found.textures), len(found.normals)
+                parts = [word.split(b"/") for word in words[1:]]
+                rows = [(_row(each, 1, known[0]), _row(each, 2, known[1])) for each in parts]
+                found.corners[len(found.polygons) - 1] = rows
         elif key == b"vt":
             found.textures.append(words[1:])
         elif key == b"vn":

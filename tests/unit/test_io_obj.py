@@ -1,9 +1,12 @@
 """OBJ: references of all kinds, polygons, continued lines, and what is refused."""
 
+import math
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from bspcsg.errors import held
 from bspcsg.io import read, write
 from support.io import area, cube_mesh, read_text, refusal, same_mesh, signed_area
 
@@ -39,6 +42,19 @@ def test_negative_references_count_from_where_they_stand(tmp_path: Path) -> None
     triangle = "v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nf -3 -2 -1\n"
     raw = read_text(tmp_path / "x.obj", triangle.format(0) + triangle.format(1))
     assert raw.faces.tolist() == [[0, 1, 2], [3, 4, 5]]
+
+
+def test_negative_references_to_texture_and_normal_count_from_where_they_stand(
+    tmp_path: Path,
+) -> None:
+    rows = "v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nvt {0} 0\nvt {0} 1\nvn {0} 0 1\n"
+    face = "f -3/-2/-1 -2/-1/-1 -1/-3/-1\n"  # the third names no texture the first time
+    texts = (rows.format(number) + face for number in (0, 5))
+    corner = held(read_text(tmp_path / "x.obj", "".join(texts)).attributes, "said").corner
+    nowhere = [math.nan, math.nan]
+    expected = [[[0, 0], [0, 1], nowhere], [[5, 0], [5, 1], [0, 1]]]
+    np.testing.assert_array_equal(corner["uv"], expected)
+    np.testing.assert_array_equal(corner["normal"][:, 0, 0], [0, 5])
 
 
 def test_colours_and_weights_are_passed_by(tmp_path: Path) -> None:
