@@ -125,7 +125,6 @@ REFUSED: dict[str, tuple[Edit, str]] = {
         set_at("extensionsRequired", value=["KHR_draco_mesh_compression"]),
         "unsupported",
     ),
-    "fan": (set_at("meshes", 0, "primitives", 0, "mode", value=6), "unsupported"),
     "loop": (set_at("nodes", 0, "children", value=[0]), "too_large"),
     "two parents": (
         set_at("nodes", value=[{"children": [2]}, {"children": [2]}, {"mesh": 0}]),
@@ -250,6 +249,38 @@ def test_strips_and_short_indices(tmp_path: Path) -> None:
     path.write_bytes(closed(tree, rest))
     raw = read(path)
     assert b.Solid(raw.vertices, raw.faces).volume == pytest.approx(1 / 6)
+
+
+def test_fans(tmp_path: Path) -> None:
+    """A tetrahedron as two fans of the same vertices: its floor, and all sides around the apex."""
+    path = tmp_path / "x.glb"
+    corners = np.array([(0, 0, 0), (0, 1, 0), (1, 0, 0), (0, 0, 1)])
+    faces = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]])
+    write(RawMesh(corners * 1.0, faces), path)
+    tree, rest = opened(path.read_bytes())
+    fans = np.array([0, 1, 2, 3, 0, 2, 1, 0], dtype="<u2").tobytes()
+    start = 8 + tree["bufferViews"][1]["byteOffset"]
+    rest = rest[:start] + fans + rest[start + len(fans) :]
+    indices = tree["accessors"][1] | {"componentType": 5123}
+    tree["accessors"][1:] = [indices | {"count": 3}, indices | {"count": 5, "byteOffset": 6}]
+    (floor,) = tree["meshes"][0]["primitives"]
+    floor["mode"] = 6
+    tree["meshes"][0]["primitives"] = [floor, floor | {"indices": 2}]
+    path.write_bytes(closed(tree, rest))
+    raw = read(path)
+    assert b.Solid(raw.vertices, raw.faces).volume == pytest.approx(1 / 6)
+
+
+@pytest.mark.parametrize("mode", [5, 6])
+def test_strips_and_fans_of_two_vertices_have_no_triangle(tmp_path: Path, mode: int) -> None:
+    path = tmp_path / "x.glb"
+    write(RawMesh(*cube()), path)
+    tree, rest = opened(path.read_bytes())
+    tree["accessors"].append(tree["accessors"][1] | {"count": 2})
+    (primitive,) = tree["meshes"][0]["primitives"]
+    tree["meshes"][0]["primitives"].append(primitive | {"indices": 2, "mode": mode})
+    path.write_bytes(closed(tree, rest))
+    assert len(read(path).faces) == 12
 
 
 def test_names_are_kept_as_they_are(tmp_path: Path) -> None:

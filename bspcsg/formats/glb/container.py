@@ -24,7 +24,8 @@ _GEOMETRIC = ("draco", "meshopt", "quantization", "instancing")
 #: Attributes of vertices that are not read, by the first word of their names.
 _ATTRIBUTES = {"TANGENT": "tangents", "JOINTS": "joints", "WEIGHTS": "weights"}
 
-_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+#: Modes of primitives that are triangles.
+TRIANGLES, STRIP, FAN = 4, 5, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,18 +186,15 @@ class _Claims:
             return 0
         total = 0
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
-            mode = primitive.get("mode", _TRIANGLES)
+            mode = primitive.get("mode", TRIANGLES)
             if "material" in primitive:
                 self._entry("materials", primitive["material"])
             for accessor in primitive["attributes"].values():
                 self._entry("accessors", accessor)
-            if mode == _FAN:
-                message = "triangle fans cannot be read here; write single triangles."
-                raise self._source.error(message, "unsupported")
-            if mode in (_TRIANGLES, _STRIP):
+            if mode in (TRIANGLES, STRIP, FAN):
                 corners = primitive.get("indices", primitive["attributes"]["POSITION"])
                 count = self._entry("accessors", corners)["count"]
-                total += count // 3 if mode == _TRIANGLES else count
+                total += count // 3 if mode == TRIANGLES else count
         return total
 
 
@@ -211,7 +209,7 @@ def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
     count = sum(
-        primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP)
+        primitive.get("mode", TRIANGLES) not in (TRIANGLES, STRIP, FAN)
         for mesh in tree.get("meshes", [])
         for primitive in mesh["primitives"]
     )

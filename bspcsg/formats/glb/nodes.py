@@ -11,13 +11,10 @@ from ...attributes.attributes import Attributes
 from ...attributes.joining import MeshPart, concatenated
 from ..placing import SingleArray
 from ..raw import compacted
-from .container import Container
+from .container import FAN, STRIP, TRIANGLES, Container
 from .said import Named, materials_of, read_columns
 
 _Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
-
-#: Modes of primitives that are triangles.
-_TRIANGLES, _STRIP = 4, 5
 
 #: The type of a component by glTF's number, for positions and for indices.
 _POSITION = {5126: "<f4"}
@@ -131,11 +128,11 @@ def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -
     start = 0
     shared = _shared(mesh["primitives"])
     for primitive in mesh["primitives"]:
-        mode = primitive.get("mode", _TRIANGLES)
-        if mode not in (_TRIANGLES, _STRIP) or "POSITION" not in primitive["attributes"]:
+        mode = primitive.get("mode", TRIANGLES)
+        if mode not in (TRIANGLES, STRIP, FAN) or "POSITION" not in primitive["attributes"]:
             continue
         points = _positions(container, primitive["attributes"]["POSITION"])
-        corners = _faces(container, primitive, len(points), mode == _STRIP)
+        corners = _faces(container, primitive, len(points), mode)
         used = None
         if primitive["attributes"]["POSITION"] in shared:
             # Of vertices that several primitives have, each takes what it uses.
@@ -166,18 +163,19 @@ def _positions(container: Container, accessor: int) -> SingleArray:
     return np.ascontiguousarray(points, dtype=np.float32)
 
 
-def _faces(
-    container: Container, primitive: dict[str, Any], count: int, is_strip: bool
-) -> IndexArray:
+def _faces(container: Container, primitive: dict[str, Any], count: int, mode: int) -> IndexArray:
     corners = np.arange(count)
     if "indices" in primitive:
         corners = _elements(container, primitive["indices"], _INDEX, "SCALAR").ravel()
         corners = corners.astype(np.int64)
     if len(corners) and not 0 <= corners.min() <= corners.max() < count:
         raise IndexError("a triangle names a vertex that does not exist")
-    if not is_strip:
+    if mode == TRIANGLES:
         return corners.reshape(-1, 3)
-    faces = np.stack([corners[:-2], corners[1:-1], corners[2:]], axis=1)
+    second, third = corners[1:-1], corners[2:]
+    if mode == FAN:
+        return np.stack([np.repeat(corners[:1], len(third)), second, third], axis=1)
+    faces = np.stack([corners[:-2], second, third], axis=1)
     faces[1::2] = faces[1::2, ::-1]
     return faces
 
