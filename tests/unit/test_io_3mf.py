@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.formats.threemf import file as threemf
+from bspcsg.errors import held
+from bspcsg.formats.threemf import package as threemf
 from bspcsg.io import RawMesh, read, write
 from support.io import cube_mesh, refusal
 
@@ -185,3 +186,147 @@ def test_objects_outside_the_build_are_told(tmp_path: Path) -> None:
         "1 objects outside the build were ignored."
     ]
     assert raw.passed_by and len(raw.faces) == 12
+
+
+BOOLEANS = "http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07"
+
+
+def shape(number: int, base: int, operation: str, *operands: str, moved: str = "") -> str:
+    """Return an object that is a boolean shape; operands are the words within their elements."""
+    inner = "".join(f"<bo:boolean {words}/>" for words in operands)
+    told = f'operation="{operation}"' if operation else ""
+    head = f'<bo:booleanshape xmlns:bo="{BOOLEANS}" objectid="{base}" {told} {moved}>'
+    return f'<object id="{number}" name="shape {number}">{head}{inner}</bo:booleanshape></object>'
+
+
+def by(x: float, y: float = 0, z: float = 0) -> str:
+    return f'transform="1 0 0 0 1 0 0 0 1 {x} {y} {z}"'
+
+
+@pytest.mark.parametrize(
+    ("operation", "shifts", "size"),
+    [
+        ("", (0.5, -0.75), 2.25),
+        ("union", (0.5, -0.75), 2.25),
+        ("difference", (0.5, -0.75), 0.25),
+        ("intersection", (0.5, 0.75), 0.25),
+        ("intersection", (0.5, -0.75), 0),
+        ("difference", (0,), 0),
+    ],
+)
+def test_boolean_shapes_are_evaluated(
+    tmp_path: Path, operation: str, shifts: tuple[float, ...], size: float
+) -> None:
+    objects = CUBE + shape(2, 1, operation, *(f'objectid="1" {by(x)}' for x in shifts))
+    path = package(tmp_path / "x.3mf", model(objects, '<item objectid="2"/>'))
+    raw = read(path)
+    assert volume(raw) == size and b.load(path).volume == size
+    assert [found.code for found in raw.findings] == (["empty"] if size == 0 else [])
+    assert [name for name, _ in raw.objects] == (["shape 2"] if size else [])
+    assert b.Assembly.load(path).to_solid().volume == size
+
+
+def test_boolean_shapes_of_each_other_in_their_places(tmp_path: Path) -> None:
+    """Half a cube, mirrored and taken from a larger one, twice in inches, once in an assembly."""
+    half = shape(2, 1, "difference", f'objectid="1" {by(0.5)}')
+    mirrored = 'objectid="2" transform="-1 0 0 0 1 0 0 0 1 2 0.5 0.5"'
+    large = shape(3, 1, "difference", mirrored, moved='transform="2 0 0 0 2 0 0 0 2 0 0 0"')
+    twice = f'<component objectid="3"/><component objectid="3" {by(9)}/>'
+    pair = f'<object id="4"><components>{twice}</components></object>'
+    path = package(tmp_path / "x.3mf", model(CUBE + half + large + pair, '<item objectid="4"/>'))
+    box = b.box(2, 2, 2) - b.box(0.5, 1, 1).translate(1.5, 0.5, 0.5)
+    assert b.load(path) == (box | box.translate(9, 0, 0))
+    assert [found.message for found in read(path).findings] == []
+    assembly = b.Assembly.load(path)
+    assert assembly.to_solid() == b.load(path)
+    inches = model(CUBE + half + large, '<item objectid="3"/>', 'unit="inch"')
+    assert b.load(package(path, inches)).volume == pytest.approx(7.5 * 25.4**3)
+
+
+def test_a_cut_has_the_colours_of_what_it_was_cut_with(tmp_path: Path) -> None:
+    bases = (
+        '<basematerials id="9"><base name="red" displaycolor="#FF0000"/>'
+        '<base name="blue" displaycolor="#0000FF"/></basematerials>'
+    )
+    red = CUBE.replace('id="1"', 'id="1" pid="9" pindex="0"')
+    blue = CUBE.replace('id="1"', 'id="2" pid="9" pindex="1"')
+    objects = bases + red + blue + shape(3, 1, "difference", f'objectid="2" {by(0.5)}')
+    raw = read(package(tmp_path / "x.3mf", model(objects, '<item objectid="3"/>')))
+    said = held(raw.attributes, "attributes")
+    at_cut = (raw.vertices[raw.faces][:, :, 0] == 0.5).all(axis=1)
+    assert set(said.face["material"][at_cut]) == {"blue"}
+    assert set(said.face["material"][~at_cut]) == {"red"}
+    assert said.materials["blue"].color == (0, 0, 1, 1)
+
+
+def test_parts_of_boolean_shapes_may_lie_in_another_part(tmp_path: Path) -> None:
+    space = 'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06"'
+    operand = f'objectid="1" {space} p:path="/3D/other.model" {by(0.5)}'
+    objects = CUBE + shape(2, 1, "difference", operand)
+    with zipfile.ZipFile(tmp_path / "x.3mf", "w") as archive:
+        archive.writestr("3D/3dmodel.model", model(objects, '<item objectid="2"/>'))
+        archive.writestr("3D/other.model", model(CUBE, ""))
+    assert b.load(tmp_path / "x.3mf") == b.box(0.5, 1, 1)
+
+
+OPEN = CUBE.replace('<triangle v1="0"', '<t v1="0"', 1)
+
+
+@pytest.mark.parametrize(
+    ("objects", "code"),
+    [
+        (CUBE + shape(2, 1, "xor", 'objectid="1"'), "syntax"),
+        (CUBE + shape(2, 7, "union", 'objectid="1"'), "index_out_of_range"),
+        (CUBE + shape(2, 2, "union", 'objectid="1"'), "too_large"),
+        (
+            CUBE + shape(2, 1, "union", 'objectid="1" transform="0 0 0 0 1 0 0 0 1 0 0 0"'),
+            "unsupported",
+        ),
+        (OPEN + shape(2, 1, "union", 'objectid="1"'), "not_closed"),
+        (CUBE.replace("id=", 'type="support" id=') + shape(2, 1, ""), "unsupported"),
+        (
+            '<object id="1"><components/></object>' + shape(2, 1, "union", 'objectid="1"'),
+            "unsupported",
+        ),
+        (CUBE + f'<object id="2"><boolean xmlns="{BOOLEANS}" objectid="1"/></object>', "syntax"),
+    ],
+)
+def test_boolean_shapes_that_are_none(tmp_path: Path, objects: str, code: str) -> None:
+    path = package(tmp_path / "x.3mf", model(objects, '<item objectid="2"/>'))
+    refusal(path, path.read_bytes(), code)
+
+
+def test_boolean_shapes_that_multiply(tmp_path: Path) -> None:
+    doubled = "".join(
+        shape(n, n - 1, "union", f'objectid="{n - 1}" {by(2.0 ** (n - 1))}') for n in range(2, 60)
+    )
+    path = package(tmp_path / "x.3mf", model(CUBE + doubled, '<item objectid="59"/>'))
+    refusal(path, path.read_bytes(), "too_large")
+
+
+@pytest.mark.parametrize(
+    ("space", "is_read"),
+    [
+        ("http://schemas.microsoft.com/3dmanufacturing/material/2015/02", True),
+        ("http://schemas.microsoft.com/3dmanufacturing/production/2015/06", True),
+        (BOOLEANS, True),
+        ("http://schemas.microsoft.com/3dmanufacturing/slice/2015/07", False),
+        ("http://schemas.microsoft.com/3dmanufacturing/securecontent/2019/07", False),
+        ("http://schemas.3mf.io/3dmanufacturing/volumetric/2022/01", False),
+    ],
+)
+def test_a_model_that_needs_an_extension(tmp_path: Path, space: str, is_read: bool) -> None:
+    said = f'xmlns:x="{space}" requiredextensions="x"'
+    path = package(tmp_path / "x.3mf", model(CUBE, ITEM, said))
+    if is_read:
+        assert len(read(path).faces) == 12
+    else:
+        assert space in refusal(path, path.read_bytes(), "unsupported")
+
+
+def test_objects_without_triangles_are_told(tmp_path: Path) -> None:
+    hollow = '<object id="2"><levelset functionid="7"/></object>'
+    raw = read(package(tmp_path / "x.3mf", model(CUBE + hollow, ITEM + '<item objectid="2"/>')))
+    assert [found.message for found in raw.findings] == [
+        "1 objects without triangles were ignored."
+    ]

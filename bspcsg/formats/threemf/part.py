@@ -28,6 +28,16 @@ _DROPPED = {
     "metadata": "metadata",
 }
 
+#: Words in the namespaces of extensions that are read here, or of which it is told what is not: a
+#: model may say that it needs others to be understood.
+_READ = (
+    "/material/",
+    "/production/2015",
+    "/booleanoperations/2023",
+    "/beamlattice/",
+    "/trianglesets/",
+)
+
 #: Attributes of a triangle that has no properties.
 _BARE = 3
 
@@ -53,19 +63,42 @@ class PlacedObject:
     transform: FloatArray
 
 
+@dataclass(frozen=True, eq=False)
+class BooleanShape:
+    """A set that is made of others.
+
+    Parameters
+    ----------
+    operation : {"union", "difference", "intersection"}
+        It takes one operand after another.
+    base : PlacedObject
+    operands : list of PlacedObject
+    """
+
+    operation: str
+    base: PlacedObject
+    operands: list[PlacedObject]
+
+
 @dataclass(eq=False)
 class Object:
-    """A mesh, or components, or neither."""
+    """A mesh, a boolean shape, or components, or none of these."""
 
     kind: str
     vertices: list[tuple[float, float, float]] = field(default_factory=list)
     triangles: list[tuple[int, int, int]] = field(default_factory=list)
     components: list[PlacedObject] = field(default_factory=list)
+    shape: BooleanShape | None = None
     beams: int = 0
     name: str = ""
     part_number: str = ""
     usual: tuple[str, int] | None = None
     properties: dict[int, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
+
+    @property
+    def is_body(self) -> bool:
+        """True if the object is a mesh or a boolean shape."""
+        return bool(self.triangles) or self.shape is not None
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices (n, 3) and triangles (m, 3)."""
@@ -90,7 +123,9 @@ class ModelPart:
     coordinates: dict[str, tuple[str, list[tuple[float, float]]]] = field(default_factory=dict)
 
 
-def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
+def parse_xml(
+    source: Source, chunks: Iterable[bytes], start: Start, spaces: dict[str, str] | None = None
+) -> None:
     """Call `start` with the name (without namespace) and attributes of each element.
 
     Parameters
@@ -100,6 +135,8 @@ def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
     chunks : iterable of bytes
         The XML.
     start : callable
+    spaces : dict of str to str, optional
+        Takes in the namespaces by their prefixes, each before the element that declares it.
 
     Raises
     ------
@@ -121,7 +158,12 @@ def parse_xml(source: Source, chunks: Iterable[bytes], start: Start) -> None:
     def refuse(*_: object) -> None:
         raise source.error("document types are not allowed here.", line=parser.CurrentLineNumber)
 
+    def declare(prefix: str | None, space: str | None) -> None:
+        if spaces is not None:
+            spaces[prefix or ""] = space or ""
+
     parser.StartElementHandler = begin
+    parser.StartNamespaceDeclHandler = declare
     parser.StartDoctypeDeclHandler = refuse
     try:
         for chunk in chunks:
@@ -156,6 +198,8 @@ class PartReader:
         self._part = ModelPart()
         self._current = Object("none")
         self._group = ""
+        self._spaces: dict[str, str] = {}
+        self._needs: list[str] = []
 
     def read(self) -> ModelPart:
         """Return the part.
@@ -163,9 +207,13 @@ class PartReader:
         Raises
         ------
         FormatError
-            If it is no valid XML or no valid model.
+            If it is no valid XML or no valid model, or needs an extension that is not read here.
         """
-        parse_xml(self._source, self._chunks, self._start)
+        parse_xml(self._source, self._chunks, self._start, self._spaces)
+        for space in self._needs:
+            if not any(word in space for word in _READ):
+                message = f"the model needs the extension {space}, which cannot be read here."
+                raise self._source.error(message, "unsupported")
         for number, held in self._part.objects.items():
             top = max(map(max, held.triangles), default=-1)
             if top >= len(held.vertices):
@@ -196,7 +244,30 @@ class PartReader:
             self._part.unit = attributes.get("unit", "millimeter")
             if self._part.unit not in MILLIMETRES:
                 raise ValueError(f"unknown unit {self._part.unit}")
-        elif tag in ("colorgroup", "basematerials"):
+            prefixes = attributes.get("requiredextensions", "").split()
+            # What no prefix stands for, no element can be of.
+            self._needs = [self._spaces[one] for one in prefixes if one in self._spaces]
+        elif tag in ("booleanshape", "boolean"):
+            self._combine(tag, attributes)
+        else:
+            self._note(tag, attributes)
+
+    def _combine(self, tag: str, attributes: dict[str, str]) -> None:
+        """Take in a boolean shape or one of its operands."""
+        placed = self._placed(attributes)
+        if tag == "boolean":
+            if self._current.shape is None:
+                raise ValueError("it lies in no boolean shape")
+            self._current.shape.operands.append(placed)
+            return
+        operation = attributes.get("operation", "union")
+        if operation not in ("union", "difference", "intersection"):
+            raise ValueError(f"unknown operation {operation}")
+        self._current.shape = BooleanShape(operation, placed, [])
+
+    def _note(self, tag: str, attributes: dict[str, str]) -> None:
+        """Take in what is said besides the shape."""
+        if tag in ("colorgroup", "basematerials"):
             self._group = attributes["id"]
         elif tag == "color":
             self._part.colors.setdefault(self._group, []).append(_color(attributes["color"]))

@@ -3,21 +3,19 @@
 A leaf whose name is not that of its mesh is an object of one component; its part number says so.
 """
 
-import io
-import zipfile
 from collections.abc import Iterator
+from dataclasses import replace
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ..._types import FloatArray
-from ...errors import FormatError
 from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
-from .file import DAMAGES, Package
+from .objects import Objects
+from .package import Package, opened
 from .part import MILLIMETRES, ModelPart, Object, PlacedObject
-from .properties import properties_of
 from .textures import Resources
 from .write import beginning, called, hex_of, mesh_object, packed, properties
 
@@ -35,15 +33,8 @@ def read(source: Source) -> SceneNode:
     FormatError
         As for a mesh.
     """
-    try:
-        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
-            package = Package(source, archive)
-            return _Reading(package, package.root()).tree()
-    except FormatError:
-        raise
-    except DAMAGES as error:
-        message = f"the archive is damaged or cut off: {error}."
-        raise source.error(message, "truncated") from error
+    with opened(source) as package:
+        return _Reading(package, package.root()).tree()
 
 
 class _Reading:
@@ -52,12 +43,13 @@ class _Reading:
     def __init__(self, package: Package, root: str) -> None:
         self._package = package
         self._root = root
+        self._objects = Objects(package)
         self._meshes: dict[tuple[str, str], RawMesh] = {}
 
     def tree(self) -> SceneNode:
         part = self._package.part(self._root)
         # This also refuses what is too deep or too often there.
-        self._package.placed(self._root, part.items)
+        self._objects.placed(self._root, part.items)
         found = tuple(self._node(self._root, item) for item in part.items)
         scale = MILLIMETRES[part.unit]
         if len(found) == 1 and scale == 1:
@@ -71,7 +63,7 @@ class _Reading:
         told = part.objects[placed.item]
         matrix = _IDENTITY.copy()
         matrix[:3] = placed.transform.T
-        if told.triangles:
+        if told.is_body:
             mesh = self._mesh(path, part, placed.item)
             return SceneNode(told.name, matrix, mesh, _color(part, told))
         children = tuple(self._node(path, one) for one in told.components)
@@ -81,13 +73,9 @@ class _Reading:
 
     def _mesh(self, path: str, part: ModelPart, item: str) -> RawMesh:
         if (path, item) not in self._meshes:
-            told = part.objects[item]
-            vertices, faces = told.arrays()
-            plain = _color(part, told) is not None
-            picture = self._package.picture
-            said = None if plain else properties_of(part, told, faces, picture)
-            mesh = RawMesh(vertices, faces, told.name, unit="mm", attributes=said)
-            self._meshes[path, item] = mesh
+            mesh = replace(self._objects.mesh(path, item), unit="mm")
+            plain = _color(part, part.objects[item]) is not None
+            self._meshes[path, item] = replace(mesh, attributes=None) if plain else mesh
         return self._meshes[path, item]
 
 

@@ -1,0 +1,165 @@
+"""The objects of a 3MF package: where each is placed, and the mesh of each.
+
+Most have a mesh. A boolean shape is a set of meshes, which is evaluated here (3MF Boolean
+Operations Extension 1.1.0, section 2.1).
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...errors import BspcsgError, FormatError, InvalidParameterError, held
+from ...solid.solid import Solid, combine, solid_with
+from ..raw import RawMesh
+from ..said import said_of
+from .package import Package
+from .part import Object, PlacedObject
+from .properties import properties_of
+
+#: Most objects that a build may place, and most that may lie in one another.
+_MOST_PLACED = 100_000
+_DEEPEST = 64
+
+#: Most triangles of all operands of a boolean shape: evaluating them takes some gigabytes.
+_MOST_TRIANGLES = 1 << 24
+
+#: The part that names an object, the object, and the transforms around it, innermost first.
+_Waiting: TypeAlias = tuple[str, PlacedObject, tuple[FloatArray, ...]]
+
+
+class Objects:
+    """The objects of a package; the mesh of each is made once.
+
+    Parameters
+    ----------
+    package : Package
+    """
+
+    def __init__(self, package: Package) -> None:
+        self._package = package
+        self._meshes: dict[tuple[str, str], RawMesh] = {}
+        self._solids: dict[tuple[str, str], tuple[Solid, int]] = {}
+
+    def placed(
+        self, root: str, items: list[PlacedObject]
+    ) -> list[tuple[str, str, tuple[FloatArray, ...]]]:
+        """Return part, object and transforms (innermost first) of all shapes, in file order.
+
+        Raises
+        ------
+        FormatError
+            If an object does not exist, or they contain each other too often.
+        """
+        found: list[tuple[str, str, tuple[FloatArray, ...]]] = []
+        waiting: list[_Waiting] = [(root, item, ()) for item in reversed(items)]
+        visited = 0
+        while waiting:
+            here, placed, outer = waiting.pop()
+            visited += 1
+            transforms: tuple[FloatArray, ...] = (placed.transform, *outer)
+            if visited > _MOST_PLACED or len(transforms) > _DEEPEST:
+                raise self._too_deep()
+            path, known = self._named(here, placed)
+            if not known.components:
+                found.append((path, placed.item, transforms))
+            waiting.extend((path, inner, transforms) for inner in reversed(known.components))
+        return found
+
+    def mesh(self, path: str, item: str) -> RawMesh:
+        """Return the mesh of an object before any transform; that of a boolean shape is evaluated.
+
+        Raises
+        ------
+        FormatError
+            If a shape is of what is no closed mesh, or shapes contain each other too often.
+        """
+        if (path, item) not in self._meshes:
+            known = self._package.part(path).objects[item]
+            made = (
+                self._written(path, known) if known.shape is None else self._evaluated(path, item)
+            )
+            self._meshes[path, item] = replace(made, name=known.name)
+        return self._meshes[path, item]
+
+    def used(self) -> set[tuple[str, str]]:
+        """Return part and number of the objects that boolean shapes were made of."""
+        return set(self._solids)
+
+    def _named(self, here: str, placed: PlacedObject) -> tuple[str, Object]:
+        """Return an object that a part names, and the part that holds it."""
+        path = placed.path or here
+        known = self._package.part(path).objects.get(placed.item)
+        if known is None:
+            message = f"object {placed.item} does not exist in {path}."
+            raise self._package.source.error(message, "index_out_of_range")
+        return path, known
+
+    def _too_deep(self) -> FormatError:
+        message = "the objects contain each other too often."
+        return self._package.source.error(message, "too_large")
+
+    def _written(self, path: str, known: Object) -> RawMesh:
+        vertices, faces = known.arrays()
+        part = self._package.part(path)
+        said = properties_of(part, known, faces, self._package.picture)
+        return RawMesh(vertices, faces, attributes=said)
+
+    def _evaluated(self, path: str, item: str) -> RawMesh:
+        here = PlacedObject("", item, np.eye(4, 3))
+        with self._told(item):
+            mesh = self._solid(path, here, 0)[0].normalized().to_mesh()
+        is_nothing = len(mesh.faces) == 0
+        return RawMesh(mesh.vertices, mesh.faces, attributes=said_of(mesh), is_empty_set=is_nothing)
+
+    def _solid(self, here: str, placed: PlacedObject, depth: int) -> tuple[Solid, int]:
+        """Return a mesh or a boolean shape as a set, in its place, and the triangles it is of."""
+        if depth > _DEEPEST:
+            raise self._too_deep()
+        path, known = self._named(here, placed)
+        if known.kind != "model" or not known.is_body:
+            message = f"object {placed.item} is part of a boolean shape, and no mesh of a model."
+            raise self._package.source.error(message, "unsupported")
+        if (path, placed.item) not in self._solids:
+            made = self._combined if known.shape is not None else self._meshed
+            self._solids[path, placed.item] = made(path, placed.item, depth)
+        solid, triangles = self._solids[path, placed.item]
+        matrix = np.eye(4)
+        matrix[:3] = placed.transform.T
+        return solid.transform(matrix), triangles
+
+    def _combined(self, path: str, item: str, depth: int) -> tuple[Solid, int]:
+        shape = held(self._package.part(path).objects[item].shape, "the shape")
+        with self._told(item):
+            parts = [self._solid(path, one, depth + 1) for one in (shape.base, *shape.operands)]
+        triangles = sum(count for _, count in parts)
+        if triangles > _MOST_TRIANGLES:
+            message = f"the boolean shape {item} is of too many triangles."
+            raise self._package.source.error(message, "too_large")
+        base, *others = [solid for solid, _ in parts]
+        if shape.operation == "union":
+            return combine("or", [base, *others]), triangles
+        if shape.operation == "difference":
+            others = [~solid for solid in others]
+        return combine("and", [base, *others]), triangles
+
+    def _meshed(self, path: str, item: str, _: int) -> tuple[Solid, int]:
+        mesh = self.mesh(path, item)
+        with self._told(item):
+            return solid_with(mesh.vertices, mesh.faces, mesh.attributes), len(mesh.faces)
+
+    @contextmanager
+    def _told(self, item: str) -> Iterator[None]:
+        """Let errors about the shape of an object name the file and the object."""
+        try:
+            yield
+        except FormatError:
+            raise
+        except BspcsgError as error:
+            message = f"object {item}, part of a boolean shape: {error.message}"
+            is_flat = isinstance(error, InvalidParameterError)
+            code = "unsupported" if is_flat else error.code
+            raise self._package.source.error(message, code) from error

@@ -1,0 +1,152 @@
+"""The parts of a 3MF package: a ZIP archive of XML.
+
+Sizes are limited before anything is unpacked and document types are refused, so that a small file
+cannot grow without bound.
+"""
+
+import io
+import posixpath
+import zipfile
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ...errors import FormatError
+from ..source import Source
+from .part import ModelPart, PartReader, parse_xml
+from .write import NOTHING
+
+#: Parts in an archive: some 16 MB of its directory. The largest projects of slicers have hundreds.
+_MOST_PARTS = 1 << 14
+
+#: Most bytes that the parts may unpack to: 64 times the archive, and this much for small ones. The
+#: XML of meshes shrinks to a fifth, that of one small part written again and again to a 13th, and
+#: a part of nothing but one letter to a thousandth.
+_MOST_GROWTH, _SMALL = 64, 1 << 26
+
+#: And 2 GiB in all, some 20 million triangles.
+_LARGEST = 1 << 31
+
+#: Bytes that are unpacked at a time.
+_CHUNK = 1 << 20
+
+#: The bytes that begin the entry of a part in an archive's directory.
+_ENTRY = b"PK\x01\x02"
+
+#: The errors that the standard library raises on damaged archives.
+_DAMAGES = (
+    zipfile.BadZipFile,
+    NotImplementedError,
+    RuntimeError,
+    EOFError,
+    zlib.error,
+    OSError,
+    ValueError,
+)
+
+_MODEL = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+
+
+class Package:
+    """The parts of one archive, each parsed once.
+
+    Parameters
+    ----------
+    source : Source
+    archive : ZipFile
+        The same, open.
+    """
+
+    def __init__(self, source: Source, archive: zipfile.ZipFile) -> None:
+        self.source = source
+        self.parts: dict[str, ModelPart] = {}
+        self._archive = archive
+        self._pictures: dict[str, bytes] = {}
+        self._entries = {entry.filename.lower(): entry for entry in archive.infolist()}
+        self._left = min(max(_MOST_GROWTH * len(source.data), _SMALL), _LARGEST)
+
+    def root(self) -> str:
+        """Return the name of the part that the package's relationships call its model."""
+        targets: list[str] = []
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            if tag.endswith("Relationship") and attributes.get("Type") == _MODEL:
+                targets.append(_part_name(attributes.get("Target", "")))
+
+        if "_rels/.rels" in self._archive.namelist():
+            parse_xml(*self._opened("_rels/.rels"), start)
+        return targets[0] if targets else "3D/3dmodel.model"
+
+    def is_empty_set(self, root: str) -> bool:
+        """Say whether the model is what this package writes for the empty set."""
+        entry = self._entries.get(root.lower())
+        if entry is None or entry.file_size != len(NOTHING):
+            return False
+        with self._archive.open(entry) as stream:
+            return stream.read(len(NOTHING) + 1) == NOTHING
+
+    def part(self, name: str) -> ModelPart:
+        """Return a part, parsed once."""
+        if name not in self.parts:
+            reader = PartReader(*self._opened(name), _part_name)
+            self.parts[name] = reader.read()
+        return self.parts[name]
+
+    def picture(self, name: str) -> bytes:
+        """Return the bytes of a part, unpacked once; none if there is no such part."""
+        if name.lower() not in self._entries:
+            return b""
+        if name not in self._pictures:
+            self._pictures[name] = b"".join(self._opened(name)[1])
+        return self._pictures[name]
+
+    def _opened(self, name: str) -> tuple[Source, Iterator[bytes]]:
+        """Return what errors about a part name, and its bytes."""
+        entry = self._entries.get(name.lower())
+        if entry is None:
+            raise self.source.error(f"the archive has no part {name}.", "truncated")
+        if entry.file_size > self._left:
+            raise self._too_large(name)
+        return Source(f"{self.source.name}/{name}", b""), self._unpacked(entry)
+
+    def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
+        """Yield the bytes of a part, which may be others than the directory promises."""
+        with self._archive.open(entry) as stream:
+            while chunk := stream.read(_CHUNK):
+                self._left -= len(chunk)
+                if self._left < 0:
+                    raise self._too_large(entry.filename)
+                yield chunk
+
+    def _too_large(self, name: str) -> FormatError:
+        message = (
+            f"the part {name} unpacks to far more than meshes do: all parts together may have"
+            f" {_MOST_GROWTH} times the bytes of the archive, and {_LARGEST >> 30} GiB."
+        )
+        return self.source.error(message, "too_large")
+
+
+@contextmanager
+def opened(source: Source) -> Iterator[Package]:
+    """Open a package, and tell of damage that shows while it is read.
+
+    Raises
+    ------
+    FormatError
+        If the archive is damaged or has too many parts.
+    """
+    if source.data.count(_ENTRY) > _MOST_PARTS:
+        message = f"the archive has more than {_MOST_PARTS:,} parts."
+        raise source.error(message, "too_large")
+    try:
+        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
+            yield Package(source, archive)
+    except FormatError:
+        raise
+    except _DAMAGES as error:
+        message = f"the archive is damaged or cut off: {error}."
+        raise source.error(message, "truncated") from error
+
+
+def _part_name(target: str) -> str:
+    return posixpath.normpath(target).lstrip("/")
