@@ -91,6 +91,8 @@ def good_file(rng: Rng, format: str) -> File:  # noqa: A002
     if format == ".csg":
         text, volume = random_model(rng)
         return File(format, text.encode(), volume)
+    if format == ".3mf" and rng.random() < 0.5:
+        return _boolean_shape(rng)
     mesh, volume = _known_mesh(rng)
     if format in (".svg", ".dxf"):
         return _good_drawing(rng, format)
@@ -119,6 +121,37 @@ def _known_mesh(rng: Rng) -> tuple[tuple[np.ndarray, np.ndarray], Fraction]:
         return octahedron(), Fraction(4, 3)
     both = joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((2, 0, 0), (3, 2, 1)))
     return both, Fraction(3)
+
+
+def _boolean_shape(rng: Rng) -> File:
+    """Return a 3MF of a boolean shape of cuboids, some in another shape; its unit cubes counted."""
+    operation = ("union", "difference", "intersection")[int(rng.integers(3))]
+    size, moves = rng.integers(1, 5, 3), rng.integers(-1, 3, (3, 3))
+    moves[0] = 0
+    cubes = np.stack(np.meshgrid(*[np.arange(-1, 7)] * 3, indexing="ij"), axis=-1)
+    base, *others = (((cubes >= move) & (cubes < move + size)).all(axis=-1) for move in moves)
+    for other in others:
+        base = {"union": base | other, "difference": base & ~other}.get(operation, base & other)
+    operands = [f'<o:boolean objectid="1" {_transform(move)}/>' for move in moves[1:].tolist()]
+    head, inner = f'<o:booleanshape objectid="1" operation="{operation}">', ""
+    if rng.random() < 0.5:
+        inner = f'<object id="2">{head}{operands.pop(0)}</o:booleanshape></object>'
+        head = head.replace('"1"', '"2"')
+    shape = f'{inner}<object id="3">{head}{"".join(operands)}</o:booleanshape></object>'
+    mesh = RawMesh(*cuboid((0, 0, 0), size), "x")
+    members = _members(b"".join(encoded(mesh, "x", ".3mf").chunks))
+    space = "http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07"
+    members["3D/3dmodel.model"] = (
+        members["3D/3dmodel.model"]
+        .replace(b"<model ", f'<model requiredextensions="o" xmlns:o="{space}" '.encode())
+        .replace(b"</resources>", f"{shape}</resources>".encode())
+        .replace(b'<item objectid="1"', b'<item objectid="3"')
+    )
+    return File(".3mf", _zipped(members), Fraction(int(base.sum())))
+
+
+def _transform(move: list[int]) -> str:
+    return 'transform="1 0 0 0 1 0 0 0 1 {} {} {}"'.format(*move)
 
 
 def _good_drawing(rng: Rng, suffix: str) -> File:
