@@ -43,9 +43,11 @@ def _assembled(package: Package, root: str) -> RawMesh:
     for path, item, transforms in built:
         known = package.part(path).objects[item]
         beams += known.beams
-        if known.kind != "model" or not known.is_body:
-            skipped += known.is_body
-            hollow += not known.is_body and not known.beams
+        if not known.is_body and not known.beams:
+            hollow += 1
+            continue
+        if known.kind != "model":
+            skipped += 1
             continue
         mesh = objects.mesh(path, item)
         triangles += len(mesh.faces)

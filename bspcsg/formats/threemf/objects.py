@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ..._types import FloatArray
-from ...errors import BspcsgError, FormatError, InvalidParameterError, held
+from ...errors import BspcsgError, FormatError, InternalError, InvalidParameterError, held
 from ...solid.solid import Solid, combine, solid_with
 from ..raw import RawMesh
 from ..said import said_of
@@ -156,7 +156,7 @@ class Objects:
         """Let errors about the shape of an object name the file and the object."""
         try:
             yield
-        except FormatError:
+        except (FormatError, InternalError):
             raise
         except BspcsgError as error:
             message = f"object {item}, part of a boolean shape: {error.message}"
