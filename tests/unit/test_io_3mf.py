@@ -296,6 +296,19 @@ def test_boolean_shapes_that_are_none(tmp_path: Path, objects: str, code: str) -
     refusal(path, path.read_bytes(), code)
 
 
+def test_a_fault_of_ours_is_no_damage_of_the_archive(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise b.InternalError("an invariant failed", "internal")
+
+    monkeypatch.setattr("bspcsg.formats.threemf.objects.combine", fail)
+    objects = CUBE + shape(2, 1, "union", 'objectid="1"')
+    path = package(tmp_path / "x.3mf", model(objects, '<item objectid="2"/>'))
+    with pytest.raises(b.InternalError, match="an invariant failed"):
+        read(path)
+
+
 def test_boolean_shapes_that_multiply(tmp_path: Path) -> None:
     doubled = "".join(
         shape(n, n - 1, "union", f'objectid="{n - 1}" {by(2.0 ** (n - 1))}') for n in range(2, 60)

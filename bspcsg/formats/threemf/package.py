@@ -11,7 +11,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from ...errors import FormatError
+from ...errors import BspcsgError, FormatError
 from ..source import Source
 from .part import ModelPart, PartReader, parse_xml
 from .write import NOTHING
@@ -141,7 +141,7 @@ def opened(source: Source) -> Iterator[Package]:
     try:
         with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
             yield Package(source, archive)
-    except FormatError:
+    except BspcsgError:
         raise
     except _DAMAGES as error:
         message = f"the archive is damaged or cut off: {error}."
