@@ -146,6 +146,14 @@ def test_parts_that_unpack_to_too_much(tmp_path: Path, monkeypatch: pytest.Monke
     assert "unpacks to far more" in refusal(path, path.read_bytes(), "too_large")
 
 
+def test_archives_of_too_many_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(threemf, "_MOST_PARTS", 0)
+    path = package(tmp_path / "x.3mf", model(CUBE, ITEM))
+    refusal(path, path.read_bytes(), "too_large")
+    with pytest.raises(b.FormatError, match="more than 0 parts"):
+        b.Assembly.load(path)
+
+
 REUSED = (
     f'<object id="1" name="lid">{mesh_xml(cube_mesh())}</object>'
     f'<object id="2" name="lid">{mesh_xml(cube_mesh(2.0))}</object>'

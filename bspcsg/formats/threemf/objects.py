@@ -69,6 +69,13 @@ class Objects:
             waiting.extend((path, inner, transforms) for inner in reversed(known.components))
         return found
 
+    def bare_mesh(self, path: str, item: str) -> RawMesh:
+        """Return the mesh of an object as `mesh` does, without attributes."""
+        known = self._package.part(path).objects[item]
+        if known.shape is None:
+            return RawMesh(*known.arrays(), known.name)
+        return replace(self.mesh(path, item), attributes=None)
+
     def mesh(self, path: str, item: str) -> RawMesh:
         """Return the mesh of an object before any transform; that of a boolean shape is evaluated.
 

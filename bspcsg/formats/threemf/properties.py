@@ -5,6 +5,7 @@ Textures are materials, too, and their coordinates the attribute ``"uv"``.
 
 from collections import Counter
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
@@ -75,7 +76,7 @@ class _Reading:
             self._has_colors = True
         elif group in part.bases:
             self._names[k], color = _entry(part.bases[group], numbers[0])
-            self._materials[self._names[k]] = Material(tuple(value / 255 for value in color))
+            self._materials[self._names[k]] = _plain(color)
         elif group in part.coordinates:
             texture, places = part.coordinates[group]
             self._names[k] = self._textures.setdefault(texture, self._called(texture))
@@ -99,6 +100,12 @@ class _Reading:
         corner |= {"uv": self._places} if self._textures else {}
         face = {"material": np.array(self._names)} if materials else {}
         return Attributes(faces, {}, corner, face, materials) if corner or face else None
+
+
+@lru_cache(maxsize=256)
+def _plain(color: tuple[int, ...]) -> Material:
+    """Return the material of a colour in bytes, which many triangles have in common."""
+    return Material(tuple(value / 255 for value in color))
 
 
 def _pictured(data: bytes) -> Material:

@@ -73,9 +73,9 @@ class _Reading:
 
     def _mesh(self, path: str, part: ModelPart, item: str) -> RawMesh:
         if (path, item) not in self._meshes:
-            mesh = replace(self._objects.mesh(path, item), unit="mm")
             plain = _color(part, part.objects[item]) is not None
-            self._meshes[path, item] = replace(mesh, attributes=None) if plain else mesh
+            made = self._objects.bare_mesh if plain else self._objects.mesh
+            self._meshes[path, item] = replace(made(path, item), unit="mm")
         return self._meshes[path, item]
 
 
