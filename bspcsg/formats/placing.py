@@ -1,35 +1,48 @@
 """Meshes that files place or units scale: what rounding makes cross is mended."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
 
+from .._core import Tree
 from .._types import FloatArray
-from ..errors import Finding, LimitError
+from ..errors import Finding, InvalidMeshError, LimitError, core_errors
 from ..solid.moving import Mended, SaidMesh
+from ..solid.sewing import Sewn, sewn
 from .raw import RawMesh, compacted, joined
+
+#: Puts points, (n, 3) float64, in other places.
+Image: TypeAlias = Callable[[FloatArray], FloatArray]
 
 SingleArray: TypeAlias = "np.ndarray[tuple[int, ...], np.dtype[np.float32]]"
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedMesh:
-    """A mesh in its place in a file.
+    """A mesh and its place in a file.
 
     Parameters
     ----------
     mesh : RawMesh
-    before : (n, 3) float64 or None
-        The vertices before they were placed; None if placing them rounded none.
+        In its own coordinates; its triangles and attributes are those of the mesh in its place.
+    image : callable
+        Takes and returns (n, 3) float64: it puts points in their places.
+    keeps : bool
+        True if that rounds none of the coordinates.
     map : bytes
-        The map that placed them: what has one in common was placed as a whole.
+        A name of the image: what has one in common is placed as a whole.
     """
 
     mesh: RawMesh
-    before: FloatArray | None = None
+    image: Image
+    keeps: bool = True
     map: bytes = b""
+
+    def in_place(self) -> RawMesh:
+        """Return the mesh in its place."""
+        return replace(self.mesh, vertices=self.image(self.mesh.vertices))
 
 
 def is_exact(points: FloatArray | SingleArray, linear: FloatArray, shift: FloatArray) -> bool:
@@ -74,21 +87,22 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
 
     Where placing made surfaces cross that did not before, they are mended by changes of the width
     of the rounding: within a mesh, and among those that one map placed. A finding names what could
-    not be mended.
+    not be mended. What rounding could open is closed by index before.
     """
-    meshes = [piece.mesh for piece in pieces]
+    meshes = [piece.in_place() for piece in pieces]
     whole = joined(meshes)
-    is_rounded = any(piece.before is not None for piece in pieces)
-    pitch = _pitch_of(whole) if is_rounded else None
+    is_exact = all(piece.keeps for piece in pieces)
+    pitch = None if is_exact else _pitch_of(whole)
     if pitch is None:
         return whole
     together: dict[bytes, list[int]] = {}
     for number, piece in enumerate(pieces):
-        if piece.before is not None:
+        if not piece.keeps:
             together.setdefault(piece.map, []).append(number)
     crossing: dict[int, list[int]] = {}
     for members in together.values():
-        found = _mended([pieces[number] for number in members], pitch)
+        own = joined([pieces[number].mesh for number in members])
+        found = _mended(own, pieces[members[0]].image, pitch)
         if found is not None:
             _take(found, members, meshes, crossing)
             whole = replace(whole, is_mended=True)
@@ -109,13 +123,16 @@ def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
     """
     if unit == new_unit:
         return raw
-    scaled = replace(raw, vertices=raw.vertices * unit / new_unit)
+
+    def image(points: FloatArray) -> FloatArray:
+        return points * unit / new_unit
+
+    scaled = replace(raw, vertices=image(raw.vertices))
     is_rounded = new_unit != 1 or not is_exact(raw.vertices, np.eye(3) * unit, np.zeros(3))
     pitch = _pitch_of(scaled) if is_rounded else None
     if pitch is None:
         return scaled
-    mesh = SaidMesh(scaled.vertices, scaled.faces, scaled.attributes)
-    found = mesh.mended(raw.vertices, pitch)
+    found = _mended(raw, image, pitch)
     return scaled if found is None else _with_mended(scaled, found)
 
 
@@ -142,10 +159,30 @@ def _pitch_of(whole: RawMesh) -> int | None:
         return None
 
 
-def _mended(pieces: Sequence[PlacedMesh], pitch: int) -> Mended | None:
-    whole = joined([piece.mesh for piece in pieces])
-    before = np.concatenate([piece.before for piece in pieces if piece.before is not None])
-    return SaidMesh(whole.vertices, whole.faces, whole.attributes).mended(before, pitch)
+def _mended(raw: RawMesh, image: Image, pitch: int) -> Mended | None:
+    """Return a mesh in its place where that needs more than its image, if it does."""
+    mesh = SaidMesh(raw.vertices, raw.faces, raw.attributes)
+    divided = _sewn(mesh)
+    if divided is not None:
+        mesh = divided.mesh
+    moved = replace(mesh, vertices=image(mesh.vertices))
+    found = moved.mended(mesh.vertices, pitch)
+    if divided is None:
+        return found
+    if found is None:
+        return Mended(moved, divided.kept, np.zeros(0, dtype=np.int64))
+    return replace(found, kept=divided.kept[found.kept])
+
+
+def _sewn(mesh: SaidMesh) -> Sewn | None:
+    """Return a mesh closed by index, if moving could open it, and if it closes now."""
+    try:
+        with core_errors():
+            tree = Tree.from_mesh(mesh.vertices, mesh.faces)
+    except (InvalidMeshError, LimitError):
+        # What makes a solid of it says why that cannot be.
+        return None
+    return sewn(mesh, tree)
 
 
 def _take(

@@ -6,7 +6,7 @@ STL. Whether faces cross or overlap is asked of the core, which decides it exact
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -19,6 +19,7 @@ from ..mesh.certificate import Certificate, Precision
 from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
 from ..solid.counting import uncounted
+from ..solid.measure import overlap_of
 from ..solid.solid import Solid
 
 #: Most places that a finding keeps.
@@ -266,15 +267,11 @@ def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]
 
 def _overlaps(solid: Solid, findings: list[Finding]) -> bool:
     """Return whether faces cross, overlap or repeat, and add a finding if they do."""
-    reduced = solid.normalized()
-    if solid.tree.simple is not False:
+    found = overlap_of(solid)
+    if found is None:
         return False
-    before, after = len(solid.to_mesh().faces), len(reduced.to_mesh().faces)
-    message = (
-        f"faces cross, overlap or touch: {_many(before, 'triangle')},"
-        f" where the boundary of the solid has {after}"
-    )
-    findings.append(Finding("self_overlap", "warning", message, (), 1))
+    places = solid.to_mesh().source[list(found.where), 1]
+    findings.append(replace(found, where=_few(places)))
     return True
 
 

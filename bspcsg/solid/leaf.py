@@ -24,6 +24,7 @@ from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
 from .moving import SaidMesh
 from .program import COMPLEMENT, Algebra
+from .sewing import sewn
 
 
 def at_pitch(tree: Tree, pitch: int) -> Tree:
@@ -140,7 +141,9 @@ class MeshLeaf:
         """Return the leaf of the mesh whose vertices the factors have moved."""
         # Rounding moves vertices, so the word given for the original no longer counts.
         said = SaidMesh(*self.arrays(), self._attributes)
-        return MeshLeaf.moved(said, factors, self._given_pitch, self._winding)
+        found = None if self._trusted else sewn(said, self.grown())
+        mesh = said if found is None else found.mesh
+        return MeshLeaf.moved(mesh, factors, self._given_pitch, self._winding)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
         """Return whether rounding has made it cross itself, or would once put on the lattice.

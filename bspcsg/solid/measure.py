@@ -22,6 +22,9 @@ LONGEST_VOLUME = 200_000
 #: No machine holds a number of more digits; the core counts its bits in 64.
 _MOST_DIGITS = 10**15
 
+#: Most places that a finding names.
+_PLACES = 8
+
 
 class Measured(ABC):
     """A solid as the measures see it."""
@@ -66,12 +69,21 @@ class Measured(ABC):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The notes about the inputs and about making the mesh."""
+        """The notes about the inputs and about making the mesh, which is looked at for this.
+
+        Where it is not the boundary of the solid, "self_overlap" says so, and names triangles of
+        the mesh that cross or overlap others; `normalized` returns the solid with that boundary.
+        """
         found = self.tree.findings
         if self.is_bounded:
             self.to_mesh()
             found = [*found, *self.tree.mesh_findings()]
-        return tuple(Finding.from_core(finding) for finding in found)
+        told = tuple(Finding.from_core(finding) for finding in found)
+        # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
+        if not self.is_bounded or {"inside_out", "self_overlap"} & {one.code for one in told}:
+            return told
+        overlap = overlap_of(self)
+        return told if overlap is None else (*told, overlap)
 
     @property
     def pitch(self) -> int:
@@ -250,3 +262,21 @@ def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
         else None
         for prime in _PRIMES
     )
+
+
+def overlap_of(solid: Measured) -> Finding | None:
+    """Return what is to be said of a solid whose mesh is not its boundary.
+
+    Inputs that nobody has vouched for are united with themselves for this, once.
+    """
+    reduced = solid.normalized()
+    if solid.tree.simple is not False:
+        return None
+    mesh = solid.to_mesh()
+    crossing = sorted({face for pair in mesh.certificate.crossings for face in pair})
+    message = (
+        f"faces cross, overlap, touch or lie inside: {len(mesh.faces)} triangles, where the"
+        f" boundary of the solid has {len(reduced.to_mesh().faces)}"
+    )
+    where, count = tuple(crossing[:_PLACES]), max(1, len(crossing))
+    return Finding("self_overlap", "warning", message, where, count)

@@ -243,7 +243,37 @@ def random_scene(rng: Rng) -> Scene:
     )
     expression = random_expression(rng, len(bodies))
     scene = Scene(bodies, expression, ())
-    return replace(scene, points=_random_points(rng, scene.known(), grid, reach))
+    points = _random_points(rng, scene.known(), grid, reach)
+    return replace(scene, bodies=tuple(_irregular(rng, body) for body in bodies), points=points)
+
+
+def _irregular(rng: Rng, body: Body) -> Body:
+    """Return the same set of a mesh that is less tidy, often."""
+    parts = [divided_part(rng, part) if rng.random() < 0.2 else part for part in body.parts]
+    parts = [loose_part(part) if rng.random() < 0.1 else part for part in parts]
+    return replace(body, parts=tuple(parts))
+
+
+def divided_part(rng: Rng, part: Part) -> Part:
+    """Return a part with faces divided in edges, and not those beyond, or by one without area."""
+    vertices, faces = list(part.vertices), list(part.faces)
+    for _ in range(int(rng.integers(1, 4))):
+        k = int(rng.integers(len(faces)))
+        p, q, r = np.roll(faces[k], rng.integers(3)).tolist()
+        along, steps = _divided(less(vertices[q], vertices[p]))
+        if steps > 1:
+            vertices.append(_sum(vertices[p], along, int(rng.integers(1, steps))))
+            m = len(vertices) - 1
+            faces[k] = (p, m, r)
+            faces += [(m, q, r), (p, q, m)] if rng.random() < 0.3 else [(m, q, r)]
+    return Part(tuple(vertices), tuple(faces), part.plain)
+
+
+def loose_part(part: Part) -> Part:
+    """Return a part whose faces share no vertices."""
+    corners = tuple(part.vertices[k] for face in part.faces for k in face)
+    faces = ((k, k + 1, k + 2) for k in range(0, len(corners), 3))
+    return Part(corners, tuple(faces), part.plain)
 
 
 def _random_body(rng: Rng, grid: int, reach: int, earlier: list[Part]) -> Body:

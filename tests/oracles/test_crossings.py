@@ -155,9 +155,32 @@ def test_what_crosses_by_itself_is_not_taken_for_rounding() -> None:
     given = np.nextafter(vertices / 1000, np.inf)
     solid = b.Solid.from_mesh((given, rows))
     mesh = solid.to_mesh()
-    assert {finding.code for finding in solid.findings} == {"zero_area", "self_crossing"}
+    assert {finding.code for finding in solid.findings} == {"zero_area", "self_overlap"}
     assert {tuple(p) for p in mesh.vertices.tolist()} <= {tuple(p) for p in given.tolist()}
     assert not solid.normalized().to_mesh().certificate.crossings
+
+
+@pytest.mark.parametrize("shift", [(0, 0, 0), (0.1, 20, 3)])
+@pytest.mark.parametrize("what", ["folded", "nested", "twice", "beside"])
+def test_findings_tell_of_meshes_that_are_no_boundary(
+    what: str, shift: tuple[float, float, float]
+) -> None:
+    points, faces = icosphere(2)
+    if what == "folded":
+        points[np.argmax(points[:, 2])] = (0.2, 0.3, -2)
+    else:
+        moved = {"nested": points / 2, "twice": points, "beside": points + (3, 0, 0)}[what]
+        points, faces = np.vstack([points, moved]), np.vstack([faces, faces + len(points)])
+    given = b.Solid(points, faces).translate(shift)
+    assert ("self_overlap" in {one.code for one in given.findings}) == (what != "beside")
+    for solid in (given, given | b.cube(1).translate(40, 0, 0)):
+        found = [one for one in solid.findings if one.code == "self_overlap"]
+        assert len(found) < 2
+        assert (solid.to_mesh().volume == pytest.approx(solid.volume)) == (not found)
+        crossing = {face for pair in solid.to_mesh().certificate.crossings for face in pair}
+        for one in found:
+            assert set(one.where) <= crossing and one.count == max(1, len(crossing))
+        assert not [one for one in solid.normalized().findings if one.code == "self_overlap"]
 
 
 def pierce_or_overlap(first: Corners, second: Corners) -> bool:

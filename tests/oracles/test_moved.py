@@ -18,7 +18,7 @@ FOUND = (286, 5707, 6767, 7067, 15362, 20775)
 TETRAHEDRON = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
 
 #: The findings that tell where a mesh is not embedded.
-SAID = frozenset({"crossing", "self_crossing", "turned", "collapsed"})
+SAID = frozenset({"crossing", "self_overlap", "turned", "collapsed"})
 
 Random = np.random.Generator
 
@@ -145,3 +145,66 @@ def test_a_moved_solid_united_with_itself_stays_the_same_set() -> None:
     )
     moved = shells.translate(-2, 0, -1)
     assert (moved | shells.translate(-2, 0, -1)).volume_exact == moved.volume_exact
+
+
+def with_t_junctions(rng: Random, solid: "b.Solid") -> "tuple[np.ndarray, np.ndarray]":
+    """Divide edges of some faces, and not of those beyond them, or by a face without area."""
+    mesh = solid.to_mesh()
+    vertices, faces = mesh.vertices.tolist(), mesh.faces.tolist()
+    for _ in range(rng.integers(1, 6)):
+        number = rng.integers(len(faces))
+        a, c, d = np.roll(faces[number], rng.integers(3)).tolist()
+        middle = (np.array(vertices[a]) + vertices[c]) / 2
+        vertices.append(middle.tolist())
+        faces[number] = [a, len(vertices) - 1, d]
+        faces.append([len(vertices) - 1, c, d])
+        if rng.random() < 0.3:
+            faces.append([a, c, len(vertices) - 1])
+    return np.array(vertices), np.array(faces)
+
+
+@pytest.mark.parametrize("seed", range(1000 if DEEP else 100))
+def test_t_junctions_stay_closed_wherever_they_are_moved(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    boxes = b.union(a_box(rng), a_box(rng), a_box(rng))
+    solid = b.Solid(*with_t_junctions(rng, boxes))
+    turned = moved(rng, solid)
+    mesh = turned.to_mesh()
+    assert mesh.certificate.open_edges == 0
+    assert not mesh.certificate.crossings or SAID & {one.code for one in turned.findings}
+    assert mesh.volume == pytest.approx(turned.volume, rel=1e-9)
+    assert (turned - b.cube(0.5)).to_mesh().certificate.open_edges == 0
+    turned = solid.rotate(rng.uniform(0, 360), rng.normal(size=3))
+    assert turned.volume == pytest.approx(boxes.volume, rel=1e-7)
+
+
+@pytest.mark.parametrize("seed", range(100 if DEEP else 20))
+def test_corners_that_are_welded_stay_so_wherever_they_are_moved(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    mesh = b.union(a_box(rng), a_cone(rng)).to_mesh()
+    corners = np.round(mesh.vertices, 6)[mesh.faces].reshape(-1, 3)
+    loose = corners + rng.uniform(-1e-10, 1e-10, corners.shape)
+    solid = b.Solid(loose, np.arange(len(loose)).reshape(-1, 3))
+    turned = solid.rotate(rng.uniform(0, 360), rng.normal(size=3))
+    assert turned.volume == pytest.approx(solid.volume, rel=1e-7)
+    assert turned.to_mesh().certificate.open_edges == 0
+
+
+def test_values_are_right_in_edges_that_moving_divides() -> None:
+    rng = np.random.default_rng(1)
+    vertices, faces = with_t_junctions(rng, b.box((4, 4, 4)).rotate((0, 0, 90)))
+    said = b.Solid(
+        vertices,
+        faces,
+        vertex_attributes={"place": vertices},
+        face_attributes={"side": np.arange(len(faces))},
+    )
+    turned = said.rotate((10, 20, 30)).to_mesh()
+    axes = b.box((1, 1, 1)).rotate((10, 20, 30)).to_mesh().vertices
+    matrix = np.linalg.lstsq(b.box((1, 1, 1)).to_mesh().vertices, axes, rcond=None)[0]
+    places = turned.vertex_attributes["place"]
+    assert np.allclose(places @ matrix, turned.vertices, atol=1e-6)
+    sides = turned.face_attributes["side"]
+    a, c, d = np.swapaxes(vertices[faces], 0, 1)
+    with_area = np.flatnonzero(np.linalg.norm(np.cross(c - a, d - a), axis=1) > 1e-9)
+    assert len(turned.faces) > len(with_area) and set(sides.tolist()) == set(with_area.tolist())

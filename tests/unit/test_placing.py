@@ -5,6 +5,7 @@ import operator
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -133,8 +134,7 @@ def test_what_is_said_of_faces_stays_where_placing_is_mended() -> None:
     mended = 0
     for _ in range(TURNS):
         matrix = some_matrix(rng)
-        moved = replace(raw, vertices=transform.apply(matrix, raw.vertices))
-        found = placed([PlacedMesh(moved, raw.vertices, b"a map")])
+        found = placed([PlacedMesh(raw, partial(transform.apply, matrix), keeps=False)])
         assert found.attributes is not None
         assert len(found.attributes.face["material"]) == len(found.faces)
         assert np.array_equal(found.attributes.faces, found.faces)
@@ -155,9 +155,55 @@ def test_what_touches_itself_does_not_cross_in_another_unit(units: tuple[float, 
         assert [name for name, _ in found.objects] == ["one", "two"]
         # Vertices that import welds may make it cross, which is told.
         solid = solid_of(found, "part")
-        assert not crosses(solid) or "self_crossing" in {told.code for told in solid.findings}
+        assert not crosses(solid) or "self_overlap" in {told.code for told in solid.findings}
         mended += found.is_mended
     assert mended > 0
+
+
+def with_t_junctions(mesh: "b.Mesh") -> RawMesh:
+    """Return a mesh of which every third face is divided in an edge, and the face beyond is not."""
+    vertices, faces = mesh.vertices.tolist(), []
+    for number, (a, c, d) in enumerate(mesh.faces.tolist()):
+        if number % 3:
+            faces.append((a, c, d))
+            continue
+        vertices.append(((mesh.vertices[a] + mesh.vertices[c]) / 2).tolist())
+        faces += [(a, len(vertices) - 1, d), (len(vertices) - 1, c, d)]
+    half = len(faces) // 2
+    objects = (("one", half), ("two", len(faces) - half))
+    return RawMesh(np.array(vertices), np.array(faces), "part", objects=objects)
+
+
+@pytest.mark.parametrize("suffix", SCENES)
+@pytest.mark.parametrize("mirrors", [False, True])
+@pytest.mark.parametrize("is_soup", [False, True])
+def test_t_junctions_stay_closed_where_a_file_places_them(
+    suffix: str, mirrors: bool, is_soup: bool
+) -> None:
+    mesh = replace(with_t_junctions(chain().to_mesh()), objects=())
+    if is_soup:
+        corners = mesh.vertices[mesh.faces].reshape(-1, 3)
+        mesh = replace(mesh, vertices=corners, faces=np.arange(len(corners)).reshape(-1, 3))
+    volume = solid_of(mesh, "part").volume
+    rng = np.random.default_rng(9)
+    for _ in range(TURNS):
+        matrix = some_matrix(rng) @ np.diag([-1 if mirrors else 1, 1, 1, 1])
+        raw = read_back(SceneNode("part", matrix, mesh), suffix)
+        assert raw.objects == (("part", len(raw.faces)),)
+        solid = solid_of(raw, "part")
+        assert solid.volume == pytest.approx(volume * abs(np.linalg.det(matrix)), rel=1e-9)
+        assert solid.to_mesh().certificate.ok
+
+
+def test_t_junctions_stay_closed_in_another_unit() -> None:
+    mesh = chain().rotate((10, 20, 30)).normalized().to_mesh()
+    # The middle between short decimals is one, and lies on its edge.
+    raw = with_t_junctions(replace(mesh, vertices=np.round(mesh.vertices, 3)))
+    found = rescaled(raw, 1 / 3)
+    assert [name for name, _ in found.objects] == ["one", "two"]
+    assert sum(count for _, count in found.objects) == len(found.faces)
+    volume = solid_of(raw, "part").volume
+    assert solid_of(found, "part").volume == pytest.approx(volume / 27, rel=1e-9)
 
 
 def test_units_that_round_nothing_change_no_face() -> None:
@@ -170,9 +216,9 @@ def test_units_that_round_nothing_change_no_face() -> None:
 def test_what_a_map_lays_on_each_other_is_told_at_once() -> None:
     solid = b.sphere(1, segments=32) - b.sphere(0.5, segments=32).translate(0.9, 0, 0)
     mesh = solid.to_mesh()
-    flat = mesh.vertices * (1, 1, 1e-20) + (0, 0, 1)
+    raw = RawMesh(mesh.vertices, mesh.faces, "part")
     began = time.process_time()
-    found = placed([PlacedMesh(RawMesh(flat, mesh.faces, "part"), mesh.vertices, b"a map")])
+    found = placed([PlacedMesh(raw, lambda points: points * (1, 1, 1e-20) + (0, 0, 1), False)])
     assert time.process_time() - began < 1
     (finding,) = found.findings
     assert (finding.code, finding.severity) == ("crossing", "warning")

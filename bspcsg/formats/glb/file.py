@@ -8,6 +8,7 @@ differ, so every object is a node and a mesh of its own.
 import json
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -63,24 +64,23 @@ def read(source: Source) -> RawMesh:
 def _placed(one: Shown) -> PlacedMesh:
     """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
     placing = TO_MILLIMETRES @ one.matrix
-    before = one.vertices.astype(np.float64)
     linear = placing[:3, :3]
-    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
-        vertices = _moved(before, placing)
+    with np.errstate(invalid="ignore", over="ignore"):
         size = np.linalg.det(linear)
         said = None if one.attributes is None else one.attributes.turned(linear)
         keeps = size == 0 or is_exact(one.vertices, linear, placing[:3, 3])
     faces = one.faces
     if size < 0:
         faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
-    mesh = RawMesh(vertices, faces, one.name, attributes=said)
-    return PlacedMesh(mesh, None if keeps else before, placing.tobytes())
+    own = RawMesh(one.vertices.astype(np.float64), faces, one.name, attributes=said)
+    return PlacedMesh(own, partial(_moved, matrix=placing), keeps, placing.tobytes())
 
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
     x, y, z = vertices.T
     # Not a matrix product: where a row has one entry, its result must be exact.
-    rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
+    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
+        rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
     return np.stack(rows, axis=1)
 
 

@@ -7,7 +7,7 @@ from typing import Any, BinaryIO, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from ..._core import numbers_in
+from ..._core import are_words, numbers_in_rows, whole_numbers_in_rows
 from ..._types import IndexArray
 from ..blocks import blocks
 
@@ -112,8 +112,10 @@ class Rows:
         return all(self.hold(block, expected[block]) for block in blocks(self._count))
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows of a block are these."""
-        return bool((self.numbers(block) == expected).all())
+        """Say whether the rows of a block, of numbers of eight bytes, are these, bit by bit."""
+        base = self._row.base
+        words = np.ascontiguousarray(expected, base.newbyteorder("=")).view(np.uint64)
+        return are_words(self.data(block), words, base == base.newbyteorder(">"))
 
     def numbers(self, block: slice) -> npt.NDArray[Any]:
         """Return the rows of a block."""
@@ -208,25 +210,11 @@ def after(key: bytes, line: bytes) -> str:
     return line[len(key) :].decode("utf-8")
 
 
-def whole_numbers(found: npt.NDArray[np.float64]) -> IndexArray:
-    """Return whole numbers of doubles; others become what no file may hold."""
-    whole: IndexArray = found.astype(np.int64)
-    return np.where(whole == found, whole, -1)
+def rows_of(block: bytes, row: bytes) -> npt.NDArray[np.float64]:
+    """Return the numbers of a block that is one row again and again, in which `#` is a number."""
+    return numbers_in_rows(block, row).reshape(-1, row.count(b"#"))
 
 
-def rows_of(block: bytes, row: bytes, width: int) -> npt.NDArray[np.float64]:
-    """Return the numbers of a block that is one layout of lines again and again."""
-    layout, unit = block.translate(None, OF_NUMBERS), row.translate(None, OF_NUMBERS)
-    count = len(layout) // len(unit)
-    check_layout(layout, unit * count)
-    return numbers_in(block).reshape(count, width)
-
-
-#: Bytes that may belong to a number.
-OF_NUMBERS = b"0123456789+-.eE"
-
-
-def check_layout(found: bytes, expected: bytes) -> None:
-    """Refuse a block whose bytes between the numbers are others."""
-    if found != expected:
-        raise ValueError("its lines are not what they should be")
+def whole_rows_of(block: bytes, row: bytes) -> IndexArray:
+    """Return whole numbers as `rows_of` does."""
+    return whole_numbers_in_rows(block, row).reshape(-1, row.count(b"#"))

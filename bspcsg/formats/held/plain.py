@@ -7,7 +7,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import numpy.typing as npt
 
-from ..._core import are_points, are_triangles
+from ..._core import are_triangles
 from .layout import (
     Held,
     HeldRows,
@@ -15,7 +15,7 @@ from .layout import (
     after,
     header_of,
     rows_of,
-    whole_numbers,
+    whole_rows_of,
 )
 from .lines import Lines, Reader
 
@@ -40,13 +40,13 @@ def text_stl(file: BinaryIO) -> list[Held]:
         at = data.index(b"\n", end) + 1
         if after(b"endsolid ", data[end : at - 1]) != name:
             raise ValueError("a solid ends by another name")
-        rows = rows_of(data[head:end], _FACET, 12)
+        rows = rows_of(data[head:end], _FACET)
         found.append(Held(rows[:, 3:].reshape(-1, 3), None, name))
     return found
 
 
 _FACET = (
-    b"facet normal 0 0 0\n outer loop\n  vertex 0 0 0\n  vertex 0 0 0\n  vertex 0 0 0\n"
+    b"facet normal # # #\n outer loop\n  vertex # # #\n  vertex # # #\n  vertex # # #\n"
     b" endloop\nendfacet\n"
 )
 
@@ -79,11 +79,11 @@ def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
 
 
 def _points(text: bytes) -> npt.NDArray[Any]:
-    return rows_of(text, b"v 0 0 0\n", 3)
+    return rows_of(text, b"v # # #\n")
 
 
 def _named_faces(text: bytes) -> npt.NDArray[Any]:
-    return whole_numbers(rows_of(text, b"f 0 0 0\n", 3)) - 1
+    return whole_rows_of(text, b"f # # #\n") - 1
 
 
 def _first(data: bytes, start: int, letters: bytes) -> int:
@@ -115,16 +115,9 @@ def binary_ply(file: BinaryIO) -> list[HeldRows]:
     head = _PLY.match(header_of(file))
     if head is None:
         raise ValueError("its header is another one")
-    vertices = _Points(file, head.end(), "3<f8", int(head[1]))
+    vertices = Rows(file, head.end(), "3<f8", int(head[1]))
     faces = _Faces(file, vertices.end, "u1,3<i4", int(head[2]))
     return [_complete(HeldRows(vertices, faces, ends=True))]
-
-
-class _Points(Rows):
-    """Rows of three doubles."""
-
-    def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
-        return are_points(self.data(block), expected)
 
 
 class _Faces(Rows):
@@ -151,14 +144,11 @@ def _table(file: BinaryIO, head: re.Match[bytes] | None) -> HeldRows:
 
 
 def _bare_points(text: bytes) -> npt.NDArray[Any]:
-    return rows_of(text, b"0 0 0\n", 3)
+    return rows_of(text, b"# # #\n")
 
 
 def _counted_faces(text: bytes) -> npt.NDArray[Any]:
-    rows = rows_of(text, b"3 0 0 0\n", 4)
-    if not (rows[:, 0] == 3).all():
-        raise ValueError("a face has not three corners")
-    return whole_numbers(rows[:, 1:])
+    return whole_rows_of(text, b"3 # # #\n")
 
 
 def _complete(held: HeldRows) -> HeldRows:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import BinaryIO
 from xml.etree import ElementTree
 
-from .layout import Held, rows_of, whole_numbers
+from .layout import Held, rows_of, whole_rows_of
 
 
 def archive(file: BinaryIO) -> list[Held]:
@@ -46,12 +46,12 @@ def _objects(model: bytes) -> Iterator[Held]:
         told = ElementTree.fromstring(model[at:start] + b"</object>").attrib
         if told.get("id") != str(number) or told.get("type") != "model":
             raise ValueError(f"its object {number} is another one")
-        vertices = rows_of(model[start + len(opening) : middle], _VERTEX, 3)
-        faces = rows_of(model[middle + len(between) : end], _TRIANGLE, 3)
-        yield Held(vertices, whole_numbers(faces), told.get("name", ""))
+        vertices = rows_of(model[start + len(opening) : middle], _VERTEX)
+        faces = whole_rows_of(model[middle + len(between) : end], _TRIANGLE)
+        yield Held(vertices, faces, told.get("name", ""))
         at = end + len(closing)
     if not model.startswith(b"</resources>", at):
         raise ValueError(f"something else follows its object {number}")
 
 
-_VERTEX, _TRIANGLE = b'<vertex x="0" y="0" z="0"/>\n', b'<triangle v1="0" v2="0" v3="0"/>\n'
+_VERTEX, _TRIANGLE = b'<vertex x="#" y="#" z="#"/>\n', b'<triangle v1="#" v2="#" v3="#"/>\n'

@@ -1,6 +1,8 @@
 """3MF, reading: build items with their components and transforms, in millimetres."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -75,26 +77,37 @@ def _bodies(package: Package) -> set[tuple[str, str]]:
 def _moved(mesh: RawMesh, transforms: tuple[FloatArray, ...]) -> PlacedMesh:
     """Return a mesh under transforms; a mirrored one is turned right side out."""
     moving = [matrix for matrix in transforms if (matrix != np.eye(4, 3)).any()]
-    vertices, mirrored, keeps = mesh.vertices, False, True
+    sizes = [float(np.linalg.det(matrix[:3])) for matrix in moving]
+    faces, said = mesh.faces, mesh.attributes
+    if sum(size < 0 for size in sizes) % 2:
+        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
+    own = RawMesh(mesh.vertices, faces, mesh.name, attributes=said)
+    keeps = 0 in sizes or _round_none(mesh.vertices, moving)
+    map_ = b"".join(matrix.tobytes() for matrix in moving)
+    return PlacedMesh(own, partial(_images, moving=moving), keeps, map_)
+
+
+def _round_none(vertices: FloatArray, moving: Sequence[FloatArray]) -> bool:
     for matrix in moving:
         with np.errstate(invalid="ignore", over="ignore"):
-            keeps = keeps and is_exact(vertices, matrix[:3].T, matrix[3])
+            if not is_exact(vertices, matrix[:3].T, matrix[3]):
+                return False
         vertices = _image(vertices, matrix)
-        mirrored ^= bool(np.linalg.det(matrix[:3]) < 0)
-    faces, said = mesh.faces, mesh.attributes
-    if mirrored:
-        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
-    keeps = keeps or any(np.linalg.det(matrix[:3]) == 0 for matrix in moving)
-    map_ = b"".join(matrix.tobytes() for matrix in moving)
-    moved = RawMesh(vertices, faces, mesh.name, attributes=said)
-    return PlacedMesh(moved, None if keeps else mesh.vertices, map_)
+    return True
+
+
+def _images(vertices: FloatArray, moving: Sequence[FloatArray]) -> FloatArray:
+    for matrix in moving:
+        vertices = _image(vertices, matrix)
+    return vertices
 
 
 def _image(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
     x, y, z = vertices.T
-    columns = [
-        x * matrix[0, k] + y * matrix[1, k] + z * matrix[2, k] + matrix[3, k] for k in range(3)
-    ]
+    with np.errstate(invalid="ignore", over="ignore"):
+        columns = [
+            x * matrix[0, k] + y * matrix[1, k] + z * matrix[2, k] + matrix[3, k] for k in range(3)
+        ]
     return np.stack(columns, axis=1)
 
 

@@ -213,6 +213,14 @@ impl Source {
         !self.is_welded() && self.mesh().is_some_and(|m| m.numbers.is_none())
     }
 
+    /// Return whether the given mesh closes wherever rounding takes its corners: no face was left out, no
+    /// corner lies in an edge of another face, and those that were welded have equal doubles.
+    pub fn closes_when_moved(&self) -> bool {
+        self.mesh().is_none_or(|m| m.numbers.is_none())
+            && self.open_vertices().is_empty()
+            && self.blurred_vertices().is_empty()
+    }
+
     fn is_welded(&self) -> bool {
         self.findings.iter().any(|f| f.code == WELDED)
     }
@@ -322,5 +330,32 @@ impl Source {
             Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
             Shape::HalfSpace(_) => Some(Cell::UNIVERSE),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::mesh::grid::Pitch;
+    use crate::mesh::import::import;
+
+    #[test]
+    fn only_what_closes_by_its_own_corners_closes_when_moved() {
+        let corners = [[0.0; 3], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let closes = |more: [f64; 3], faces: &[[i64; 3]]| {
+            let vertices = [&corners[..], &[more]].concat();
+            let source = import(&vertices, faces, Pitch::new(0).ok());
+            source.expect("it is closed").closes_when_moved()
+        };
+        assert!(closes([1.0; 3], &faces));
+        // One face names another corner, which is welded.
+        let loose = [[4, 2, 1], faces[1], faces[2], faces[3]];
+        assert!(closes([0.0; 3], &loose));
+        assert!(!closes([0.1, 0.0, 0.0], &loose));
+        // An edge is divided in one face, without and with one that has no area.
+        let divided = [[0, 2, 4], [4, 2, 1], faces[1], faces[2], faces[3]];
+        assert!(!closes([1.0, 0.0, 0.0], &divided));
+        let flat = [&divided[..], &[[0, 4, 1]]].concat();
+        assert!(!closes([1.0, 0.0, 0.0], &flat));
     }
 }

@@ -28,7 +28,7 @@ pub fn rows<'a, T: Element + Copy, const K: usize>(
 }
 
 /// The numbers of an array, row by row: its own memory, or a copy if they lie otherwise.
-pub fn flat<'a>(array: &'a PyReadonlyArray2<'_, f64>) -> Cow<'a, [f64]> {
+pub fn flat<'a, T: Element + Copy>(array: &'a PyReadonlyArray2<'_, T>) -> Cow<'a, [T]> {
     let view = array.as_array();
     match array.as_slice() {
         Ok(flat) if view.is_standard_layout() => Cow::Borrowed(flat),

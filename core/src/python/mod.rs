@@ -93,8 +93,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(normal_bits, module)?)?;
     module.add_function(wrap_pyfunction!(fail_on_purpose, module)?)?;
     module.add_function(wrap_pyfunction!(suited_pitch, module)?)?;
-    module.add_function(wrap_pyfunction!(numbers::numbers_in, module)?)?;
-    module.add_function(wrap_pyfunction!(numbers::are_points, module)?)?;
+    module.add_function(wrap_pyfunction!(numbers::numbers_in_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(numbers::whole_numbers_in_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(numbers::are_words, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::are_triangles, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::welded_points, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::surfaces_of, module)?)?;

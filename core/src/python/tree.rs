@@ -339,6 +339,14 @@ impl Tree {
         )))
     }
 
+    /// Return whether the meshes it was made from close wherever rounding takes their corners: no face was
+    /// left out, no corner lies in an edge of another face, and those that were welded are equal.
+    #[getter]
+    fn closes_when_moved(&self) -> bool {
+        let mut sources = self.solid.sources().iter();
+        sources.all(|source| source.closes_when_moved())
+    }
+
     /// Return whether the tree holds the arrays it was made from, each face as it was.
     #[getter]
     fn holds_given(&self) -> bool {

@@ -358,7 +358,7 @@ fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, n
         ("collapsed", Severity::Note, &collapsed, COLLAPSED),
         ("turned", Severity::Warning, &over, TURNED),
         ("crossing", Severity::Warning, &crossing, CROSSING),
-        ("self_crossing", Severity::Warning, &own, OWN),
+        ("self_overlap", Severity::Warning, &own, OWN),
     ] {
         if !places.is_empty() {
             let finding = Finding::about(code, severity, places, text);
