@@ -88,6 +88,8 @@ def extrude(
     """
     rise = _rise(positive(h, "h"), center, twist, scale, slices, taper)
     contours = contours_of(polygon)
+    if not contours:
+        return Solid.empty()
     points = np.concatenate(contours)
     count = len(points)
     if not rise.is_upright:
@@ -147,6 +149,8 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid
     full = turn == 360
     columns = sides_around(3 if full else 1, segments, "segments") + (not full)
     contours = contours_of(polygon)
+    if not contours:
+        return Solid.empty()
     points = np.concatenate(contours)
     refuse_many_corners(columns * len(points), "This body")
     if points[:, 0].min() < 0:

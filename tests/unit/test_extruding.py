@@ -93,3 +93,18 @@ def test_a_height_is_a_number_above_zero(height: Any) -> None:
 
 def test_the_empty_region_makes_the_empty_solid() -> None:
     assert b.Region.empty().extrude(3, twist=90, taper=10).is_empty
+
+
+def test_nothing_rises_to_nothing() -> None:
+    nothing = b.cube(1).slice(9)
+    assert nothing.is_empty
+    for solid in (
+        b.extrude(nothing, 1),
+        b.extrude(nothing, 1, twist=30, taper=5),
+        b.extrude(b.text(" "), 1),
+        b.revolve(nothing),
+        b.revolve(nothing, angle=90),
+    ):
+        assert solid.is_empty
+    with pytest.raises(b.InvalidParameterError, match="no contour"):
+        b.extrude([], 1)

@@ -416,9 +416,6 @@ class Region(PlaneQueries):
         >>> Region.rectangle(2, 2, center=True).extrude(3, scale=0).volume
         4.0
         """
-        positive(height, "height")
-        if not self.outlines:
-            return Solid.empty()
         return extrude(
             self, height, center=center, twist=twist, scale=scale, slices=slices, taper=taper
         )
@@ -428,10 +425,6 @@ class Region(PlaneQueries):
 
         See `bspcsg.revolve`; empty for an empty region.
         """
-        full = positive(angle, "angle") >= 360
-        sides_around(3 if full else 1, segments, "segments")
-        if not self.outlines:
-            return Solid.empty()
         return revolve(self, angle=angle, segments=segments)
 
     # Files and other libraries
