@@ -278,5 +278,8 @@ def overlap_of(solid: Measured) -> Finding | None:
         f"faces cross, overlap, touch or lie inside: {len(mesh.faces)} triangles, where the"
         f" boundary of the solid has {len(reduced.to_mesh().faces)}"
     )
+    if crossing:
+        near = ", ".join(f"{x:.6g}" for x in mesh.vertices[mesh.faces[crossing[0], 0]])
+        message += f"; {len(crossing)} cross or overlap others, the first near ({near})"
     where, count = tuple(crossing[:_PLACES]), max(1, len(crossing))
     return Finding("self_overlap", "warning", message, where, count)
