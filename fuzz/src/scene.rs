@@ -133,12 +133,44 @@ impl<'a> Arbitrary<'a> for Scene {
             .collect::<Result<_>>()?;
         let lines = lines(u, count)?;
         let points = points(u, &operands, reach, shift)?;
+        // Last, so that inputs which end before stay what they were.
+        let operands = operands.into_iter().map(|o| untidy(u, o));
         Ok(Self {
-            operands,
+            operands: operands.collect::<Result<_>>()?,
             lines,
             points,
         })
     }
+}
+
+/// The same set by a mesh that may be less tidy.
+fn untidy(u: &mut Unstructured<'_>, operand: Operand) -> Result<Operand> {
+    if operand.shape.is_none() || u.ratio(3, 4)? {
+        return Ok(operand);
+    }
+    let shape = operand.shape.map(|shape| divided(u, shape)).transpose()?;
+    Ok(Operand { shape, ..operand })
+}
+
+/// A shape with faces divided in an edge, but not those beyond it, or by a face without area.
+fn divided(u: &mut Unstructured<'_>, mut shape: Shape) -> Result<Shape> {
+    for _ in 0..u.int_in_range(1..=3)? {
+        let face = u.choose_index(shape.faces.len())?;
+        shape.faces[face].rotate_left(u.int_in_range(0..=2)?);
+        let ([a, b, c], [p, q, _]) = (shape.faces[face], shape.corners(face));
+        let sums = [0, 1, 2].map(|i| p[i] + q[i]);
+        if sums.iter().any(|sum| sum % 2 != 0) {
+            continue;
+        }
+        let middle = i64::try_from(shape.vertices.len()).expect("few");
+        shape.vertices.push(sums.map(|sum| sum / 2));
+        shape.faces[face] = [a, middle, c];
+        shape.faces.push([middle, b, c]);
+        if u.arbitrary()? {
+            shape.faces.push([a, b, middle]);
+        }
+    }
+    Ok(shape)
 }
 
 fn operand(u: &mut Unstructured<'_>, reach: i64, shift: i64) -> Result<Operand> {
