@@ -46,7 +46,7 @@ PROBES = [
     Probe("box & half-space is a tetrahedron", 1, lambda _: (probes.corner_of_a_box(), {})),
     Probe("crossings of nearly coincident parts", 10_000, measures.crossings),
     Probe("share of the proof in writing", 327_000, measures.shares_of_proofs),
-    Probe("share of the proof in writing more", 1_310_000, measures.shares_of_proofs),
+    Probe("share of the proof in large files", 1_310_000, measures.shares_of_proofs),
     Probe("share of the checks in reading", 327_000, measures.shares_of_checks),
     Probe("jobs through a forked pool", 1000, measures.jobs_through_forks),
     Probe("memory after small operations", 100_000, measures.growth),
