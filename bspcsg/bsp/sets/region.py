@@ -416,6 +416,7 @@ class Region(PlaneQueries):
         >>> Region.rectangle(2, 2, center=True).extrude(3, scale=0).volume
         4.0
         """
+        positive(height, "height")
         return extrude(
             self, height, center=center, twist=twist, scale=scale, slices=slices, taper=taper
         )
