@@ -91,8 +91,8 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
     """
     meshes = [piece.in_place() for piece in pieces]
     whole = joined(meshes)
-    is_exact = all(piece.keeps for piece in pieces)
-    pitch = None if is_exact else _pitch_of(whole)
+    is_rounded = not all(piece.keeps for piece in pieces)
+    pitch = _pitch_of(whole) if is_rounded else None
     if pitch is None:
         return whole
     together: dict[bytes, list[int]] = {}
