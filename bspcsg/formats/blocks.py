@@ -12,6 +12,10 @@ import numpy.typing as npt
 #: Rows looked at together: their arrays fit into a processor's cache.
 TOGETHER = 1 << 14
 
+#: Rows of a file written together, and read back together: fewer take longer each, and of more
+#: what was written leaves the cache before it is read back.
+OF_FILE = 2 * TOGETHER
+
 
 def blocks(count: int, together: int = TOGETHER) -> Iterator[slice]:
     """Yield the parts into which so many rows are divided."""

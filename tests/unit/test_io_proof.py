@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
-from bspcsg.formats.blocks import TOGETHER
+from bspcsg.formats.blocks import OF_FILE
 from bspcsg.formats.registry import MAKERS, Form
 from bspcsg.io import FORMATS, RawMesh, encoded, read, write
 from bspcsg.mesh.mesh import Mesh
@@ -194,14 +194,14 @@ def test_every_byte_of_the_triangles_is_read(suffix: str, text: bool) -> None:
 @pytest.mark.parametrize("suffix", [".ply", ".vtk"])
 def test_files_in_binary_are_read_once_and_in_pieces(suffix: str) -> None:
     """What is read fits into a processor's cache: fresh memory takes longer than the proof."""
-    mesh = RawMesh(*icosphere(6))
+    mesh = RawMesh(*icosphere(7))
     made = encoded(mesh, "x", suffix)
     file = Watched(b"".join(made.chunks))
     made.prove(file)
     size = file.seek(0, io.SEEK_END)
     lines = 1 << 14
     assert size < sum(file.pieces) < size + lines
-    assert max(file.pieces) <= 24 * TOGETHER < size / 4
+    assert max(file.pieces) <= 24 * OF_FILE < size / 4
 
 
 def test_the_first_triangle_that_differs_is_named(

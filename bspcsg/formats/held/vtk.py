@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import vtk
-from ..blocks import blocks
+from ..blocks import OF_FILE, blocks
 from .layout import Held, HeldRows, Rows, header_of, piece, size_of, text_at
 
 _HEAD = re.compile(
@@ -20,6 +20,7 @@ _CELLS = re.compile(rb"\nCELLS (\d+) (\d+)\nOFFSETS vtktypeint64\n")
 
 #: VTK's number of triangles.
 _TRIANGLE = 5
+_KIND = _TRIANGLE.to_bytes(4, "big")
 
 
 def legacy(file: BinaryIO) -> list[HeldRows]:
@@ -53,13 +54,14 @@ def _behind(key: bytes, file: BinaryIO, at: int) -> int:
 
 def _check_triangles(offsets: Rows, kinds: Rows) -> None:
     """Refuse cells that are no triangles, one after another."""
-    for block in blocks(len(offsets)):
-        found = offsets.numbers(block)
-        first = 3 * block.start
-        if (found != np.arange(first, first + 3 * len(found), 3)).any():
+    for block in blocks(len(offsets), OF_FILE):
+        rows = np.arange(*block.indices(len(offsets)), dtype=np.int64)
+        if not offsets.hold(block, 3 * rows[:, None]):
             raise ValueError("a cell has not three corners")
-    if not all((kinds.numbers(block) == _TRIANGLE).all() for block in blocks(len(kinds))):
-        raise ValueError("a cell is no triangle")
+    for block in blocks(len(kinds), OF_FILE):
+        data = kinds.data(block)
+        if data != _KIND * (len(data) // len(_KIND)):
+            raise ValueError("a cell is no triangle")
 
 
 _GRID = re.compile(

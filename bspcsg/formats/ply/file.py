@@ -11,7 +11,7 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
-from ..blocks import TOGETHER, blocks, encoded_lines, listed
+from ..blocks import OF_FILE, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, quoted, whole
@@ -348,17 +348,12 @@ def beyond(mesh: Mesh | RawMesh) -> str:
     return "too many vertices for PLY; write OBJ." if is_beyond else ""
 
 
-#: Rows written together: fewer take longer each, and of more what was written leaves the cache
-#: before it is read back.
-_TOGETHER = 2 * TOGETHER
-
-
 def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the little-endian form, in double precision."""
     yield _header(mesh, "binary_little_endian")
     vertex, face, lists = _columns(mesh)
     row = np.dtype([("xyz", "<f8", 3), *_fields(vertex)])
-    for block in blocks(len(mesh.vertices), _TOGETHER):
+    for block in blocks(len(mesh.vertices), OF_FILE):
         points = np.empty(len(mesh.vertices[block]), row)
         points["xyz"] = mesh.vertices[block]
         _fill(points, vertex, block)
@@ -367,7 +362,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     for k, (_, values) in enumerate(lists):
         further += [(f"n{k}", "u1"), (f"l{k}", _little(values), values.shape[1:])]
     row = np.dtype([("count", "u1"), ("corners", "<i4", 3), *further])
-    for block in blocks(len(mesh.faces), _TOGETHER):
+    for block in blocks(len(mesh.faces), OF_FILE):
         records = np.empty(len(mesh.faces[block]), row)
         records["count"] = 3
         records["corners"] = mesh.faces[block]
