@@ -190,7 +190,11 @@ class Region(PlaneQueries):
 
     @property
     def components(self) -> tuple["Region", ...]:
-        """The connected parts, in the order of their outlines; touching corners connect nothing."""
+        """The connected parts, in the order of their outlines; touching corners connect nothing.
+
+        Corners that are no lattice points are rounded to them, so that a part that is thinner than
+        a step may come out empty.
+        """
         return tuple(Region(loops, pitch=self.pitch) for loops in self._parts())
 
     def _parts(self) -> list[list[FloatArray]]:
