@@ -4,25 +4,36 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ...errors import Finding, FormatError
 from ..source import Source
 
 _MAGIC, _HEADER = b"glTF", 12
 _JSON, _BINARY = b"JSON", b"BIN\0"
 
-#: Bytes of a component, and components of an element, by glTF's names.
-_COMPONENT = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
-_ELEMENT = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+#: Types of components, and components of an element, by glTF's names.
+COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
 #: Most triangles that all nodes together may show, and most nodes that may lie in one another.
 _MOST_TRIANGLES = 1 << 27
 _DEEPEST = 64
 
 #: Extensions that change what the triangles are, and which are not decoded here.
-_GEOMETRIC = ("draco", "meshopt", "quantization", "instancing")
+_GEOMETRIC = ("draco", "meshopt")
 
-#: Attributes of vertices that are not read, by the first word of their names.
-_ATTRIBUTES = {"TANGENT": "tangents", "JOINTS": "joints", "WEIGHTS": "weights"}
+#: Shows the mesh of a node several times, at places that accessors tell.
+_INSTANCES = "EXT_mesh_gpu_instancing"
+
+#: Attributes of vertices that are not read, by the beginnings of their names.
+_ATTRIBUTES = {
+    "TANGENT": "tangents",
+    "JOINTS_": "joints",
+    "WEIGHTS_": "weights",
+    "TEXCOORD_": "further texture coordinates",
+    "COLOR_": "further colours",
+}
 
 #: Modes of primitives that are triangles.
 TRIANGLES, STRIP, FAN = 4, 5, 6
@@ -143,16 +154,26 @@ class _Claims:
         return entries[index]
 
     def _check_accessor(self, number: int, accessor: dict[str, Any]) -> None:
-        if "sparse" in accessor or "bufferView" not in accessor:
-            message = f"accessor {number} is sparse, which cannot be read here."
-            raise self._source.error(message, "unsupported")
-        view = self._entry("bufferViews", accessor["bufferView"])
+        """Check where the elements lie; those that lie nowhere are refused where they are used."""
+        count, element = accessor["count"], _bytes_of(accessor)
+        if "bufferView" in accessor:
+            self._check_elements(number, accessor, count, element)
+        if "sparse" in accessor:
+            sparse = accessor["sparse"]
+            if sparse["count"] > count:
+                message = f"accessor {number} replaces more elements than it has."
+                raise self._source.error(message)
+            places = sparse["indices"]
+            self._check_elements(number, places, sparse["count"], _bytes_of(places, "SCALAR"))
+            self._check_elements(number, sparse["values"], sparse["count"], element)
+
+    def _check_elements(self, number: int, told: dict[str, Any], count: int, element: int) -> None:
+        view = self._entry("bufferViews", told["bufferView"])
         self._entry("buffers", view["buffer"])
         start, length = view.get("byteOffset", 0), view["byteLength"]
-        element = _COMPONENT[accessor["componentType"]] * _ELEMENT[accessor["type"]]
-        stride, count = view.get("byteStride") or element, accessor["count"]
-        needed = accessor.get("byteOffset", 0) + max(count - 1, 0) * stride + (count and element)
-        if min(start, length, stride, count, needed) < 0 or start + length > self._held:
+        offset, stride = told.get("byteOffset", 0), view.get("byteStride") or element
+        needed = offset + max(count - 1, 0) * stride + (count and element)
+        if min(start, length, offset, stride, count) < 0 or start + length > self._held:
             message = f"accessor {number} lies outside the {self._held} bytes of data."
             raise self._source.error(message, "truncated")
         if stride < element:
@@ -161,6 +182,14 @@ class _Claims:
         if needed > length:
             message = f"accessor {number} promises {count} elements, more than its data hold."
             raise self._source.error(message, "truncated")
+
+    def _used(self, number: Any) -> dict[str, Any]:
+        """Return an accessor whose elements will be read."""
+        accessor = self._entry("accessors", number)
+        if "bufferView" not in accessor:
+            message = f"accessor {number} has no data but what is sparse, which cannot be read."
+            raise self._source.error(message, "unsupported")
+        return accessor
 
     def _check_nodes(self, nodes: list[dict[str, Any]]) -> None:
         """Refuse nodes with several parents: they could contain each other or multiply."""
@@ -185,34 +214,77 @@ class _Claims:
         if "mesh" not in node:
             return 0
         total = 0
+        times = self._times(node)
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", TRIANGLES)
             if "material" in primitive:
                 self._entry("materials", primitive["material"])
             for accessor in primitive["attributes"].values():
-                self._entry("accessors", accessor)
+                self._used(accessor)
             if mode in (TRIANGLES, STRIP, FAN):
                 corners = primitive.get("indices", primitive["attributes"]["POSITION"])
-                count = self._entry("accessors", corners)["count"]
+                count = self._used(corners)["count"]
                 total += count // 3 if mode == TRIANGLES else count
-        return total
+        return total * times
+
+    def _times(self, node: dict[str, Any]) -> int:
+        """Return how often a node shows its mesh."""
+        told = instances_of(node)
+        if told is None:
+            return 1
+        counts = {self._used(accessor)["count"] for accessor in told.values()}
+        if len(counts) != 1:
+            raise ValueError("the instances of a mesh have not one place each")
+        return int(counts.pop())
+
+
+def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
+    """Return the bytes of one element."""
+    return np.dtype(COMPONENTS[told["componentType"]]).itemsize * ELEMENTS[shape or told["type"]]
+
+
+def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the accessors of the places at which a node shows its mesh, None if at its own."""
+    told = node.get("extensions", {}).get(_INSTANCES)
+    return None if told is None else dict(told["attributes"])
 
 
 def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
     """Return what is said besides the shape."""
     found = {key for key in ("animations", "skins") if tree.get(key)}
-    for mesh in tree.get("meshes", []):
-        for primitive in mesh["primitives"]:
-            found |= {_ATTRIBUTES.get(name.split("_")[0], "") for name in primitive["attributes"]}
-    return tuple(sorted(found - {""}))
+    for primitive in _primitives(tree):
+        if primitive.get("targets"):
+            found.add("morph targets")
+        unread = set(primitive["attributes"]) - {uv_of(tree, primitive), "COLOR_0"}
+        for start, what in _ATTRIBUTES.items():
+            if any(name.startswith(start) for name in unread):
+                found.add(what)
+    for material in tree.get("materials", []):
+        if "KHR_texture_transform" in picture_of(material).get("extensions", {}):
+            found.add("texture transforms")
+    return tuple(sorted(found))
+
+
+def _primitives(tree: dict[str, Any]) -> list[dict[str, Any]]:
+    return [primitive for mesh in tree.get("meshes", []) for primitive in mesh["primitives"]]
+
+
+def picture_of(material: dict[str, Any]) -> dict[str, Any]:
+    """Return what a material says of the picture that colours it; nothing if there is none."""
+    told: dict[str, Any] = material.get("pbrMetallicRoughness", {}).get("baseColorTexture", {})
+    return told
+
+
+def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
+    """Return the name of the texture coordinates by which the picture of a primitive is laid."""
+    materials, number = tree.get("materials", []), primitive.get("material", -1)
+    told = picture_of(materials[number]) if 0 <= number < len(materials) else {}
+    return f"TEXCOORD_{told.get('texCoord', 0)}"
 
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
-    count = sum(
-        primitive.get("mode", TRIANGLES) not in (TRIANGLES, STRIP, FAN)
-        for mesh in tree.get("meshes", [])
-        for primitive in mesh["primitives"]
-    )
+    modes = [primitive.get("mode", TRIANGLES) for primitive in _primitives(tree)]
+    count = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
     if not count:
         return ()
     message = f"{count} groups of points or lines were ignored."

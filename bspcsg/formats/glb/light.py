@@ -57,9 +57,8 @@ def words_of(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint16]:
     return found
 
 
-def shown(values: npt.NDArray[Any], is_whole: bool) -> npt.NDArray[Any]:
+def shown(light: npt.NDArray[Any], is_whole: bool) -> npt.NDArray[Any]:
     """Return light of a file as colours: bytes if the file has whole numbers, else floats."""
-    light = values / _BYTE if values.dtype == np.uint8 else values
     colors = to_screen(light)
     if is_whole:
         return np.rint(np.clip(colors, 0, 1) * _BYTE).astype(np.uint8)

@@ -1,5 +1,6 @@
 """The content of the nodes of a GLB: triangles in single precision under a matrix, node by node."""
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -11,14 +12,11 @@ from ...attributes.attributes import Attributes
 from ...attributes.joining import MeshPart, concatenated
 from ..placing import SingleArray
 from ..raw import compacted
-from .container import FAN, STRIP, TRIANGLES, Container
+from .accessors import fractions, stored
+from .container import COMPONENTS, FAN, STRIP, TRIANGLES, Container, instances_of
 from .said import Named, materials_of, read_columns
 
 _Triangles: TypeAlias = "tuple[SingleArray, IndexArray, Attributes | None]"
-
-#: The type of a component by glTF's number, for positions and for indices.
-_POSITION = {5126: "<f4"}
-_INDEX = {5121: "<u1", 5123: "<u2", 5125: "<u4"}
 
 _IDENTITY = np.eye(4)
 
@@ -62,18 +60,20 @@ def shown(container: Container) -> tuple[list[Shown], int]:
     materials = materials_of(tree, container.data)
     meshes: dict[int, _Triangles] = {}
     found = []
+    seen = 0
     for number, matrix in _visited(tree, nodes):
         node = nodes[number]
         if "mesh" not in node:
             continue
+        seen += 1
         mesh = tree["meshes"][node["mesh"]]
         if node["mesh"] not in meshes:
             meshes[node["mesh"]] = triangles_of(container, mesh, materials)
         name = mesh.get("name") or node.get("name") or ""
         vertices, faces, said = meshes[node["mesh"]]
-        found.append(Shown(str(name), vertices, faces, matrix, said))
-    placed = sum("mesh" in node for node in nodes)
-    return found, placed - len(found)
+        for place in places_of(container, node):
+            found.append(Shown(str(name), vertices, faces, matrix @ place, said))
+    return found, sum("mesh" in node for node in nodes) - seen
 
 
 def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tuple[int, FloatArray]]:
@@ -101,23 +101,53 @@ def local_matrix(node: dict[str, Any]) -> FloatArray:
     """Return the place of a node in the one around it, for column vectors."""
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
-    matrix = np.eye(4)
-    matrix[:3, :3] = _rotation(node.get("rotation", [0, 0, 0, 1])) * np.array(
-        node.get("scale", [1, 1, 1]), dtype=np.float64
-    )
-    matrix[:3, 3] = node.get("translation", [0, 0, 0])
+    given = [
+        np.array([node.get(key, usual)], dtype=np.float64)
+        for key, usual in zip(("translation", "rotation", "scale"), _USUAL, strict=True)
+    ]
+    matrix: FloatArray = _matrices(*given)[0]
     return matrix
 
 
-def _rotation(quaternion: list[float]) -> FloatArray:
-    x, y, z, w = np.array(quaternion, dtype=np.float64) / np.linalg.norm(quaternion)
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
+#: No translation, no rotation, and the scale 1.
+_USUAL = ([0, 0, 0], [0, 0, 0, 1], [1, 1, 1])
+
+
+def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
+    """Return where a node shows its mesh, (n, 4, 4), seen from the node itself."""
+    told = instances_of(node)
+    if told is None:
+        return _IDENTITY[None]
+    count = container.tree["accessors"][next(iter(told.values()))]["count"]
+    given = []
+    for key, usual in zip(("TRANSLATION", "ROTATION", "SCALE"), _USUAL, strict=True):
+        values = np.tile(np.array(usual, dtype=np.float64), (count, 1))
+        if key in told:
+            values = fractions(stored(container, told[key])).astype(np.float64)
+        if values.shape[1] != len(usual):
+            raise ValueError(f"the {key} of instances has {values.shape[1]} numbers each")
+        given.append(values)
+    return _matrices(*given)
+
+
+def _matrices(translations: FloatArray, rotations: FloatArray, scales: FloatArray) -> FloatArray:
+    """Return (n, 4, 4) matrices for column vectors, which scale, then turn, then move."""
+    found = np.tile(_IDENTITY, (len(scales), 1, 1))
+    found[:, :3, :3] = _turned(rotations) * scales[:, None]
+    found[:, :3, 3] = translations
+    return found
+
+
+def _turned(quaternions: FloatArray) -> FloatArray:
+    """Return the (n, 3, 3) matrices of (n, 4) quaternions of any length, the real part last."""
+    with np.errstate(invalid="ignore"):  # what is not finite is refused later
+        x, y, z, w = (quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)).T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0)
 
 
 def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -> _Triangles:
@@ -154,20 +184,34 @@ def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -
 
 def _shared(primitives: list[dict[str, Any]]) -> set[Any]:
     """Return the accessors of positions that more than one primitive names."""
-    named = [primitive["attributes"].get("POSITION") for primitive in primitives]
-    return {accessor for accessor in named if named.count(accessor) > 1}
+    named = Counter(primitive["attributes"].get("POSITION") for primitive in primitives)
+    return {accessor for accessor, times in named.items() if times > 1}
+
+
+#: The kinds of components that positions have, and those of indices.
+_POSITIONS = ("f4", "i1", "u1", "i2", "u2")
+_INDICES = ("u1", "u2", "u4")
 
 
 def _positions(container: Container, accessor: int) -> SingleArray:
-    points = _elements(container, accessor, _POSITION, "VEC3")
-    return np.ascontiguousarray(points, dtype=np.float32)
+    _check_kind(container, accessor, "VEC3", _POSITIONS)
+    values = stored(container, accessor)
+    if container.tree["accessors"][accessor].get("normalized"):
+        values = fractions(values)
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+def _check_kind(container: Container, number: int, shape: str, kinds: tuple[str, ...]) -> None:
+    accessor = container.tree["accessors"][number]
+    if accessor["type"] != shape or COMPONENTS[accessor["componentType"]][1:] not in kinds:
+        raise ValueError(f"accessor {number} is of no type that is meant for its use")
 
 
 def _faces(container: Container, primitive: dict[str, Any], count: int, mode: int) -> IndexArray:
     corners = np.arange(count)
     if "indices" in primitive:
-        corners = _elements(container, primitive["indices"], _INDEX, "SCALAR").ravel()
-        corners = corners.astype(np.int64)
+        _check_kind(container, primitive["indices"], "SCALAR", _INDICES)
+        corners = stored(container, primitive["indices"]).ravel().astype(np.int64)
     if len(corners) and not 0 <= corners.min() <= corners.max() < count:
         raise IndexError("a triangle names a vertex that does not exist")
     if mode == TRIANGLES:
@@ -178,18 +222,3 @@ def _faces(container: Container, primitive: dict[str, Any], count: int, mode: in
     faces = np.stack([corners[:-2], second, third], axis=1)
     faces[1::2] = faces[1::2, ::-1]
     return faces
-
-
-def _elements(container: Container, number: int, kinds: dict[int, str], shape: str) -> Any:
-    """Return the (count, k) elements of an accessor, in place."""
-    accessor = container.tree["accessors"][number]
-    view = container.tree["bufferViews"][accessor["bufferView"]]
-    kind = kinds.get(accessor["componentType"])
-    if kind is None or accessor["type"] != shape:
-        raise ValueError(f"accessor {number} is of no type that is meant for its use")
-    item, width = np.dtype(kind), {"SCALAR": 1, "VEC3": 3}[shape]
-    stride = view.get("byteStride") or item.itemsize * width
-    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-    return np.ndarray(
-        (accessor["count"], width), item, container.data, start, (stride, item.itemsize)
-    )

@@ -16,7 +16,8 @@ from ...attributes.attributes import Attributes, Kind, Values, is_normal
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
-from .container import Container
+from .accessors import fractions, numbers, stored
+from .container import Container, uv_of
 from .light import as_read, color_of, shown, to_light, words_of
 
 #: Names and materials of a file, in its order.
@@ -27,13 +28,6 @@ _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
 
 #: The beginning of the names that other attributes have in files; their own names follow.
 _OWN = "_"
-
-#: glTF's number of floats.
-_FLOATS = 5126
-
-#: Kinds of components by glTF's numbers, and what whole ones are divided by if they are fractions.
-_COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 def kept(said: Attributes, vertices: FloatArray) -> Attributes:
@@ -120,7 +114,7 @@ def _in_file(name: str, values: Values) -> Values:
 
 
 def read_columns(
-    container: Container, primitive: Mapping[str, Any], count: int, used: IndexArray | None
+    container: Container, primitive: dict[str, Any], count: int, used: IndexArray | None
 ) -> dict[str, Values]:
     """Return the attributes of some of a primitive's vertices.
 
@@ -134,40 +128,32 @@ def read_columns(
         Those that are wanted; None for all.
     """
     found: dict[str, Values] = {}
+    known = {**_KNOWN, "TEXCOORD_0": "", uv_of(container.tree, primitive): "uv"}
     for semantic, number in primitive["attributes"].items():
-        name = _KNOWN.get(semantic, semantic[1:] if semantic.startswith(_OWN) else "")
-        values = _elements(container, number) if name else None
-        if values is None or len(values) != count or not _fits(name, values):
+        name = known.get(semantic, semantic[1:] if semantic.startswith(_OWN) else "")
+        accessor = container.tree["accessors"][number]
+        if not name or accessor["type"].startswith("MAT"):
             continue
-        chosen_rows = values if used is None else values[used]
-        if name == "color":
-            component = container.tree["accessors"][number]["componentType"]
-            found[name] = shown(chosen_rows, is_whole=component != _FLOATS)
-        else:
-            found[name] = _upright(chosen_rows) if name == "uv" else chosen_rows
+        values = stored(container, number)
+        if len(values) == count and _fits(name, values):
+            some = values if used is None else values[used]
+            found[name] = _meant(name, some, bool(accessor.get("normalized")))
     return found
+
+
+def _meant(name: str, values: Values, is_fraction: bool) -> Values:
+    """Return the values of an attribute that numbers in a file mean."""
+    if name == "color":
+        return shown(fractions(values), is_whole=values.dtype.kind != "f")
+    meant = numbers(values, is_fraction)
+    if name == "uv":
+        return _upright(meant.astype(np.float32))
+    return meant[:, 0] if meant.shape[1] == 1 else meant
 
 
 def _fits(name: str, values: Values) -> bool:
     widths = {"normal": ((3,),), "uv": ((2,),), "color": ((3,), (4,))}
     return name not in widths or values.shape[1:] in widths[name]
-
-
-def _elements(container: Container, number: int) -> Values | None:
-    """Return the elements of an accessor; fractions in whole numbers become floats."""
-    accessor = container.tree["accessors"][number]
-    view = container.tree["bufferViews"][accessor["bufferView"]]
-    item, width = np.dtype(_COMPONENTS[accessor["componentType"]]), _WIDTHS.get(accessor["type"])
-    if width is None:
-        return None
-    stride = view.get("byteStride") or item.itemsize * width
-    start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
-    shape = (accessor["count"], width)
-    values = np.ndarray(shape, item, container.data, start, (stride, item.itemsize))
-    native: Values = values.astype(item.newbyteorder("="))
-    if accessor.get("normalized") and item != np.dtype("<u1") and item.kind in "iu":
-        native = (native / np.iinfo(item).max).astype(np.float32)
-    return native[:, 0] if width == 1 else native
 
 
 def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:

@@ -12,10 +12,10 @@ from ...attributes.material import Material
 from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
-from .container import Container, container_of
+from .container import Container, container_of, instances_of
 from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, called, container
 from .light import as_read
-from .nodes import local_matrix, triangles_of
+from .nodes import local_matrix, places_of, triangles_of
 from .said import Pictures, kept, materials_of
 
 _IDENTITY = np.eye(4)
@@ -73,10 +73,11 @@ class _Reading:
         children = tuple(self._node(child, _IDENTITY) for child in told.get("children", []))
         matrix = outer @ local_matrix(told)
         name = str(told.get("name") or (mesh.name if mesh is not None else ""))
-        if mesh is None or not children:
+        if mesh is None or not (children or instances_of(told)):
             return SceneNode(name, matrix, *_painted(mesh), children)
-        own = SceneNode(mesh.name, _IDENTITY, *_painted(mesh))
-        return SceneNode(name, matrix, None, None, (own, *children))
+        places = places_of(self._held, told)
+        own = (SceneNode(mesh.name, place, *_painted(mesh)) for place in places)
+        return SceneNode(name, matrix, None, None, (*own, *children))
 
     def _mesh(self, number: int) -> RawMesh:
         if number not in self._meshes:

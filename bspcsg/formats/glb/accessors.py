@@ -1,0 +1,64 @@
+"""The numbers of accessors, each row an element.
+
+# Source
+glTF 2.0, sections 3.6.2 (accessors, sparse ones, fractions in whole numbers) and 3.11.
+"""
+
+import numpy as np
+
+from ...attributes.attributes import Values
+from .container import COMPONENTS, ELEMENTS, Container
+
+
+def stored(container: Container, number: int) -> Values:
+    """Return the (count, k) numbers of an accessor as they are in the file; in place, if they are.
+
+    Raises
+    ------
+    IndexError
+        If an element that does not exist is replaced.
+    """
+    accessor = container.tree["accessors"][number]
+    count, item = accessor["count"], np.dtype(COMPONENTS[accessor["componentType"]])
+    width = ELEMENTS[accessor["type"]]
+    values = _rows(container, accessor, count, width, item)
+    if "sparse" not in accessor:
+        return values
+    sparse = accessor["sparse"]
+    kind = np.dtype(COMPONENTS[sparse["indices"]["componentType"]])
+    places = _rows(container, sparse["indices"], sparse["count"], 1, kind).ravel()
+    if len(places) and places.max() >= count:
+        raise IndexError(f"accessor {number} replaces an element that does not exist")
+    replaced = values.copy()
+    replaced[places] = _rows(container, sparse["values"], sparse["count"], width, item)
+    return replaced
+
+
+def numbers(values: Values, is_fraction: bool) -> Values:
+    """Return stored numbers in this machine's order; fractions in whole numbers become floats."""
+    if is_fraction:
+        return fractions(values)
+    native: Values = values.astype(values.dtype.newbyteorder("="))
+    return native
+
+
+def fractions(values: Values) -> Values:
+    """Return whole numbers as fractions of the largest, from -1 to 1, in single precision."""
+    if values.dtype.kind == "f":
+        return values
+    parts: Values = np.maximum(values / np.iinfo(values.dtype).max, -1).astype(np.float32)
+    return parts
+
+
+def _rows(
+    container: Container,
+    told: "dict[str, int]",
+    count: int,
+    width: int,
+    item: "np.dtype[np.generic]",
+) -> Values:
+    """Return rows of numbers in a view of the data, in place."""
+    view = container.tree["bufferViews"][told["bufferView"]]
+    stride = view.get("byteStride") or item.itemsize * width
+    start = view.get("byteOffset", 0) + told.get("byteOffset", 0)
+    return np.ndarray((count, width), item, container.data, start, (stride, item.itemsize))
