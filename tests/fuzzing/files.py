@@ -29,6 +29,7 @@ from bspcsg.io import RawMesh, encoded
 from bspcsg.solid.leaf import TreeLeaf
 from bspcsg.solid.solid import from_leaf
 from corpus.broken import glb_chunks, glb_of
+from support.glb import Scene
 from support.shapes import cuboid, joined, octahedron, tetrahedron
 
 from .models import random_model
@@ -93,6 +94,8 @@ def good_file(rng: Rng, format: str) -> File:  # noqa: A002
         return File(format, text.encode(), volume)
     if format == ".3mf" and rng.random() < 0.5:
         return _boolean_shape(rng)
+    if format == ".glb" and rng.random() < 0.5:
+        return _foreign_glb(rng)
     mesh, volume = _known_mesh(rng)
     if format in (".svg", ".dxf"):
         return _good_drawing(rng, format)
@@ -152,6 +155,24 @@ def _boolean_shape(rng: Rng) -> File:
 
 def _transform(move: list[int]) -> str:
     return 'transform="1 0 0 0 1 0 0 0 1 {} {} {}"'.format(*move)
+
+
+def _foreign_glb(rng: Rng) -> File:
+    """Return a GLB as other programs write it: in metres, which are read as 1000 each."""
+    (vertices, faces), volume = _known_mesh(rng)
+    kind = ("f4", "i1", "i2")[int(rng.integers(3))]
+    points = np.asarray(vertices, kind)
+    scene = Scene(points, faces, stride=8 if kind != "f4" else 0)
+    if rng.random() < 0.5:
+        moved = np.sort(rng.permutation(len(points))[: int(rng.integers(len(points)))])
+        scene.replace(0, moved.tolist(), points[moved])
+        scene.blur(0, moved.tolist())
+    if rng.random() < 0.5:
+        count = int(rng.integers(1, 4))
+        scale = rng.choice([-2, -1, 1, 2], (count, 3)).astype("f4")
+        scene.place(TRANSLATION=64 * np.arange(3 * count, dtype="f4").reshape(-1, 3), SCALE=scale)
+        volume *= int(np.abs(scale.prod(axis=1)).sum())
+    return File(".glb", scene.bytes(), volume * 1000**3)
 
 
 def _good_drawing(rng: Rng, suffix: str) -> File:

@@ -1,101 +1,31 @@
 """GLB of other programs: numbers in few bytes or replaced one by one, a mesh at many places."""
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import pytest
 
 import bspcsg as b
 from bspcsg.errors import FormatError
 from bspcsg.io import RawMesh, read
-from corpus.broken import glb_of
+from support.glb import Numbers, Scene
 from support.io import refusal
 from support.shapes import cube
 
-Numbers = npt.NDArray[Any]
 
-#: Components of glTF by the types of arrays.
-COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
-TYPES = {1: "SCALAR", 2: "VEC2", 3: "VEC3", 4: "VEC4"}
+def scene_of(vertices: Numbers | None = None, stride: int = 0, **accessor: Any) -> Scene:
+    """Return a cube of edge 2 in metres, or one with other vertices."""
+    usual, faces = cube(2.0)
+    points = np.asarray(usual, "f4") if vertices is None else vertices
+    return Scene(points, faces, stride, **accessor)
 
 
-class Scene:
-    """A GLB in the making: one mesh at one node, and what tests put there.
-
-    Parameters
-    ----------
-    positions : (8, 3) array, optional
-        The corners of a cube of edge 2 in metres, unless others are given.
-    """
-
-    def __init__(self, positions: Numbers | None = None, **accessor: Any) -> None:
-        vertices, faces = cube(2.0)
-        self.data = b""
-        self.tree: dict[str, Any] = {"asset": {"version": "2.0"}, "bufferViews": []}
-        self.tree["accessors"] = []
-        points = np.asarray(vertices, "f4") if positions is None else positions
-        attributes = {"POSITION": self.add(points, **accessor)}
-        self.primitive: dict[str, Any] = {
-            "attributes": attributes,
-            "indices": self.add(np.asarray(faces, "u2").reshape(-1, 1)),
-        }
-        self.node: dict[str, Any] = {"mesh": 0, "name": "part"}
-        self.tree |= {"meshes": [{"primitives": [self.primitive]}], "nodes": [self.node]}
-
-    def view(self, values: Numbers, stride: int = 0) -> int:
-        self.data += bytes(-len(self.data) % 4)
-        told: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data)}
-        data = values.tobytes()
-        if stride:
-            rows = np.zeros((len(values), stride), np.uint8)
-            rows[:, : values.itemsize * values.shape[1]] = values.view(np.uint8)
-            told["byteStride"], data = stride, rows.tobytes()
-        self.data += data
-        self.tree["bufferViews"].append(told | {"byteLength": len(data)})
-        return len(self.tree["bufferViews"]) - 1
-
-    def add(self, values: Numbers, stride: int = 0, **further: Any) -> int:
-        values = np.ascontiguousarray(values)
-        self.tree["accessors"].append(
-            {
-                "bufferView": self.view(values, stride),
-                "componentType": COMPONENTS[values.dtype.str[1:]],
-                "count": len(values),
-                "type": TYPES[values.shape[1]],
-                **further,
-            }
-        )
-        return len(self.tree["accessors"]) - 1
-
-    def replace(self, accessor: int, places: list[int], values: Numbers) -> dict[str, Any]:
-        """Make an accessor sparse; return what is said of it."""
-        indices = np.array(places, "u1").reshape(-1, 1)
-        sparse = {
-            "count": len(places),
-            "indices": {"bufferView": self.view(indices), "componentType": 5121},
-            "values": {"bufferView": self.view(np.ascontiguousarray(values))},
-        }
-        self.tree["accessors"][accessor]["sparse"] = sparse
-        return sparse
-
-    def place(self, **given: Numbers) -> None:
-        """Show the mesh at several places."""
-        told = {key: self.add(values, normalized=True) for key, values in given.items()}
-        self.node["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": told}}
-        self.tree["extensionsRequired"] = ["EXT_mesh_gpu_instancing"]
-
-    def bytes(self) -> bytes:
-        self.tree["buffers"] = [{"byteLength": len(self.data)}]
-        return glb_of(json.dumps(self.tree).encode(), self.data + bytes(-len(self.data) % 4))
-
-    def read(self, folder: Path) -> RawMesh:
-        path = folder / "x.glb"
-        path.write_bytes(self.bytes())
-        return read(path)
+def read_back(scene: Scene, folder: Path) -> RawMesh:
+    path = folder / "x.glb"
+    path.write_bytes(scene.bytes())
+    return read(path)
 
 
 def volume(mesh: RawMesh) -> float:
@@ -108,29 +38,29 @@ def volume(mesh: RawMesh) -> float:
 def test_positions_in_few_bytes(tmp_path: Path, kind: str, is_fraction: bool) -> None:
     largest = np.iinfo(kind).max
     corners = (cube(1.0)[0] * largest).astype(kind)
-    scene = Scene(corners, stride=8, normalized=is_fraction)
+    scene = scene_of(corners, stride=8, normalized=is_fraction)
     scene.node["scale"] = [2.0] * 3 if is_fraction else [2.0 / largest] * 3
     scene.tree["extensionsRequired"] = ["KHR_mesh_quantization"]
-    assert volume(scene.read(tmp_path)) == pytest.approx(8, rel=1e-6)
+    assert volume(read_back(scene, tmp_path)) == pytest.approx(8, rel=1e-6)
 
 
 def test_the_least_number_is_no_less_than_minus_one(tmp_path: Path) -> None:
     corners = np.where(cube(1.0)[0] > 0, 127, -128).astype("i1")
-    mesh = Scene(corners, stride=4, normalized=True).read(tmp_path)
+    mesh = read_back(scene_of(corners, stride=4, normalized=True), tmp_path)
     assert mesh.vertices.min() == -1000 and mesh.vertices.max() == 1000
 
 
 def test_positions_of_other_kinds_are_refused(tmp_path: Path) -> None:
-    scene = Scene(np.asarray(cube(2.0)[0], "u4"))
+    scene = scene_of(np.asarray(cube(2.0)[0], "u4"))
     refusal(tmp_path / "x.glb", scene.bytes(), "syntax")
 
 
 def test_what_replaces_elements_of_an_accessor(tmp_path: Path) -> None:
-    scene = Scene()
+    scene = scene_of()
     (corner,) = np.flatnonzero((cube(2.0)[0] == 2).all(axis=1))
     scene.replace(0, [int(corner)], np.array([[3, 3, 3]], "f4"))
-    plain = Scene(np.where(np.arange(8)[:, None] == corner, 3, cube(2.0)[0]).astype("f4"))
-    found, expected = scene.read(tmp_path), plain.read(tmp_path)
+    plain = scene_of(np.where(np.arange(8)[:, None] == corner, 3, cube(2.0)[0]).astype("f4"))
+    found, expected = read_back(scene, tmp_path), read_back(plain, tmp_path)
     assert np.array_equal(found.vertices, expected.vertices)
     assert np.array_equal(found.faces, expected.faces)
 
@@ -160,18 +90,18 @@ def too_many(sparse: dict[str, Any]) -> None:
 def test_replacements_that_are_not_there(
     tmp_path: Path, place: int, edit: Callable[[dict[str, Any]], Any], code: str
 ) -> None:
-    scene = Scene()
+    scene = scene_of()
     edit(scene.replace(0, [place], np.ones((1, 3), "f4")))
     refusal(tmp_path / "x.glb", scene.bytes(), code)
 
 
 def test_shapes_that_it_could_take_are_dropped_by_name(tmp_path: Path) -> None:
     """Blender stores only the corners that move, on no others: nobody needs to read them."""
-    scene = Scene()
+    scene = scene_of()
     scene.tree["accessors"].append({"componentType": 5126, "count": 8, "type": "VEC3"})
     scene.replace(2, [3], np.ones((1, 3), "f4"))
     scene.primitive["targets"] = [{"POSITION": 2}]
-    mesh = scene.read(tmp_path)
+    mesh = read_back(scene, tmp_path)
     assert volume(mesh) == pytest.approx(8) and mesh.dropped == ("morph targets",)
     scene.primitive["attributes"]["POSITION"] = 2
     said = refusal(tmp_path / "x.glb", scene.bytes(), "unsupported")
@@ -179,14 +109,14 @@ def test_shapes_that_it_could_take_are_dropped_by_name(tmp_path: Path) -> None:
 
 
 def test_a_mesh_at_many_places(tmp_path: Path) -> None:
-    scene = Scene()
+    scene = scene_of()
     scene.node["scale"] = [0.5, 0.5, 0.5]
     scene.place(
         TRANSLATION=np.array([[0, 0, 0], [10, 0, 0], [0, 20, 0]], "f4"),
         ROTATION=np.array([[0, 0, 0, 32767], [0, 0, 32767, 0], [0, 0, 23170, 23170]], "i2"),
         SCALE=np.array([[1, 1, 1], [2, 1, 1], [1, -1, 3]], "f4"),
     )
-    mesh = scene.read(tmp_path)
+    mesh = read_back(scene, tmp_path)
     assert [name for name, _ in mesh.objects] == ["part"] * 3
     parts = b.Solid(mesh.vertices, mesh.faces).decompose()
     assert [part.volume / 1e9 for part in parts] == pytest.approx([3, 2, 1], rel=1e-4)
@@ -201,7 +131,7 @@ def test_a_mesh_at_many_places(tmp_path: Path) -> None:
 
 
 def test_many_places_share_their_mesh_in_an_assembly(tmp_path: Path) -> None:
-    scene = Scene()
+    scene = scene_of()
     scene.place(TRANSLATION=np.array([[0, 0, 0], [10, 0, 0]], "f4"))
     scene.tree["extensionsRequired"] = []
     (tmp_path / "x.glb").write_bytes(scene.bytes())
@@ -223,39 +153,39 @@ def test_many_places_share_their_mesh_in_an_assembly(tmp_path: Path) -> None:
 def test_places_that_do_not_fit(
     tmp_path: Path, given: dict[str, tuple[int, int]], code: str
 ) -> None:
-    scene = Scene()
+    scene = scene_of()
     scene.place(**{key: np.ones(shape, "u1") for key, shape in given.items()})
     refusal(tmp_path / "x.glb", scene.bytes(), code)
 
 
 def test_texture_coordinates_in_bytes_and_the_set_that_a_material_means(tmp_path: Path) -> None:
-    scene = Scene()
+    scene = scene_of()
     first, second = np.full((8, 2), 51, "u1"), np.full((8, 2), 0.25, "f4")
     scene.primitive["attributes"] |= {
         "TEXCOORD_0": scene.add(first, normalized=True),
         "TEXCOORD_1": scene.add(second),
     }
-    mesh = scene.read(tmp_path)
+    mesh = read_back(scene, tmp_path)
     assert mesh.attributes is not None and mesh.dropped == ("further texture coordinates",)
     assert np.allclose(mesh.attributes.vertex["uv"], [0.2, 0.8])
     picture = {"index": 0, "texCoord": 1, "extensions": {"KHR_texture_transform": {"scale": [2]}}}
     scene.tree["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": picture}}]
     scene.primitive["material"] = 0
-    mesh = scene.read(tmp_path)
+    mesh = read_back(scene, tmp_path)
     assert mesh.attributes is not None
     assert mesh.dropped == ("further texture coordinates", "texture transforms")
     assert np.allclose(mesh.attributes.vertex["uv"], [0.25, 0.75])
 
 
 def test_what_is_not_read_is_named(tmp_path: Path) -> None:
-    scene = Scene()
+    scene = scene_of()
     four = scene.add(np.zeros((8, 4), "f4"))
     scene.primitive["attributes"] |= dict.fromkeys(["COLOR_1", "TANGENT", "WEIGHTS_0"], four)
-    assert scene.read(tmp_path).dropped == ("further colours", "tangents", "weights")
+    assert read_back(scene, tmp_path).dropped == ("further colours", "tangents", "weights")
 
 
 def test_a_compressed_mesh_is_refused(tmp_path: Path) -> None:
-    scene = Scene()
+    scene = scene_of()
     scene.tree["extensionsRequired"] = ["EXT_meshopt_compression"]
     with pytest.raises(FormatError, match="EXT_meshopt_compression"):
-        scene.read(tmp_path)
+        read_back(scene, tmp_path)
