@@ -15,8 +15,7 @@ from ...formats.source import limited_content
 from ...mesh.interop import optional
 from ...parameters import file_path, positive
 from ..sets.region import Region
-
-_OUTLINES = "LINE ARC CIRCLE ELLIPSE SPLINE LWPOLYLINE POLYLINE"
+from .dxf_curves import chains_of
 
 
 def load_dxf(
@@ -29,8 +28,8 @@ def load_dxf(
 ) -> Region:
     """Read the closed outlines in the model space of a DXF file as one region.
 
-    Lines, arcs, circles, ellipses, splines and polylines count; pieces are joined where their ends
-    agree in every bit or within a millionth of the drawing's size.
+    Lines, arcs, circles, ellipses, splines and polylines count, those of inserted blocks, too;
+    pieces are joined where their ends lie within a millionth of the drawing's size.
 
     Parameters
     ----------
@@ -53,12 +52,7 @@ def load_dxf(
     document = read_document(path)
     wanted = None if layers is None else set(layers)
     with format_errors(os.fspath(path), "DXF"):
-        entities = [
-            entity
-            for entity in document.modelspace().query(_OUTLINES)
-            if wanted is None or entity.dxf.layer in wanted
-        ]
-        chains = [chain for entity in entities for chain in _flattened(entity, chord)]
+        chains = list(chains_of(document.modelspace(), wanted, chord))
     return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
 
 
@@ -116,34 +110,55 @@ def read_document(path: str | os.PathLike[str]) -> Any:
         raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
 
 
-def _flattened(entity: Any, chord: float) -> list[FloatArray]:
-    from ezdxf import path
-
-    outline = path.make_path(entity)
-    parts = outline.sub_paths() if outline.has_sub_paths else [outline]
-    return [
-        np.array([(p.x, p.y) for p in part.flattening(chord)]).reshape(-1, 2)
-        for part in parts
-        if len(part)
-    ]
-
-
 def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
     """Return closed loops; open chains are joined at their ends."""
     loops = [chain[:-1] for chain in chains if (chain[0] == chain[-1]).all()]
     rest = [chain for chain in chains if (chain[0] != chain[-1]).any()]
     if rest:
         ends = np.array([(chain[0], chain[-1]) for chain in rest])
-        loops += _joined(rest, _places(ends), name)
+        size = float(np.ptp(np.concatenate(chains), axis=0).max())
+        loops += _joined(rest, _places(ends, size), name)
     return [loop for loop in loops if len(loop) >= 3]
 
 
-def _places(ends: FloatArray) -> Any:
-    """Return the number of the place of each of (n, 2, 2) ends."""
-    step = max(float(np.ptp(ends.reshape(-1, 2), axis=0).max()), 1e-300) * 1e-6
-    cells = np.round(ends.reshape(-1, 2) / step)
-    _, places = np.unique(cells, axis=0, return_inverse=True)
+#: Ends that are a part of the drawing's size apart are joined, but not more.
+_JOINED = 1e-6
+
+
+def _places(ends: FloatArray, size: float) -> Any:
+    """Return the number of the place of each of (n, 2, 2) ends in a drawing of some size."""
+    flat = ends.reshape(-1, 2) + 0.0
+    _, places = np.unique(flat, axis=0, return_inverse=True)
+    places = places.ravel()
+    # Only ends that fit no other are compared: pieces may be shorter than a step.
+    loose = np.flatnonzero(np.bincount(places)[places] == 1)
+    step = max(size * _JOINED, np.finfo(np.float64).tiny)
+    places[loose] = len(flat) + _near(flat[loose], step)
     return places.reshape(-1, 2)
+
+
+def _near(points: FloatArray, step: float) -> Any:
+    """Return numbers of points: those that are a step apart at most have the same."""
+    numbers = np.arange(len(points))
+    # Two such points are in one cell of one of these four grids, at least.
+    for shift in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        cells = np.floor((points / step + shift) / 2)
+        _, cell = np.unique(cells, axis=0, return_inverse=True)
+        numbers = _merged(numbers, cell.ravel())
+    return numbers
+
+
+def _merged(first: Any, second: Any) -> Any:
+    """Return numbers that are equal wherever those of the first or of the second are."""
+    numbers = first
+    while True:
+        before = numbers
+        for classes in (first, second):
+            least = np.full(len(numbers), len(numbers))
+            np.minimum.at(least, classes, numbers)
+            numbers = least[classes]
+        if np.array_equal(numbers, before):
+            return numbers
 
 
 def _joined(chains: list[FloatArray], places: Any, name: str) -> list[FloatArray]:

@@ -2,7 +2,7 @@
 
 import io
 import os
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 from xml.etree import ElementTree
 from xml.parsers import expat
@@ -16,6 +16,7 @@ from ...formats.source import limited_content
 from ...mesh.interop import optional
 from ...parameters import file_path, positive
 from ..sets.region import Region
+from .svg_tree import name_of, simplify
 
 
 def load_svg(
@@ -42,6 +43,7 @@ def load_svg(
         In the user units of the outermost element (its size on paper and its view box do not
         matter), y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images
         and what is not filled are left out; an open subpath counts as closed, as when it is filled.
+        Clip paths and masks do not count; of style sheets only rules for a tag, a class or an id.
 
     Raises
     ------
@@ -49,17 +51,19 @@ def load_svg(
         If the file cannot be read, is no well-formed SVG, or declares an entity.
     """
     chord = positive(tolerance, "tolerance")
-    region = Region(pitch=pitch)
-    for shape in shown_shapes(path):
+    found = [Region(pitch=pitch)]
+    for shape in shown_shapes(path, simplify):
         if _is_filled(shape):
             with format_errors(os.fspath(path), "SVG"):
                 outlines = outlines_of(shape, _within(shape, chord))
                 loops = [corners for corners, _ in outlines if len(corners) >= 3]
-            region = region | Region(loops, winding=winding or _rule(shape), pitch=pitch)
-    return region
+            found.append(Region(loops, winding=winding or _rule(shape), pitch=pitch))
+    return Region.compose(found)
 
 
-def shown_shapes(path: str | os.PathLike[str], left_out: Collection[str] = ()) -> list[Any]:
+def shown_shapes(
+    path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None]
+) -> list[Any]:
     """Return svgelements' shapes of a file, but for those that are not shown.
 
     Each has a transform to user units of its own: svgelements skews arcs in a wrong way.
@@ -67,8 +71,8 @@ def shown_shapes(path: str | os.PathLike[str], left_out: Collection[str] = ()) -
     Parameters
     ----------
     path : path
-    left_out : collection of str
-        Elements that do not count, by the names of their tags.
+    prepare : callable
+        Changes the outermost element before it is looked at; takes off its view box.
 
     Raises
     ------
@@ -78,9 +82,12 @@ def shown_shapes(path: str | os.PathLike[str], left_out: Collection[str] = ()) -
     data = _checked(path)
     elements = optional("svgelements", "svgelements")
     try:
-        drawing = elements.SVG.parse(
-            io.BytesIO(_in_user_units(data, left_out)), reify=False, ppi=96.0
-        )
+        root = ElementTree.fromstring(data)
+        if name_of(root) != "svg":
+            raise ValueError("the outermost element is not svg")
+        prepare(root)
+        plain = io.BytesIO(ElementTree.tostring(root))
+        drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
         shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
     except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
@@ -159,23 +166,6 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
         message = f"{name}:1: the XML cannot be decoded: {words_of(error)}."
         raise FormatError(message, "syntax", [1]) from error
     return data
-
-
-def _in_user_units(data: bytes, left_out: Collection[str]) -> bytes:
-    """Return the drawing without the window that would scale and shift its coordinates."""
-    root = ElementTree.fromstring(data)
-    for parent in list(root.iter()):
-        for child in [child for child in parent if _name(child) in left_out]:
-            parent.remove(child)
-    if _name(root) != "svg":
-        raise ValueError("the outermost element is not svg")
-    for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
-        root.attrib.pop(name, None)
-    return ElementTree.tostring(root)
-
-
-def _name(element: ElementTree.Element) -> str:
-    return element.tag.rpartition("}")[2]
 
 
 def _is_shown(shape: Any) -> bool:

@@ -13,6 +13,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.svg import outlines_of, shown_shapes
+from ...bsp.drawings.svg_tree import name_of
 from ...errors import format_errors
 from ...mesh.interop import optional
 from ...modelling.planar.offsetting import stroked
@@ -73,7 +74,7 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
 
 def _drawn(path: Path) -> Region:
     region = Region()
-    for shape in shown_shapes(path, _UNREAD):
+    for shape in shown_shapes(path, _prepare):
         with format_errors(str(path), "SVG"):
             outlines = list(outlines_of(shape, _steps_of(shape)))
         closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
@@ -83,6 +84,14 @@ def _drawn(path: Path) -> Region:
             if not is_closed and not _meets(corners) and len(corners) >= 2:
                 region = region | _stroke(shape, corners)
     return region
+
+
+def _prepare(root: ElementTree.Element) -> None:
+    """Take away what does not count, and the view box, which is looked at apart."""
+    for parent in list(root.iter()):
+        parent[:] = [child for child in parent if name_of(child) not in _UNREAD]
+    for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
+        root.attrib.pop(name, None)
 
 
 def _steps_of(shape: Any) -> Callable[[Any], int]:

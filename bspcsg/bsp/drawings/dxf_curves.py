@@ -1,0 +1,188 @@
+"""The outlines of DXF entities as chains of corners, on the plane of the drawing.
+
+ezdxf turns arcs into Bézier curves, which stay within three ten-thousandths of their radius only:
+arcs are cut into chords here.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..._types import FloatArray
+
+#: Entities that are outlines, and those that hold entities.
+_CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])
+_BLOCK = "INSERT"
+
+#: Blocks in blocks, entities in all of them, and chords of one arc.
+_DEEPEST_BLOCK = 64
+_MOST_IN_BLOCKS = 1 << 17
+_MOST_CHORDS = 1 << 20
+
+#: The layer of a block's entities that are to lie on the layer of each of its insertions.
+_ANY_LAYER = "0"
+
+#: Vertices that only help to draw a curve: corners of the frame of a spline.
+_FRAME = 16
+
+
+def chains_of(layout: Any, layers: set[str] | None, chord: float) -> Iterator[FloatArray]:
+    """Yield the corners of each outline, (n, 2); those of closed ones end as they begin.
+
+    Parameters
+    ----------
+    layout : ezdxf layout
+        Insertions of blocks stand for what these hold.
+    layers : set of str, optional
+        Those that count; all by default.
+    chord : float
+        Largest distance between a curve and its chords.
+
+    Raises
+    ------
+    ValueError
+        If blocks contain themselves or too much, or a curve would have too many chords.
+    """
+    for entity, layer in _entities(layout):
+        if layers is None or layer in layers:
+            chain = _chain(entity, chord)
+            if len(chain) > 1:
+                yield chain
+
+
+def _entities(layout: Any) -> Iterator[tuple[Any, str]]:
+    """Yield the curves of a layout and of the blocks in it, each with its layer."""
+    waiting = [(iter(layout), _ANY_LAYER)]
+    count = 0
+    while waiting:
+        entities, outer = waiting[-1]
+        entity = next(entities, None)
+        if entity is None:
+            waiting.pop()
+            continue
+        count += len(waiting) > 1
+        if count > _MOST_IN_BLOCKS:
+            raise ValueError("its blocks hold too much")
+        layer = entity.dxf.layer if entity.dxf.layer != _ANY_LAYER else outer
+        if entity.dxftype() in _CURVES:
+            yield entity, layer
+        elif entity.dxftype() == _BLOCK:
+            if len(waiting) > _DEEPEST_BLOCK:
+                raise ValueError("its blocks contain each other too often")
+            waiting.append((_inserted(entity), layer))
+
+
+def _inserted(insert: Any) -> Iterator[Any]:
+    """Yield what one insertion of a block puts into the drawing, row by row."""
+    if insert.block() is None:
+        raise ValueError(f"there is no block called “{insert.dxf.name}”")
+    if insert.mcount > 1:
+        return iter(insert.multi_insert())
+    return iter(insert.virtual_entities())
+
+
+def _chain(entity: Any, chord: float) -> FloatArray:
+    kind = entity.dxftype()
+    if kind == "LINE":
+        return _flat([entity.dxf.start, entity.dxf.end])
+    if kind in ("ELLIPSE", "SPLINE"):
+        points = _flat(entity.flattening(chord))
+        return _closed(points) if _is_full(entity) else points
+    if kind == "LWPOLYLINE":
+        return _polyline(entity, np.array(entity.get_points("xyb")), entity.closed, chord)
+    if kind == "POLYLINE":
+        return _old_polyline(entity, chord)
+    return _arc(entity, chord)
+
+
+def _flat(points: Any) -> FloatArray:
+    return np.array([(point[0], point[1]) for point in points], dtype=np.float64).reshape(-1, 2)
+
+
+def _closed(points: FloatArray) -> FloatArray:
+    return np.concatenate([points[:-1], points[:1]])
+
+
+def _is_full(entity: Any) -> bool:
+    if entity.dxftype() == "SPLINE":
+        return bool(entity.closed)
+    turn = entity.dxf.end_param - entity.dxf.start_param
+    return math.isclose(abs(turn), math.tau, rel_tol=1e-9)
+
+
+def _arc(entity: Any, chord: float) -> FloatArray:
+    start, turn = 0.0, math.tau
+    if entity.dxftype() == "ARC":
+        start = math.radians(entity.dxf.start_angle)
+        turn = math.radians((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0) or math.tau
+    center, radius = entity.dxf.center, abs(entity.dxf.radius)
+    count = _chords(radius, turn, chord)
+    if turn == math.tau:
+        # With a corner at each end of both axes, a circle is as wide and as high as it should be.
+        count = -(-count // 4) * 4
+    angles = start + turn * np.arange(count + 1) / count
+    points = np.column_stack([np.cos(angles), np.sin(angles)]) * radius + (center.x, center.y)
+    return _on_plane(entity, _closed(points) if turn == math.tau else points, center.z)
+
+
+def _chords(radius: float, turn: float, chord: float) -> int:
+    """Return how many chords of an arc stay within a distance, each of a quarter turn at most."""
+    half = 2 * math.asin(math.sqrt(min(chord / (2 * radius), 1.0))) if radius else math.pi
+    count = math.ceil(abs(turn) / min(2 * half, math.pi / 2))
+    if count > _MOST_CHORDS:
+        raise ValueError(f"an arc would have {count} chords; a larger tolerance leaves fewer")
+    return max(count, 1)
+
+
+def _polyline(entity: Any, rows: FloatArray, is_closed: bool, chord: float) -> FloatArray:
+    """Return the corners of a polyline of rows x, y, bulge."""
+    points = rows.reshape(-1, 3)[:, 0] + 1j * rows.reshape(-1, 3)[:, 1]
+    ends = np.roll(points, -1) if is_closed else points[1:]
+    pieces = [
+        _bulged(start, end, float(bulge), chord)
+        for start, end, bulge in zip(points, ends, rows.reshape(-1, 3)[:, 2], strict=False)
+    ]
+    last = points[:1] if is_closed else points[-1:]
+    whole = np.concatenate([*pieces, last])
+    elevation = float(np.ravel(entity.dxf.get("elevation", 0.0))[-1])
+    return _on_plane(entity, np.column_stack([whole.real, whole.imag]), elevation)
+
+
+def _bulged(start: complex, end: complex, bulge: float, chord: float) -> Any:
+    """Return the corners of an arc without its end; the bulge is the tangent of a quarter turn.
+
+    A point of the arc is seen from the start by half of its angle: nothing cancels where the arc is
+    nearly straight.
+    """
+    turn = 4 * math.atan(bulge)
+    if turn == 0 or start == end:
+        return np.array([start])
+    radius = abs(end - start) / abs(2 * math.sin(turn / 2))
+    count = _chords(radius, turn, chord)
+    angles = turn * np.arange(count) / count
+    turned = np.exp(0.5j * (angles - turn))
+    return start + (end - start) * np.sin(angles / 2) / math.sin(turn / 2) * turned
+
+
+def _old_polyline(entity: Any, chord: float) -> FloatArray:
+    if entity.is_3d_polyline:
+        points = _flat(entity.points())
+        return np.concatenate([points, points[:1]]) if entity.is_closed else points
+    if not entity.is_2d_polyline:
+        raise ValueError("a mesh is no outline")
+    rows = [
+        (vertex.dxf.location.x, vertex.dxf.location.y, vertex.dxf.get("bulge", 0.0))
+        for vertex in entity.vertices
+        if not vertex.dxf.flags & _FRAME
+    ]
+    return _polyline(entity, np.array(rows), entity.is_closed, chord)
+
+
+def _on_plane(entity: Any, points: FloatArray, elevation: float) -> FloatArray:
+    """Return points of an entity's own plane as the drawing shows them, from above."""
+    system = entity.ocs()
+    if not system.transform:
+        return points
+    return _flat(system.points_to_wcs((x, y, elevation) for x, y in points.tolist()))

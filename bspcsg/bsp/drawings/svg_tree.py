@@ -1,0 +1,218 @@
+"""The elements of an SVG that are shown, with nothing but groups around them.
+
+Views inside the drawing and symbols become groups with a transform, for svgelements does not fit
+them into their places and draws symbols, masks and markers where they are declared.
+
+# Source
+SVG 2, sections 5 (structure), 7.11 (the initial view box) and 8.2 (fitting a view box).
+"""
+
+import re
+from xml.etree.ElementTree import Element
+
+from ...mesh.interop import optional
+
+#: Elements that show nothing where they are declared; what they hold may be used from elsewhere.
+_DECLARED = frozenset({"symbol", "mask", "marker", "pattern", "clipPath"})
+
+#: Elements with contents of other kinds.
+_FOREIGN = frozenset({"foreignObject", "metadata", "glyph", "missing-glyph"})
+
+#: Sizes that must not be negative, by the elements that have them.
+_SIZES = {"rect": ("width", "height"), "circle": ("r",), "ellipse": ("rx", "ry")}
+
+#: Most elements that uses show, each at each of them, and most uses in one another.
+_MOST_SHOWN = 1 << 17
+_DEEPEST_USE = 64
+
+_HREF = ("href", "{http://www.w3.org/1999/xlink}href")
+
+#: A size in user units, where it is known.
+_Size = tuple[float, float] | None
+
+
+def name_of(element: Element) -> str:
+    """Return the name of an element without its namespace."""
+    return str(element.tag).rpartition("}")[2]
+
+
+def simplify(root: Element) -> None:
+    """Leave groups, shapes, texts and their uses in a drawing, in the user units of the outermost.
+
+    Raises
+    ------
+    ValueError
+        If uses contain themselves, or show too much.
+    """
+    _drop(root)
+    size = _size_of_root(root)
+    for parent in list(root.iter()):
+        if name_of(parent) == "switch":
+            _switch(parent)
+    _check_uses(root)
+    _flatten(root, size)
+    for name in ("x", "y", "preserveAspectRatio", "viewBox", "width", "height"):
+        root.attrib.pop(name, None)
+    if size is not None:
+        # Percentages are parts of these.
+        width, height = (repr(value) for value in size)
+        root.attrib |= {"width": width, "height": height, "viewBox": f"0 0 {width} {height}"}
+
+
+def _drop(root: Element) -> None:
+    """Drop what is no drawing, and shapes that show nothing because they say too little."""
+    for parent in list(root.iter()):
+        for child in list(parent):
+            name = name_of(child)
+            is_bare = name == "path" and not child.get("d")
+            sizes = [child.get(size, "") for size in _SIZES.get(name, ())]
+            if is_bare or name in _FOREIGN or any(size.strip()[:1] == "-" for size in sizes):
+                parent.remove(child)
+
+
+def _switch(element: Element) -> None:
+    """Leave the first child that needs nothing special."""
+    fit = [child for child in element if not child.get("requiredExtensions")]
+    element[:] = fit[:1]
+
+
+def _check_uses(root: Element) -> None:
+    named = {element.attrib["id"]: element for element in root.iter() if element.get("id")}
+    #: Numbers of elements that targets show, and of uses in one another on the way.
+    known: dict[str, tuple[int, int]] = {}
+
+    def shown(element: Element, outer: int) -> tuple[int, int]:
+        if outer > _DEEPEST_USE:
+            raise ValueError("its uses contain each other too often")
+        count = depth = 0
+        for inner in element.iter():
+            target = _target(inner) if name_of(inner) == "use" else ""
+            if target in named and target not in known:
+                known[target] = shown(named[target], outer + 1)
+            more, deeper = known.get(target, (0, -1))
+            count, depth = count + 1 + more, max(depth, deeper + 1)
+        return count, depth
+
+    count, depth = shown(root, 0)
+    if depth > _DEEPEST_USE:
+        raise ValueError("its uses contain each other too often")
+    if count > _MOST_SHOWN + sum(1 for _ in root.iter()):
+        raise ValueError("its uses show too much")
+
+
+def _target(use: Element) -> str:
+    """Return the id of what is used; nothing if it lies elsewhere."""
+    reference = next((use.get(key, "") for key in _HREF if use.get(key)), "")
+    return reference[1:] if reference[:1] == "#" else ""
+
+
+def _flatten(root: Element, size: _Size) -> None:
+    """Make groups of views, of symbols, and of the uses of these."""
+    symbols = {
+        element.get("id"): dict(element.attrib)
+        for element in root.iter()
+        if name_of(element) == "symbol"
+    }
+    waiting = [(root, size)]
+    while waiting:
+        element, outer = waiting.pop()
+        for place, child in enumerate(element):
+            name, inner = name_of(child), outer
+            if name == "svg":
+                inner = _group(child, dict(child.attrib), outer)
+            elif name == "use" and _target(child) in symbols:
+                element[place] = _of_symbol(child, symbols[_target(child)], outer)
+                continue
+            elif name in _DECLARED:
+                element[place] = _declaration(child)
+            waiting.append((child, inner))
+
+
+def _declaration(element: Element) -> Element:
+    """Return definitions that hold an element, which becomes a group."""
+    around = Element(_tag(element, "defs"))
+    element.tag = _tag(element, "g")
+    for name in ("viewBox", "preserveAspectRatio"):
+        element.attrib.pop(name, None)
+    around.append(element)
+    return around
+
+
+def _of_symbol(use: Element, symbol: dict[str, str], outer: _Size) -> Element:
+    """Return a group that shows a symbol as a use does."""
+    around = Element(_tag(use, "g"), dict(use.attrib))
+    view = symbol | {key: use.attrib[key] for key in ("width", "height") if key in use.attrib}
+    _group(around, view | {key: use.get(key, "0") for key in ("x", "y")}, outer)
+    references = {key: around.attrib.pop(key) for key in _HREF if key in around.attrib}
+    around.append(Element(use.tag, references))
+    return around
+
+
+def _tag(like: Element, name: str) -> str:
+    return like.tag[: -len(name_of(like))] + name
+
+
+def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
+    """Make an element a group with the transform of a view; return the view's own size."""
+    wide, high = outer or (None, None)
+    x, y = (_length(view.get(key, "0"), whole) or 0.0 for key, whole in (("x", wide), ("y", high)))
+    width = _length(view.get("width", "100%"), wide)
+    height = _length(view.get("height", "100%"), high)
+    box = _view_box(view)
+    scales, inner = (1.0, 1.0), None if width is None or height is None else (width, height)
+    left = top = 0.0
+    if box is not None:
+        left, top, inner = box[0], box[1], (box[2], box[3])
+        if width is not None and height is not None:
+            scales = (width / box[2], height / box[3])
+            spare, scales = _fitted(view.get("preserveAspectRatio", ""), scales, (width, height))
+            x, y = x + spare[0], y + spare[1]
+    moved = (x - left * scales[0], y - top * scales[1])
+    own = element.get("transform", "")
+    matrix = f"matrix({scales[0]!r} 0 0 {scales[1]!r} {moved[0]!r} {moved[1]!r})"
+    for key in ("x", "y", "width", "height", "viewBox", "preserveAspectRatio"):
+        element.attrib.pop(key, None)
+    element.attrib["transform"] = f"{own} {matrix}".strip()
+    element.tag = _tag(element, "g")
+    return inner
+
+
+def _fitted(
+    rule: str, scales: tuple[float, float], size: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the space before a box, and its scales, by a rule such as ``xMidYMid meet``."""
+    words = rule.split() or ["xMidYMid"]
+    if words[0] == "none":
+        return (0.0, 0.0), scales
+    scale = max(scales) if words[-1] == "slice" else min(scales)
+    share = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
+    x, y = (share.get(words[0][k : k + 3], 0.5) for k in (1, 5))
+    width, height = size
+    spare = (width * (1 - scale / scales[0]) * x, height * (1 - scale / scales[1]) * y)
+    return spare, (scale, scale)
+
+
+def _size_of_root(root: Element) -> _Size:
+    box = _view_box(dict(root.attrib))
+    if box is not None:
+        return box[2], box[3]
+    width, height = (_length(root.get(key, ""), None) for key in ("width", "height"))
+    return (width, height) if width and height and min(width, height) > 0 else None
+
+
+def _view_box(view: dict[str, str]) -> tuple[float, float, float, float] | None:
+    """Return the left, upper, width and height of a view box that has a size."""
+    words = [word for word in re.split(r"[\s,]+", view.get("viewBox", "")) if word]
+    if len(words) != 4:
+        return None
+    left, top, width, height = map(float, words)
+    return (left, top, width, height) if min(width, height) > 0 else None
+
+
+def _length(text: str, whole: float | None) -> float | None:
+    """Return a length in user units; None for what is relative to something unknown."""
+    if not text or ("%" in text and whole is None):
+        return None
+    elements = optional("svgelements", "svgelements")
+    value = elements.Length(text).value(ppi=96.0, relative_length=whole)
+    return float(value) if isinstance(value, (int, float)) else None
