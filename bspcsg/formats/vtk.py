@@ -4,13 +4,14 @@ meshio reads and writes files by name, so the bytes go through a temporary folde
 """
 
 import contextlib
-import io
+import sys
 import tempfile
+import threading
 import warnings
 import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO, cast
 
 import numpy as np
 
@@ -89,11 +90,11 @@ def _grid_of(source: Source, suffix: str) -> Any:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"mesh{suffix}"
         path.write_bytes(source.data)
-        said = io.StringIO()
         try:
             with (
-                contextlib.redirect_stdout(said),
-                contextlib.redirect_stderr(said),
+                _ONE_AT_A_TIME,
+                contextlib.redirect_stdout(cast(TextIO, _OfOthers(sys.stdout))),
+                contextlib.redirect_stderr(cast(TextIO, _OfOthers(sys.stderr))),
                 _bounded(_LARGEST),
                 np.errstate(all="ignore"),
                 warnings.catch_warnings(action="ignore"),
@@ -103,6 +104,26 @@ def _grid_of(source: Source, suffix: str) -> Any:
             reason = f"{type(error).__name__}: {words_of(error)}"
             reason = reason.replace(str(path), source.name)
             raise source.error(f"meshio cannot read this file ({reason}).") from error
+
+
+#: Held while streams and parts of meshio are others, for all threads have the same.
+_ONE_AT_A_TIME = threading.Lock()
+
+
+class _OfOthers:
+    """A stream that takes what other threads write, and not what the thread that made it does."""
+
+    def __init__(self, stream: TextIO | None) -> None:
+        self._stream, self._thread = stream, threading.get_ident()
+
+    def write(self, text: str) -> int:
+        """Pass a text on."""
+        if self._stream is None or threading.get_ident() == self._thread:
+            return len(text)
+        return self._stream.write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 class _Unpacker:

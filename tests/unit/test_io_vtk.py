@@ -1,6 +1,9 @@
 """VTK and VTU through meshio: faces of any kind in, triangles out, bad files refused."""
 
 import builtins
+import sys
+import zlib
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -103,3 +106,26 @@ def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
     deep = "<VTKFile>" * depth
     refusal(tmp_path / "open.vtu", deep, "syntax")
     refusal(tmp_path / "deep.vtu", deep + "</VTKFile>" * depth, "syntax")
+
+
+def test_threads_may_read_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What meshio says is kept back, and nothing else; streams and zlib are those of before."""
+    good, bad = tmp_path / "good.vtu", tmp_path / "bad.vtk"
+    write(cube_mesh(1.0), good)
+    bad.write_text("no grid")
+    streams = sys.stdout, sys.stderr
+
+    def work(number: int) -> None:
+        assert len(read(good).faces) == 12
+        sys.stdout.write(f"<{number}>\n")
+        with pytest.raises(FormatError):
+            read(bad)
+
+    with ThreadPoolExecutor(8) as pool:
+        list(pool.map(work, range(40)))
+    assert (sys.stdout, sys.stderr) == streams
+    from meshio.vtu import _vtu
+
+    assert _vtu.zlib is zlib
+    out, err = capsys.readouterr()
+    assert sorted(out.split()) == sorted(f"<{number}>" for number in range(40)) and err == ""
