@@ -9,6 +9,7 @@ import pytest
 import bspcsg as b
 from bspcsg import csg
 from bspcsg.bsp import Region
+from bspcsg.csg.making import drawings
 
 # Files
 
@@ -139,6 +140,25 @@ def test_files_that_are_not_what_they_should(
 
 
 # Polish
+
+
+def test_blocks_of_drawings_have_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(drawings, "MOST_IN_BLOCKS", 300)
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    document.blocks.new("0").add_circle((0, 0), 1)
+    for level in range(1, 12):
+        for place in range(1 if level < 3 else 9):
+            block = document.blocks.get(str(level)) or document.blocks.new(str(level))
+            block.add_blockref(str(level - 1), (5 * place, 0))
+    for name, top in (("good", "2"), ("bomb", "11")):
+        insert = document.modelspace().add_blockref(top, (3, 4))
+        document.saveas(tmp_path / f"{name}.dxf")
+        insert.destroy()
+    text = 'linear_extrude(1) import("{}.dxf", $fn = 4);'
+    assert csg.loads(text.format("good"), folder=tmp_path).volume == 2
+    with pytest.raises(b.FormatError, match="hold too much"):
+        csg.loads(text.format("bomb"), folder=tmp_path)
 
 
 def test_extrusions_that_name_their_drawing(tmp_path: Path) -> None:

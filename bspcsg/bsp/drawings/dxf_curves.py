@@ -16,9 +16,11 @@ from ..._types import FloatArray
 _CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])
 _BLOCK = "INSERT"
 
-#: Blocks in blocks, entities in all of them, and chords of one arc.
+#: Entities in all blocks, counted at each insertion: ezdxf places some ten thousand in a second.
+MOST_IN_BLOCKS = 1 << 17
+
+#: Blocks in blocks, and chords of one arc.
 _DEEPEST_BLOCK = 64
-_MOST_IN_BLOCKS = 1 << 17
 _MOST_CHORDS = 1 << 20
 
 #: The layer of a block's entities that are to lie on the layer of each of its insertions.
@@ -63,7 +65,7 @@ def _entities(layout: Any) -> Iterator[tuple[Any, str]]:
             waiting.pop()
             continue
         count += len(waiting) > 1
-        if count > _MOST_IN_BLOCKS:
+        if count > MOST_IN_BLOCKS:
             raise ValueError("its blocks hold too much")
         layer = entity.dxf.layer if entity.dxf.layer != _ANY_LAYER else outer
         if entity.dxftype() in _CURVES:

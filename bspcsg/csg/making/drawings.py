@@ -10,6 +10,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
+from ...bsp.drawings.dxf_curves import MOST_IN_BLOCKS
 from ...errors import format_errors
 from .tessellation import Fineness
 
@@ -49,8 +50,8 @@ def dxf_region(
         entities = [e for e in document.modelspace() if not layer or e.dxf.layer == layer]
         chains = [
             (np.array(chain, dtype=np.float64) - origin) * scale
-            for entity in entities
-            for chain in _chains(entity, fineness, abs(scale), 0)
+            for entity in _flat(iter(entities))
+            for chain in _chains(entity, fineness, abs(scale))
         ]
     proper = [chain for chain in chains if len(chain) > 1]
     loops = [loop for loop in _joined(proper) if len(np.unique(loop, axis=0)) >= 3]
@@ -111,7 +112,23 @@ def _walk(
     return np.concatenate(parts)
 
 
-def _chains(entity: Any, fineness: Fineness, scale: float, depth: int) -> Iterator[Any]:
+def _flat(entities: Iterator[Any]) -> Iterator[Any]:
+    """Yield entities, and those of inserted blocks in the place of these."""
+    waiting, left = [entities], MOST_IN_BLOCKS
+    while waiting:
+        entity = next(waiting[-1], None)
+        left -= len(waiting) > 1
+        if left < 0:
+            raise ValueError("its blocks hold too much")
+        if entity is None:
+            waiting.pop()
+        elif entity.dxftype() != "INSERT":
+            yield entity
+        elif len(waiting) <= _DEEPEST_BLOCK:
+            waiting.append(iter(entity.virtual_entities()))
+
+
+def _chains(entity: Any, fineness: Fineness, scale: float) -> Iterator[Any]:
     kind = entity.dxftype()
     if kind == "LINE":
         yield [entity.dxf.start.vec2, entity.dxf.end.vec2]
@@ -122,9 +139,6 @@ def _chains(entity: Any, fineness: Fineness, scale: float, depth: int) -> Iterat
         yield _arc(entity, fineness, scale)
     elif kind == "ELLIPSE":
         yield _ellipse(entity, fineness, scale)
-    elif kind == "INSERT" and depth < _DEEPEST_BLOCK:
-        for part in entity.virtual_entities():
-            yield from _chains(part, fineness, scale, depth + 1)
 
 
 def _arc(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
