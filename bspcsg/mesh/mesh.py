@@ -196,8 +196,8 @@ class Mesh:
         return np.zeros(3) if bounds is None else bounds[0] + (bounds[1] - bounds[0]) / 2
 
     def _signed_volumes(self, middle: FloatArray) -> FloatArray:
-        a, b, c = (corner - middle for corner in self._corners())
-        volumes: FloatArray = np.einsum("ij,ij->i", np.cross(a, b), c) / 6
+        a, b, c = self._corners()
+        volumes: FloatArray = np.einsum("ij,ij->i", np.cross(b - a, c - a), a - middle) / 6
         return volumes
 
     @cached_property

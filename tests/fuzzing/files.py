@@ -9,7 +9,6 @@ import io
 import json
 import re
 import struct
-import tempfile
 import warnings
 import zipfile
 import zlib
@@ -32,6 +31,7 @@ from corpus.broken import glb_chunks, glb_of
 from support.glb import Scene
 from support.shapes import cuboid, joined, octahedron, tetrahedron
 
+from .drawings import random_drawing
 from .models import random_model
 
 Rng: TypeAlias = np.random.Generator
@@ -96,9 +96,9 @@ def good_file(rng: Rng, format: str) -> File:  # noqa: A002
         return _boolean_shape(rng)
     if format == ".glb" and rng.random() < 0.5:
         return _foreign_glb(rng)
-    mesh, volume = _known_mesh(rng)
     if format in (".svg", ".dxf"):
-        return _good_drawing(rng, format)
+        return File(format, *random_drawing(rng, format))
+    mesh, volume = _known_mesh(rng)
     solid = b.Solid(*mesh)
     if format == ".snapshot":
         cut = solid - b.box((1, 1, 1)).translate(*rng.integers(0, 3, 3).tolist())
@@ -173,15 +173,6 @@ def _foreign_glb(rng: Rng) -> File:
         scene.place(TRANSLATION=64 * np.arange(3 * count, dtype="f4").reshape(-1, 3), SCALE=scale)
         volume *= int(np.abs(scale.prod(axis=1)).sum())
     return File(".glb", scene.bytes(), volume * 1000**3)
-
-
-def _good_drawing(rng: Rng, suffix: str) -> File:
-    width, height = rng.integers(1, 9, 2).tolist()
-    region = bsp.Region.rectangle(width, height)
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / f"x{suffix}"
-        (region.to_svg if suffix == ".svg" else region.to_dxf)(path)
-        return File(suffix, path.read_bytes(), Fraction(width * height))
 
 
 # Changes that mean nothing

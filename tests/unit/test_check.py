@@ -323,9 +323,13 @@ def test_sums_are_rounded_once() -> None:
     faces = rng.integers(0, 20, (500, 3))
     mesh = b.Mesh(vertices, faces, np.zeros((500, 2), np.int64))
     low, high = np.asarray(mesh.bounds)
-    p, q, r = (vertices[faces[:, k]] - (low + (high - low) / 2) for k in range(3))
-    n = np.stack([p[:, k - 2] * q[:, k - 1] - p[:, k - 1] * q[:, k - 2] for k in range(3)])
-    parts = (n[0] * r[:, 0] + n[1] * r[:, 1] + n[2] * r[:, 2]) / 6
+    a, p, q = (
+        vertices[faces[:, 0]],
+        *(vertices[faces[:, k]] - vertices[faces[:, 0]] for k in (1, 2)),
+    )
+    n = [p[:, k - 2] * q[:, k - 1] - p[:, k - 1] * q[:, k - 2] for k in range(3)]
+    out = (a - (low + (high - low) / 2)).T
+    parts = (n[0] * out[0] + n[1] * out[1] + n[2] * out[2]) / 6
     assert mesh.volume == math.fsum(parts.tolist())
 
 

@@ -212,8 +212,13 @@ def _points_of(elements: Any, segment: Any, steps: Callable[[Any], int]) -> list
     if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
         return [_complex(segment.end)]
     count = steps(segment)
-    inner = [_complex(segment.point(k / count)) for k in range(1, count)]
-    return [*inner, _complex(segment.end)]
+    return [*_on_curve(segment, np.arange(1, count) / count).tolist(), _complex(segment.end)]
+
+
+def _on_curve(segment: Any, parameters: FloatArray) -> Any:
+    """Return points of an arc or a curve as complex numbers."""
+    points = np.asarray(segment.npoint(parameters), dtype=np.float64).reshape(-1, 2)
+    return points[:, 0] + 1j * points[:, 1]
 
 
 def _complex(point: Any) -> complex:
@@ -232,8 +237,7 @@ def _steps(segment: Any, chord: float) -> int:
     """Return how many chords stay within the tolerance, tried at points between."""
     steps = 2
     while steps < 1 << 12:
-        t = np.arange(4 * steps + 1) / (4 * steps)
-        curve = np.array([_complex(segment.point(float(k))) for k in t])
+        curve = _on_curve(segment, np.arange(4 * steps + 1) / (4 * steps))
         start, end = curve[:-4:4], curve[4::4]
         if max(_distance(curve[k::4], start, end) for k in (1, 2, 3)) <= chord:
             break

@@ -2,7 +2,7 @@
 
 use super::handle::VertexId;
 use crate::arith::Sum;
-use crate::geometry::doubles::vector::{cross, dot, less, normal};
+use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::interrupt::poll;
 
 /// The sums over all faces.
@@ -20,9 +20,9 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
     for face in faces {
         poll();
         let [a, b, c] = face.map(|vertex| vertices[vertex.place()]);
-        let [p, q, r] = [a, b, c].map(|corner| less(&corner, &middle));
-        volume.add(dot(&cross(&p, &q), &r) / 6.0);
         let normal = normal(&[a, b, c]);
+        // With the normal of the edges no digits cancel that a small face far out would need.
+        volume.add(dot(&normal, &less(&a, &middle)) / 6.0);
         area.add(dot(&normal, &normal).sqrt() / 2.0);
     }
     Measures {
