@@ -96,6 +96,7 @@ USES: dict[str, tuple[str, Box]] = {
         (100, 0, 110, 10),
     ),
     "a symbol as large as the drawing": (f'{SYMBOL}<use href="#s"/>', (0, 0, 100, 100)),
+    "a symbol of any size": (f'{SYMBOL}<use href="#s" width="auto"/>', (0, 0, 100, 100)),
     "a symbol without a box": (
         f'<symbol id="s">{SQUARE}</symbol><use href="#s" x="5" y="2"/>',
         (5, 2, 15, 12),
@@ -135,7 +136,15 @@ def test_the_first_child_of_a_switch_that_needs_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "root", ['viewBox="3 -7 80 40"', 'width="80" height="40"', 'width="8cm" viewBox="0 0 80 40"']
+    "root",
+    [
+        'viewBox="3 -7 80 40"',
+        'width="80" height="40"',
+        'width="8cm" viewBox="0 0 80 40"',
+        'width="80" height="40" viewBox="none"',
+        'width="80" height="40" viewBox="0 0 inf 1"',
+        'width="auto" viewBox="0,0,80,40"',
+    ],
 )
 def test_percentages_are_parts_of_the_drawing(tmp_path: Path, root: str) -> None:
     region = region_of(tmp_path, '<rect width="50%" height="50%"/>', root)

@@ -91,7 +91,7 @@ def _chain(entity: Any, chord: float) -> FloatArray:
         return _flat([entity.dxf.start, entity.dxf.end])
     if kind in ("ELLIPSE", "SPLINE"):
         points = _flat(entity.flattening(chord))
-        return _closed(points) if _is_full(entity) else points
+        return _closed(points) if kind == "ELLIPSE" and _is_full(entity) else points
     if kind == "LWPOLYLINE":
         return _polyline(entity, np.array(entity.get_points("xyb")), entity.closed, chord)
     if kind == "POLYLINE":
@@ -107,10 +107,8 @@ def _closed(points: FloatArray) -> FloatArray:
     return np.concatenate([points[:-1], points[:1]])
 
 
-def _is_full(entity: Any) -> bool:
-    if entity.dxftype() == "SPLINE":
-        return bool(entity.closed)
-    turn = entity.dxf.end_param - entity.dxf.start_param
+def _is_full(ellipse: Any) -> bool:
+    turn = ellipse.dxf.end_param - ellipse.dxf.start_param
     return math.isclose(abs(turn), math.tau, rel_tol=1e-9)
 
 

@@ -16,7 +16,7 @@ from ...formats.source import limited_content
 from ...mesh.interop import optional
 from ...parameters import file_path, positive
 from ..sets.region import Region
-from .svg_tree import name_of, simplify
+from .svg_tree import make_plain, name_of
 
 
 def load_svg(
@@ -52,7 +52,7 @@ def load_svg(
     """
     chord = positive(tolerance, "tolerance")
     found = [Region(pitch=pitch)]
-    for shape in shown_shapes(path, simplify):
+    for shape in shown_shapes(path, make_plain):
         if _is_filled(shape):
             with format_errors(os.fspath(path), "SVG"):
                 outlines = outlines_of(shape, _within(shape, chord))

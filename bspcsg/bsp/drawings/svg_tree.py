@@ -7,6 +7,7 @@ them into their places and draws symbols, masks and markers where they are decla
 SVG 2, sections 5 (structure), 7.11 (the initial view box) and 8.2 (fitting a view box).
 """
 
+import math
 import re
 from xml.etree.ElementTree import Element
 
@@ -36,7 +37,7 @@ def name_of(element: Element) -> str:
     return str(element.tag).rpartition("}")[2]
 
 
-def simplify(root: Element) -> None:
+def make_plain(root: Element) -> None:
     """Leave groups, shapes, texts and their uses in a drawing, in the user units of the outermost.
 
     Raises
@@ -62,12 +63,15 @@ def simplify(root: Element) -> None:
 def _drop(root: Element) -> None:
     """Drop what is no drawing, and shapes that show nothing because they say too little."""
     for parent in list(root.iter()):
-        for child in list(parent):
-            name = name_of(child)
-            is_bare = name == "path" and not child.get("d")
-            sizes = [child.get(size, "") for size in _SIZES.get(name, ())]
-            if is_bare or name in _FOREIGN or any(size.strip()[:1] == "-" for size in sizes):
-                parent.remove(child)
+        parent[:] = [child for child in parent if _is_drawn(child)]
+
+
+def _is_drawn(element: Element) -> bool:
+    name = name_of(element)
+    sizes = [element.get(size, "") for size in _SIZES.get(name, ())]
+    if name in _FOREIGN or any(size.strip().startswith("-") for size in sizes):
+        return False
+    return name != "path" or bool(element.get("d"))
 
 
 def _switch(element: Element) -> None:
@@ -155,6 +159,7 @@ def _tag(like: Element, name: str) -> str:
 def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
     """Make an element a group with the transform of a view; return the view's own size."""
     wide, high = outer or (None, None)
+    view = {key: value for key, value in view.items() if value.strip() != "auto"}
     x, y = (_length(view.get(key, "0"), whole) or 0.0 for key, whole in (("x", wide), ("y", high)))
     width = _length(view.get("width", "100%"), wide)
     height = _length(view.get("height", "100%"), high)
@@ -203,16 +208,24 @@ def _size_of_root(root: Element) -> _Size:
 def _view_box(view: dict[str, str]) -> tuple[float, float, float, float] | None:
     """Return the left, upper, width and height of a view box that has a size."""
     words = [word for word in re.split(r"[\s,]+", view.get("viewBox", "")) if word]
-    if len(words) != 4:
+    try:
+        left, top, width, height = map(float, words)
+    except ValueError:
         return None
-    left, top, width, height = map(float, words)
-    return (left, top, width, height) if min(width, height) > 0 else None
+    is_proper = all(map(math.isfinite, (left, top))) and all(
+        0 < size < math.inf for size in (width, height)
+    )
+    return (left, top, width, height) if is_proper else None
 
 
 def _length(text: str, whole: float | None) -> float | None:
-    """Return a length in user units; None for what is relative to something unknown."""
+    """Return a length in user units; None for no length, or one relative to something unknown."""
     if not text or ("%" in text and whole is None):
         return None
     elements = optional("svgelements", "svgelements")
-    value = elements.Length(text).value(ppi=96.0, relative_length=whole)
-    return float(value) if isinstance(value, (int, float)) else None
+    try:
+        value = elements.Length(text).value(ppi=96.0, relative_length=whole)
+    except ValueError:
+        return None
+    is_known = isinstance(value, (int, float)) and math.isfinite(value)
+    return float(value) if is_known else None
