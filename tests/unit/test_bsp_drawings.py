@@ -4,6 +4,7 @@ import math
 import os
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg import bsp
+from bspcsg.bsp.drawings.dxf import dxf_data
 
 R = bsp.Region
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9" width="90mm">{}</svg>'
@@ -150,6 +152,15 @@ def test_the_same_region_gives_the_same_bytes_in_every_process(tmp_path: Path, s
         return path.read_bytes()
 
     assert data("1") == data("2") == data("3")
+
+
+def test_threads_may_write_at_once() -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    with ThreadPoolExecutor(8) as pool:
+        data = set(pool.map(lambda _: dxf_data(R.rectangle(2, 1)), range(24)))
+    assert len(data) == 1
+    assert ezdxf.options.write_fixed_meta_data_for_testing == before
 
 
 def test_bad_dxf(tmp_path: Path) -> None:

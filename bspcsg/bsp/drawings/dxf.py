@@ -2,6 +2,7 @@
 
 import io
 import os
+import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -88,15 +89,20 @@ def dxf_data(region: Region) -> bytes:
     return data
 
 
+#: Held while options of ezdxf are others, for all threads have the same.
+_ONE_AT_A_TIME = threading.Lock()
+
+
 @contextmanager
 def _without_time(options: Any) -> Iterator[None]:
     """Have ezdxf write no time and no random number: the same region gives the same bytes."""
-    before = options.write_fixed_meta_data_for_testing
-    options.write_fixed_meta_data_for_testing = True
-    try:
-        yield
-    finally:
-        options.write_fixed_meta_data_for_testing = before
+    with _ONE_AT_A_TIME:
+        before = options.write_fixed_meta_data_for_testing
+        options.write_fixed_meta_data_for_testing = True
+        try:
+            yield
+        finally:
+            options.write_fixed_meta_data_for_testing = before
 
 
 def read_document(path: str | os.PathLike[str]) -> Any:
