@@ -205,7 +205,8 @@ def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
     grid = meshio.Mesh(np.array(mesh.vertices), [("triangle", np.array(mesh.faces))])
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"mesh{suffix}"
-        grid.write(path, binary=True)
+        with _ONE_AT_A_TIME:
+            grid.write(path, binary=True)
         with path.open("rb", buffering=0) as written:
             while piece := written.read(_PIECE):
                 yield piece

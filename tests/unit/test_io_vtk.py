@@ -108,7 +108,9 @@ def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
     refusal(tmp_path / "deep.vtu", deep + "</VTKFile>" * depth, "syntax")
 
 
-def test_threads_may_read_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_threads_may_read_and_write_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """What meshio says is kept back, and nothing else; streams and zlib are those of before."""
     good, bad = tmp_path / "good.vtu", tmp_path / "bad.vtk"
     write(cube_mesh(1.0), good)
@@ -117,6 +119,7 @@ def test_threads_may_read_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[
 
     def work(number: int) -> None:
         assert len(read(good).faces) == 12
+        write(cube_mesh(1.0), tmp_path / f"{number}.vtu")
         sys.stdout.write(f"<{number}>\n")
         with pytest.raises(FormatError):
             read(bad)
