@@ -26,7 +26,8 @@ def small_parts(size: float, distance: float) -> b.Mesh:
     vertices, faces = icosphere(2)
     ball = vertices * size, faces
     far = np.array([0.5, 0.3, -0.8]) * distance
-    return b.Mesh(*joined(ball, moved(ball, far)), ())
+    both = joined(ball, moved(ball, far))
+    return b.Mesh(*both, np.zeros((len(both[1]), 2), np.int64))
 
 
 @pytest.mark.parametrize("size", [1.0, 1e-3, 1e-7])
