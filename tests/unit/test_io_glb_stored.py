@@ -73,6 +73,10 @@ def before(sparse: dict[str, Any]) -> None:
     sparse["values"]["byteOffset"] = -4
 
 
+def counted_back(sparse: dict[str, Any]) -> None:
+    sparse["indices"]["componentType"] = 5120
+
+
 def too_many(sparse: dict[str, Any]) -> None:
     sparse["count"] = 9
 
@@ -81,6 +85,7 @@ def too_many(sparse: dict[str, Any]) -> None:
     ("place", "edit", "code"),
     [
         (8, lambda sparse: None, "index_out_of_range"),
+        (255, counted_back, "index_out_of_range"),
         (7, outside, "truncated"),
         (7, before, "truncated"),
         (7, too_many, "syntax"),

@@ -27,7 +27,7 @@ def stored(container: Container, number: int) -> Values:
     sparse = accessor["sparse"]
     kind = np.dtype(COMPONENTS[sparse["indices"]["componentType"]])
     places = _rows(container, sparse["indices"], sparse["count"], 1, kind).ravel()
-    if len(places) and places.max() >= count:
+    if len(places) and not 0 <= places.min() <= places.max() < count:
         raise IndexError(f"accessor {number} replaces an element that does not exist")
     replaced = values.copy()
     replaced[places] = _rows(container, sparse["values"], sparse["count"], width, item)
