@@ -125,8 +125,9 @@ class _Blend:
     def _mitres(self, edge: int, place: int) -> list[Solid]:
         """Return half-spaces of what an edge's own cutter has to take off at a corner of three.
 
-        Where the corner is symmetrical, a neighbour takes off all beyond its mirror. Without this
-        cutters would reach past short neighbours.
+        Where the corner is symmetrical, or its third edge of the other kind, a neighbour takes off
+        all beyond the plane halfway that holds the third edge. Without this cutters would reach
+        past short neighbours.
         """
         vertex = int(self.skeleton.ends[edge, place])
         around = self.skeleton.edges_at(vertex)
@@ -138,8 +139,9 @@ class _Blend:
             if other == edge or other not in self.chosen or self.sign(other) != self.sign(edge):
                 continue
             (third,) = set(around) - {edge, other}
-            normal = away[other] - away[edge]
-            if abs(float(normal @ away[third])) < _SYMMETRICAL:
+            leans = abs(float((away[other] - away[edge]) @ away[third]))
+            if leans < _SYMMETRICAL or self.sign(third) != self.sign(edge):
+                normal = _across(away[other], away[third]) - _across(away[edge], away[third])
                 offset = float(normal @ self.skeleton.vertices[vertex])
                 beyond = _OVERLAP * self.profile.size * float(np.linalg.norm(normal))
                 found.append(half_space(normal, offset + beyond))
@@ -295,6 +297,12 @@ def _evaluated(cutter: Solid) -> Solid:
     return from_leaf(TreeLeaf(cutter.tree))
 
 
+def _across(direction: FloatArray, axis: FloatArray) -> FloatArray:
+    """Return the unit vector of the part of a direction that is square to a unit axis."""
+    across = direction - (direction @ axis) * axis
+    return np.asarray(across / np.linalg.norm(across))
+
+
 def _rim(steps: int) -> IndexArray:
     """Return the points around a patch, in the order of its corners."""
     rows = np.arange(steps + 1)
@@ -343,7 +351,9 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
             break
         solid = _tidy(solid, blend)
         after = skeleton_of(solid.normalized().to_mesh())
-        skeleton, chosen = after, carried(skeleton, rest, after, _new_ends(blend, rest))
+        reach = float(blend.widths.max())
+        chosen = carried(skeleton, rest, after, _new_ends(blend, rest), reach)
+        skeleton = after
     return solid
 
 

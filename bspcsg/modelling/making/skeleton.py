@@ -12,6 +12,9 @@ from ...mesh.mesh import Mesh, surfaces_of
 #: ten steps of the lattice of a body of size one.
 _FLAT = 1e-8
 
+#: The sine between planes that a triangle tells apart, if it is high enough not to be thin.
+_BENT = 0.01
+
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
@@ -103,8 +106,11 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
         return Skeleton(vertices, triangles, none[:, 0], np.zeros((0, 3)), none, none)
     segments, owners = _segments(triangles, len(vertices))
     areas = _vector_areas(vertices, triangles)
-    flat = owners[_are_flat(vertices, triangles, areas, segments, owners)]
-    face = _groups(_with_one_plane(flat, _are_thin(vertices, triangles, areas)), len(triangles))
+    away = _away(vertices, triangles, areas, segments, owners)
+    is_flat = away <= flatness(vertices)
+    is_thin = _are_thin(vertices, triangles, areas)
+    pairs = _with_one_plane(owners[is_flat], away[is_flat], is_thin)
+    face = _groups(pairs, len(triangles))
     normals = np.zeros((face.max() + 1, 3))
     np.add.at(normals, face, areas)
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -136,14 +142,17 @@ def _vector_areas(vertices: FloatArray, triangles: IndexArray) -> FloatArray:
     return np.asarray(np.cross(b - a, c - a))
 
 
-def _are_flat(
+def _away(
     vertices: FloatArray,
     triangles: IndexArray,
     areas: FloatArray,
     segments: IndexArray,
     owners: IndexArray,
-) -> BoolArray:
-    """Say whether the smaller triangle at each segment lies in the plane of the larger one."""
+) -> FloatArray:
+    """Return how far the smaller triangle at each segment is from the plane of the larger one.
+
+    Infinity where they are folded on each other.
+    """
     size = np.linalg.norm(areas, axis=1)
     first_is_large = size[owners[:, 0]] >= size[owners[:, 1]]
     large = np.where(first_is_large, owners[:, 0], owners[:, 1])
@@ -152,32 +161,36 @@ def _are_flat(
     unit = areas[large] / np.where(size > 0, size, 1)[large][:, None]
     away = np.einsum("ij,ij->i", vertices[tip] - vertices[segments[:, 0]], unit)
     ahead = np.einsum("ij,ij->i", areas[large], areas[small]) >= 0
-    return np.asarray((np.abs(away) <= flatness(vertices)) & ahead)
+    return np.where(ahead, np.abs(away), np.inf)
 
 
 def _are_thin(vertices: FloatArray, triangles: IndexArray, areas: FloatArray) -> BoolArray:
-    """Say which triangles are so thin that they lie in any plane through their longest edge."""
+    """Say which triangles are so thin that they lie in planes of several directions."""
     around = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
     longest = np.linalg.norm(around, axis=2).max(axis=1)
-    thin = np.linalg.norm(areas, axis=1) <= flatness(vertices) * longest
+    thin = np.linalg.norm(areas, axis=1) <= flatness(vertices) / _BENT * longest
     return np.asarray(thin)
 
 
-def _with_one_plane(flat: IndexArray, is_thin: BoolArray) -> IndexArray:
-    """Return pairs of triangles of one plane; thin ones go with one neighbour only.
+def _with_one_plane(flat: IndexArray, away: FloatArray, is_thin: BoolArray) -> IndexArray:
+    """Return pairs of triangles of one plane; thin ones go with the neighbour that fits best.
 
     Otherwise a thin triangle along an edge would make one face of the two that meet there.
     """
     kept = [flat[~is_thin[flat].any(axis=1)]]
     is_placed = ~is_thin
-    both = np.concatenate([flat, flat[:, ::-1]])
+    best_first = np.argsort(np.tile(away, 2), kind="stable")
+    both = np.concatenate([flat, flat[:, ::-1]])[best_first]
     while True:
         ready = both[is_placed[both[:, 0]] & ~is_placed[both[:, 1]]]
         if not len(ready):
-            return np.concatenate(kept)
+            break
         _, first = np.unique(ready[:, 1], return_index=True)
         kept.append(ready[first])
         is_placed[ready[:, 1]] = True
+    # Faces of nothing but thin triangles.
+    kept.append(flat[~is_placed[flat].any(axis=1)])
+    return np.concatenate(kept)
 
 
 def _groups(pairs: IndexArray, count: int) -> IndexArray:

@@ -16,6 +16,10 @@ from .skeleton import Skeleton, flatness
 #: Faces of one plane have normals whose cosine is at least this.
 _ALONG = 1 - 1e-12
 
+#: Unit normals that differ by no more are of one plane: a fillet of 360 chords bends by 0.017 at
+#: each, and so little that rounding is seen has no blend.
+_EVEN = 1e-4
+
 #: Points are the same that are as near as corners of two faces between the same planes may be.
 _SAME = 4
 
@@ -78,7 +82,11 @@ def _with_their_like(skeleton: Skeleton, chosen: set[int], waiting: set[int]) ->
 
 
 def carried(
-    skeleton: Skeleton, rest: IndexArray, after: Skeleton, ends: Mapping[int, FloatArray]
+    skeleton: Skeleton,
+    rest: IndexArray,
+    after: Skeleton,
+    ends: Mapping[int, FloatArray],
+    reach: float,
 ) -> IndexArray:
     """Return the edges, after a stage, of those that are still to be blended.
 
@@ -91,29 +99,48 @@ def carried(
     after : Skeleton
     ends : dict of int to (n, 3) float64
         The corners of the new surface where it ends on each face between two of `rest`.
+    reach : float
+        The most that new surfaces make an edge longer.
 
     Returns
     -------
     (m,) int64
+
+    Raises
+    ------
+    InvalidParameterError
+        If nothing is left of an edge.
     """
     near = _SAME * flatness(skeleton.vertices)
     is_meant = np.zeros(len(after.ends), dtype=np.bool_)
     for edge in rest.tolist():
-        is_meant |= _lie_on(skeleton, edge, after, near)
+        parts = _lie_on(skeleton, edge, after, near, reach)
+        if not parts.any():
+            vertex = int(skeleton.ends[edge, 0])
+            reason = "an edge is gone once others are blended; take one kind first"
+            raise refused(skeleton, vertex, reason)
+        is_meant |= parts
     for face, corners in ends.items():
         is_meant |= _run_along(skeleton.normals[face], corners, after, near)
-    return np.flatnonzero(is_meant)
+    return np.flatnonzero(is_meant & ~_are_even(after))
 
 
-def _lie_on(skeleton: Skeleton, edge: int, after: Skeleton, near: float) -> BoolArray:
-    """Say which edges are parts of one of before."""
+def _are_even(skeleton: Skeleton) -> BoolArray:
+    """Say at which edges the two faces go on in one plane, but for what rounding does."""
+    normals = skeleton.normals[skeleton.sides]
+    return np.asarray(np.linalg.norm(normals[:, 1] - normals[:, 0], axis=1) <= _EVEN)
+
+
+def _lie_on(skeleton: Skeleton, edge: int, after: Skeleton, near: float, reach: float) -> BoolArray:
+    """Say which edges have a part in common with one of before."""
     start, along = skeleton.vertices[skeleton.ends[edge, 0]], skeleton.directions[edge]
     length = float(np.linalg.norm(skeleton.vectors[edge]))
     away = after.vertices[after.ends] - start
     ahead = away @ along
     beside = np.linalg.norm(away - ahead[..., None] * along, axis=2)
-    is_there = (beside <= near) & (ahead >= -near) & (ahead <= length + near)
-    return np.asarray(is_there.all(axis=1))
+    is_there = (beside <= near) & (ahead >= -reach - near) & (ahead <= length + reach + near)
+    in_common = np.minimum(ahead.max(axis=1), length) - np.maximum(ahead.min(axis=1), 0)
+    return np.asarray(is_there.all(axis=1) & (in_common > near))
 
 
 def _run_along(normal: FloatArray, corners: FloatArray, after: Skeleton, near: float) -> BoolArray:
