@@ -25,7 +25,7 @@ __all__ = [
     "are_words",
     "fail_on_purpose",
     "find_numpy",
-    "hull_faces",
+    "hull_mesh",
     "mesh_counts",
     "mesh_faults",
     "mesh_in_single",
@@ -82,7 +82,9 @@ _SplitCase: TypeAlias = Literal[
 ]
 
 def fail_on_purpose(panic: bool, size: int) -> None: ...
-def hull_faces(points: npt.NDArray[np.float64], pitch: int) -> npt.NDArray[np.int64]: ...
+def hull_mesh(
+    points: npt.NDArray[np.float64], pitch: int
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], bool]: ...
 def mesh_faults(vertices: npt.NDArray[np.float64], triangles: npt.NDArray[np.int64]) -> Faults: ...
 def mesh_moved(
     before: npt.NDArray[np.float64],

@@ -73,6 +73,7 @@ class Measured(ABC):
 
         Where it is not the boundary of the solid, "self_overlap" says so, and names triangles of
         the mesh that cross or overlap others; `normalized` returns the solid with that boundary.
+        Where an input crosses itself by less than a step of the lattice, "crossing" says so.
         """
         found = self.tree.findings
         if self.is_bounded:
@@ -82,8 +83,10 @@ class Measured(ABC):
         # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
         if not self.is_bounded or {"inside_out", "self_overlap"} & {one.code for one in told}:
             return told
-        overlap = overlap_of(self)
-        return told if overlap is None else (*told, overlap)
+        more = overlap_of(self)
+        if more is None and "crossing" not in {one.code for one in told}:
+            more = _crossing_of(self)
+        return told if more is None else (*told, more)
 
     @property
     def pitch(self) -> int:
@@ -273,13 +276,36 @@ def overlap_of(solid: Measured) -> Finding | None:
     if solid.tree.simple is not False:
         return None
     mesh = solid.to_mesh()
-    crossing = sorted({face for pair in mesh.certificate.crossings for face in pair})
+    crossing = _crossing_faces(mesh)
     message = (
         f"faces cross, overlap, touch or lie inside: {len(mesh.faces)} triangles, where the"
         f" boundary of the solid has {len(reduced.to_mesh().faces)}"
     )
     if crossing:
-        near = ", ".join(f"{x:.6g}" for x in mesh.vertices[mesh.faces[crossing[0], 0]])
-        message += f"; {len(crossing)} cross or overlap others, the first near ({near})"
-    where, count = tuple(crossing[:_PLACES]), max(1, len(crossing))
-    return Finding("self_overlap", "warning", message, where, count)
+        message += (
+            f"; {len(crossing)} cross or overlap others, the first near {_near(mesh, crossing)}"
+        )
+    where = tuple(crossing[:_PLACES])
+    return Finding("self_overlap", "warning", message, where, max(1, len(crossing)))
+
+
+def _crossing_of(solid: Measured) -> Finding | None:
+    """Return what is to be said of a mesh that crosses itself, though not on the lattice."""
+    mesh = solid.to_mesh()
+    crossing = _crossing_faces(mesh)
+    if not crossing:
+        return None
+    message = (
+        "these triangles of inputs cross or overlap others by less than a step of the lattice; the"
+        f" first near {_near(mesh, crossing)}"
+    )
+    return Finding("crossing", "warning", message, tuple(crossing[:_PLACES]), len(crossing))
+
+
+def _crossing_faces(mesh: Mesh) -> list[int]:
+    return sorted({face for pair in mesh.certificate.crossings for face in pair})
+
+
+def _near(mesh: Mesh, faces: list[int]) -> str:
+    corner = mesh.vertices[mesh.faces[faces[0], 0]]
+    return f"({', '.join(f'{x:.6g}' for x in corner)})"

@@ -14,6 +14,7 @@ import trimesh
 
 import bspcsg as b
 from bspcsg._core import mesh_faults, mesh_in_single, mesh_moved
+from bspcsg._types import FloatArray
 from bspcsg.formats.single import _rounded, settled
 from bspcsg.geometry.transform import apply, rotation
 from support import DEEP
@@ -239,6 +240,41 @@ def test_delivered_meshes_do_not_cross(
         assert has_volume(mesh, solid.volume_exact, bound * (mesh.area + bound)), seed
     assert count > 0.7 * SCENES and mended > 0.05 * count and checked > 0.1 * count
     assert reported == crossing and crossing <= 0.01 * count
+
+
+def turned_grid(seed: int) -> FloatArray:
+    """Return points of a turned grid: many lie in one plane, but for what rounding does."""
+    rng = np.random.default_rng(seed)
+    turn = rotation(float(rng.uniform(0, 360)), rng.normal(size=3)).matrix
+    return apply(turn, rng.integers(0, 5, (60, 3)).astype(float))
+
+
+def test_hulls_do_not_cross() -> None:
+    for seed in range(60):
+        points = turned_grid(seed)
+        hull = b.hull(points)
+        assert hull.to_mesh().certificate.ok, seed
+        assert hull == b.hull(points.round(-hull.pitch)) and (hull.classify(points) >= 0).all()
+
+
+def test_rounded_solids_do_not_cross() -> None:
+    for seed in range(12):
+        box = b.box(2, 3, 4).rotate(tuple(np.random.default_rng(seed).uniform(0, 90, 3)))
+        assert box.rounded(0.1, segments=8).to_mesh().certificate.ok, seed
+
+
+def test_what_crosses_by_less_than_a_step_is_told() -> None:
+    told = 0
+    for seed in range(40):
+        points = turned_grid(seed)
+        hull = b.hull(points.round(9)).to_mesh()
+        near = np.linalg.norm(hull.vertices[:, None] - points, axis=2).argmin(axis=1)
+        solid = b.Solid(points[near], hull.faces)
+        for one in (solid, solid | b.cube(1).translate(50, 0, 0)):
+            codes = {finding.code for finding in one.findings}
+            assert bool(one.to_mesh().certificate.crossings) == ("crossing" in codes), seed
+            told += "crossing" in codes
+    assert told > 10
 
 
 def test_vertices_in_one_place_are_told(

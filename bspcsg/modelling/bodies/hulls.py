@@ -5,7 +5,7 @@ from typing import Any, overload
 
 import numpy as np
 
-from ..._core import hull_faces, suited_pitch
+from ..._core import hull_mesh, suited_pitch
 from ..._types import FloatArray
 from ...bsp import Region
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
@@ -31,8 +31,9 @@ def hull(*solids_or_points: Any) -> Any: ...
 def hull(*solids_or_points: Any) -> Solid | Region:
     """Return the convex hull: the least convex set that holds all that is given.
 
-    It is exact. Each corner of the result is a corner of a solid or one of the points, none of
-    these lies outside, and no corner could be left out.
+    It is exact on the lattice. Each corner of the result is a corner of a solid or one of the
+    points, none of these lies outside, and no corner could be left out. Coordinates stay as they
+    were given, but where faces between them would cross, for they are not on the lattice.
 
     Parameters
     ----------
@@ -86,12 +87,10 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
         return Solid.empty()
     chosen = _lattice_for(points, pitch)
     with core_errors():
-        faces = hull_faces(np.ascontiguousarray(points), chosen)
+        vertices, faces, is_mended = hull_mesh(np.ascontiguousarray(points), chosen)
     if len(faces) == 0:
         return Solid.empty()
-    used, corners = np.unique(faces, return_inverse=True)
-    own = np.ascontiguousarray(points[used]), corners.reshape(-1, 3)
-    return from_leaf(MeshLeaf(*own, pitch=chosen, trusted=True))
+    return from_leaf(MeshLeaf(vertices, faces, pitch=chosen, trusted=not is_mended))
 
 
 def _lattice_for(points: FloatArray, pitch: int | None) -> int:

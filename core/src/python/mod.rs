@@ -86,7 +86,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(embedding::mesh_faults, module)?)?;
     module.add_function(wrap_pyfunction!(embedding::mesh_moved, module)?)?;
     module.add_function(wrap_pyfunction!(embedding::mesh_in_single, module)?)?;
-    module.add_function(wrap_pyfunction!(hulls::hull_faces, module)?)?;
+    module.add_function(wrap_pyfunction!(hulls::hull_mesh, module)?)?;
     module.add_function(wrap_pyfunction!(set_threads, module)?)?;
     module.add_function(wrap_pyfunction!(run::watch, module)?)?;
     module.add_function(wrap_pyfunction!(find_numpy, module)?)?;

@@ -145,17 +145,20 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
     if settled.left.is_empty() {
         return settled;
     }
-    let mut other = moved.clone();
-    let on_lattice = |v: VertexId| {
-        let place = snap_point(pitch, moved.vertices.get(v.place())?).ok()?;
-        Some(pitch.position(&Vertex::lattice(place)))
-    };
-    let again = other.settle_all(found, on_lattice);
+    let mut other = moved;
+    let again = other.settle_from_lattice(found, pitch);
     if again.left.count() >= settled.left.count() {
         return settled;
     }
     *mesh = other;
     again
+}
+
+/// Mends what crosses or has no area though its corners, snapped to the lattice, do neither: faulty
+/// triangles get these corners.
+pub fn settle_snapped(mesh: &mut Rounded, pitch: Pitch) -> Settled {
+    let found = all_faults(&mesh.faces());
+    mesh.settle_from_lattice(found, pitch)
 }
 
 impl Rounded {
@@ -180,6 +183,16 @@ impl Rounded {
         let all = (0..as_number(self.triangles.len())).collect();
         let double = Precision::Double;
         settle(self, all, found, double, exact, |_| false, |_| 0)
+    }
+
+    /// Mends faults of all triangles; first it puts their corners on the lattice.
+    fn settle_from_lattice(&mut self, found: Faults, pitch: Pitch) -> Settled {
+        let given = self.vertices.clone();
+        let on_lattice = |v: VertexId| {
+            let place = snap_point(pitch, given.get(v.place())?).ok()?;
+            Some(pitch.position(&Vertex::lattice(place)))
+        };
+        self.settle_all(found, on_lattice)
     }
 
     /// The triangles.
