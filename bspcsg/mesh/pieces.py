@@ -7,6 +7,7 @@ from typing import TypeAlias
 import numpy as np
 
 from .._types import FloatArray, IndexArray
+from .boxes import boxes_around, boxes_of
 from .mesh import Mesh, surfaces_of
 
 Point: TypeAlias = tuple[float, float, float]
@@ -151,13 +152,11 @@ def _outer_surfaces(mesh: Mesh, surfaces: IndexArray, volumes: FloatArray) -> In
     cavities = np.flatnonzero(volumes < 0)
     if len(cavities) == 0:
         return outer
-    corners = mesh.vertices[mesh.faces]
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, surfaces, corners.min(axis=1))
-    np.maximum.at(high, surfaces, corners.max(axis=1))
-    for cavity in cavities.tolist():
-        around = (low <= low[cavity]).all(axis=1) & (high >= high[cavity]).all(axis=1)
-        around &= volumes >= -volumes[cavity]
-        if around.any():
-            outer[cavity] = int(np.where(around, volumes, np.inf).argmin())
+    boxes = boxes_of(mesh.vertices[mesh.faces], surfaces)
+    solid = np.flatnonzero(volumes > 0)
+    for cavity, near in zip(cavities, boxes_around(boxes[cavities], boxes[solid]), strict=True):
+        around = solid[near]
+        around = around[volumes[around] >= -volumes[cavity]]
+        if len(around):
+            outer[cavity] = around[volumes[around].argmin()]
     return outer

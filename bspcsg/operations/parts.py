@@ -4,6 +4,7 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray, Scalar, Vector
 from ..attributes.attributes import made
+from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
@@ -91,23 +92,21 @@ class _Shells:
     def __init__(self, mesh: Mesh, owner: IndexArray, pitch: int) -> None:
         self._meshes = _split(Mesh(mesh.vertices, mesh.faces, mesh.source), owner)
         self._volumes = np.array([shell.volume for shell in self._meshes])
-        boxes = np.array([shell.bounds for shell in self._meshes])
-        self._low, self._high = boxes[:, 0], boxes[:, 1]
+        self._boxes = boxes_of(mesh.vertices[mesh.faces], owner)
         self._pitch = pitch
         self._solids: dict[int, Solid] = {}
 
     def homes(self) -> IndexArray:
         """Return for each shell the outer one that it belongs to: itself, or that around it."""
         homes = np.arange(len(self._meshes))
-        for cavity in np.flatnonzero(self._volumes <= 0).tolist():
-            homes[cavity] = self._around(cavity)
+        cavities, solid = np.flatnonzero(self._volumes <= 0), np.flatnonzero(self._volumes > 0)
+        around = boxes_around(self._boxes[cavities], self._boxes[solid])
+        for cavity, near in zip(cavities.tolist(), around, strict=True):
+            homes[cavity] = self._around(cavity, solid[near])
         return homes
 
-    def _around(self, cavity: int) -> int:
-        """Return the number of the smallest shell that a cavity's wall lies in."""
-        is_around = (self._low <= self._low[cavity]).all(axis=1) & (self._volumes > 0)
-        is_around &= (self._high >= self._high[cavity]).all(axis=1)
-        candidates = np.flatnonzero(is_around)
+    def _around(self, cavity: int, candidates: IndexArray) -> int:
+        """Return the number of the smallest of some shells that a cavity's wall lies in."""
         for number in candidates[np.argsort(self._volumes[candidates], kind="stable")].tolist():
             if self._holds(number, self._meshes[cavity].vertices):
                 return int(number)

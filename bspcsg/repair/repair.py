@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray
+from .._types import BoolArray
 from ..errors import BspcsgError, invalid_parameter, missing_part
 from ..formats.raw import RawMesh
+from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
 
@@ -129,30 +130,20 @@ def remedy(reason: str) -> str:
     return 'pip install "bspcsg[repair]"'
 
 
-def _facing_inwards(mesh: Mesh) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
+def _facing_inwards(mesh: Mesh) -> BoolArray:
     """Return which faces belong to surfaces that are inside out.
 
     A surface that lies in the box of another may be the wall of a cavity, and stays as it is.
     """
-    inward = np.zeros(len(mesh.faces), dtype=np.bool_)
     if len(mesh.faces) == 0:
-        return inward
+        return np.zeros(0, dtype=np.bool_)
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
-    shells = [mesh.faces[owner == number] for number in range(int(owner.max()) + 1)]
-    boxes = [_box(mesh, shell) for shell in shells]
-    volumes = [Mesh(mesh.vertices, shell, shell[:, :2]).volume for shell in shells]
+    corners = mesh.vertices[mesh.faces]
+    boxes = boxes_of(corners, owner)
+    a, b, c = (corners[:, k] - boxes[owner, 0] for k in range(3))
+    volumes = np.bincount(owner, np.einsum("ij,ij->i", np.cross(a, b), c))
     # If all of it is inside out, so are the cavities.
-    sign = -1 if sum(volumes) < 0 else 1
-    for number, (low, high) in enumerate(boxes):
-        inner = any(
-            other != number and (low >= box[0]).all() and (high <= box[1]).all()
-            for other, box in enumerate(boxes)
-        )
-        if (sign if inner else volumes[number]) < 0:
-            inward |= owner == number
-    return inward
-
-
-def _box(mesh: Mesh, faces: IndexArray) -> tuple[FloatArray, FloatArray]:
-    used = mesh.vertices[np.unique(faces)]
-    return used.min(axis=0), used.max(axis=0)
+    sign = -1 if volumes.sum() < 0 else 1
+    is_inner = np.array([len(around) > 1 for around in boxes_around(boxes, boxes)])
+    is_inward: BoolArray = np.where(is_inner, sign, volumes)[owner] < 0
+    return is_inward

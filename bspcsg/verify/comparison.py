@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .._types import FloatArray, IndexArray
+from .._types import FloatArray
+from ..mesh.boxes import box_index
 from ..mesh.distance import distances_to_triangles
 from ..mesh.mesh import Mesh
 from ..solid.counting import uncounted
@@ -137,8 +138,7 @@ def _farthest(mesh: Mesh, points: FloatArray) -> float:
 def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
     """Return the distance of each point from a mesh, (k,), in model units."""
     corners = mesh.vertices[mesh.faces]
-    lows, highs = corners.min(axis=1), corners.max(axis=1)
-    boxes = _index((np.arange(len(corners)), lows, highs))
+    boxes = box_index(np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1))
     slack = _SLACK * max(np.abs(corners).max(), np.abs(points).max(initial=0.0))
     found = np.zeros(len(points))
     for at in range(0, len(points), _BATCH):
@@ -151,9 +151,3 @@ def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
         each = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
         found[at : at + _BATCH] = np.minimum.reduceat(each, counts.cumsum() - counts)
     return found
-
-
-def _index(boxes: tuple[IndexArray, FloatArray, FloatArray]) -> Any:
-    from rtree.index import Index, Property  # late: most comparisons measure no distances
-
-    return Index(boxes, properties=Property(dimension=3))
