@@ -1,88 +1,175 @@
 //! The origins of new triangles: the source face that each triangle of a joined polygon lies in.
 
+use crate::arith::convert::as_number;
 use crate::extract::joining::planes::PlaneGroup;
 use crate::extract::triangulate::Planar;
 use crate::extract::vertices::Projection;
+use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 use crate::mesh::source::Shape;
 
-/// The faces of one plane in a projection, to be asked for the one at a point.
+/// So few points are looked for among all faces near them: halving them costs as much.
+const FEW: usize = 8;
+
+/// Halving points that leaves this many sixteenths of the faces, of both halves together, gains little.
+const LEFT: usize = 28;
+
+/// The share of the largest coordinate by which rounding may move a corner or a side.
+const ROUNDING: f64 = 1e-12;
+
+/// The faces of one plane in a projection, to be asked for those at points.
 ///
 /// A triangle of a joined polygon may lie in several faces; the face at its centre stands for it.
 /// Doubles decide, for nothing but the name depends on it; where faces overlap, the first counts.
-pub struct Owners {
-    faces: Vec<Owner>,
-    widest: f64,
+pub struct Owners<'a> {
+    group: &'a PlaneGroup,
+    /// The corners of each face; none for a half-space, which is everywhere.
+    corners: Vec<Option<[[f64; 2]; 3]>>,
 }
 
-struct Owner {
-    face: OrientedFace,
-    rank: usize,
-    corners: Option<[[f64; 2]; 3]>,
-    low: f64,
+/// The least and the largest corner of a box.
+type Bounds = [[f64; 2]; 2];
+
+/// Points to be looked for, and the faces that may hold some, ascending.
+struct Search<'p> {
+    points: &'p mut [(usize, [f64; 2])],
+    faces: Vec<u32>,
 }
 
-impl Owners {
+impl<'a> Owners<'a> {
     /// The faces of a group.
-    pub fn new(group: &PlaneGroup, view: &Projection, sources: &Sources) -> Self {
-        let mut faces: Vec<Owner> = group
-            .faces
-            .iter()
-            .enumerate()
-            .map(|(rank, face)| Owner::new(*face, rank, view, sources))
-            .collect();
-        faces.sort_by(|a, b| a.low.total_cmp(&b.low));
-        let widest = faces.iter().map(Owner::width).fold(0.0, f64::max);
-        Self { faces, widest }
-    }
-
-    /// The face at the centre of a triangle, or the first face if rounding finds none.
-    pub fn at_centre(&self, triangle: [u32; 3], view: &Projection) -> OrientedFace {
-        let corners = triangle.map(|p| view.approx(p));
-        let centre = [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0);
-        let end = self.faces.partition_point(|f| f.low <= centre[0]);
-        let start = self.faces[..end].partition_point(|f| f.low < centre[0] - self.widest);
-        self.faces[start..end]
-            .iter()
-            .filter(|f| f.holds(centre))
-            .min_by_key(|f| f.rank)
-            .or_else(|| self.faces.iter().min_by_key(|f| f.rank))
-            .map_or_else(OrientedFace::default, |f| f.face)
-    }
-}
-
-impl Owner {
-    fn new(face: OrientedFace, rank: usize, view: &Projection, sources: &Sources) -> Self {
-        let corners = match sources.get(face.slot()).shape() {
+    pub fn new(group: &'a PlaneGroup, view: &Projection, sources: &Sources) -> Self {
+        let corners = |face: &OrientedFace| match sources.get(face.slot()).shape() {
             Shape::Mesh(mesh) => Some(mesh.corners(face.id()).map(|p| view.flat(&p))),
             Shape::HalfSpace(_) => None,
         };
-        let low = corners.map_or(f64::NEG_INFINITY, |c| c[0][0].min(c[1][0]).min(c[2][0]));
-        Self {
-            face,
-            rank,
-            corners,
-            low,
+        let corners = group.faces.iter().map(corners).collect();
+        Self { group, corners }
+    }
+
+    /// The faces at the centres of triangles, or the first face if rounding finds none.
+    ///
+    /// # Cost
+    /// Points are halved with the faces that reach among them: each face is in as many parts as it
+    /// crosses, the root of their number if it is long.
+    pub fn at_centres(&self, triangles: &[[u32; 3]], view: &Projection) -> Vec<OrientedFace> {
+        let centre = |triangle: &[u32; 3]| {
+            let corners = triangle.map(|p| view.approx(p));
+            [0, 1].map(|i| corners.iter().map(|c| c[i]).sum::<f64>() / 3.0)
+        };
+        let first = self.group.faces.first().copied().unwrap_or_default();
+        let mut found = vec![first; triangles.len()];
+        let mut points: Vec<(usize, [f64; 2])> = triangles.iter().map(centre).enumerate().collect();
+        let mut waiting = vec![Search {
+            points: &mut points,
+            faces: (0..as_number(self.corners.len())).collect(),
+        }];
+        while let Some(search) = waiting.pop() {
+            poll();
+            match self.halved(search) {
+                Ok(halves) => waiting.extend(halves),
+                Err(few) => self.compare(few, &mut found),
+            }
+        }
+        found
+    }
+
+    fn compare(&self, search: Search, found: &mut [OrientedFace]) {
+        for (number, point) in search.points {
+            let mut near = search.faces.iter().map(|face| *face as usize);
+            if let Some(face) = near.find(|face| self.holds(*face, *point)) {
+                found[*number] = self.group.faces[face];
+            }
         }
     }
 
-    fn width(&self) -> f64 {
-        self.corners.map_or(f64::INFINITY, |c| {
-            c[0][0].max(c[1][0]).max(c[2][0]) - self.low
-        })
+    /// Two searches in place of one, or the one itself if that gains little.
+    fn halved<'p>(&self, search: Search<'p>) -> Result<[Search<'p>; 2], Search<'p>> {
+        let Search { points, faces } = search;
+        if points.len() <= FEW || faces.len() <= FEW {
+            return Err(Search { points, faces });
+        }
+        let [low, high] = bounds(points);
+        let longer = usize::from(high[1] - low[1] > high[0] - low[0]);
+        for axis in [longer, 1 - longer] {
+            let middle = points.len() / 2;
+            points.select_nth_unstable_by(middle, |a, b| a.1[axis].total_cmp(&b.1[axis]));
+            let near = [&points[..middle], &points[middle..]]
+                .map(|half| self.reaching(&faces, &bounds(half)));
+            if 16 * (near[0].len() + near[1].len()) <= LEFT * faces.len() {
+                let (lower, upper) = points.split_at_mut(middle);
+                let [some, others] = near;
+                return Ok([(lower, some), (upper, others)]
+                    .map(|(points, faces)| Search { points, faces }));
+            }
+        }
+        Err(Search { points, faces })
     }
 
-    fn holds(&self, p: [f64; 2]) -> bool {
-        let Some(c) = self.corners else {
+    /// Those of some faces that may hold a point of a box.
+    fn reaching(&self, faces: &[u32], bounds: &Bounds) -> Vec<u32> {
+        let reaches = |face: &u32| {
+            let corners = self.corners[*face as usize];
+            corners.is_none_or(|corners| may_meet(&corners, bounds))
+        };
+        faces.iter().copied().filter(reaches).collect()
+    }
+
+    fn holds(&self, face: usize, p: [f64; 2]) -> bool {
+        let Some(corners) = self.corners[face] else {
             return true;
         };
-        let turn = |a: [f64; 2], b: [f64; 2]| {
-            (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-        };
-        let turns = [turn(c[0], c[1]), turn(c[1], c[2]), turn(c[2], c[0])];
+        let turns = sides(&corners).map(|side| turn(side, p));
         turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
     }
+}
+
+fn bounds(points: &[(usize, [f64; 2])]) -> Bounds {
+    let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for (_, point) in points {
+        for i in 0..2 {
+            bounds[0][i] = bounds[0][i].min(point[i]);
+            bounds[1][i] = bounds[1][i].max(point[i]);
+        }
+    }
+    bounds
+}
+
+fn sides([a, b, c]: &[[f64; 2]; 3]) -> [[[f64; 2]; 2]; 3] {
+    [[*a, *b], [*b, *c], [*c, *a]]
+}
+
+fn turn([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
+}
+
+/// Return false only if the box of a triangle, or one of its sides, leaves a box out.
+fn may_meet(corners: &[[f64; 2]; 3], [low, high]: &Bounds) -> bool {
+    let largest = corners
+        .iter()
+        .chain([low, high])
+        .flatten()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    let slack = ROUNDING * largest;
+    let is_past = |i: usize| {
+        corners.iter().all(|c| c[i] > high[i] + slack)
+            || corners.iter().all(|c| c[i] < low[i] - slack)
+    };
+    if is_past(0) || is_past(1) {
+        return false;
+    }
+    let ends = [*low, [high[0], low[1]], *high, [low[0], high[1]]];
+    let [ab, bc, ca] = sides(corners);
+    [(ab, corners[2]), (bc, corners[0]), (ca, corners[1])]
+        .iter()
+        .all(|(side, third)| {
+            let inner = turn(*side, *third);
+            let length = (0..2).map(|i| (side[1][i] - side[0][i]).abs()).sum::<f64>();
+            let doubt = slack * length;
+            let turns = ends.map(|end| turn(*side, end) * inner.signum());
+            inner.abs() <= doubt || turns.iter().any(|t| *t >= -doubt)
+        })
 }
 
 #[cfg(test)]

@@ -110,8 +110,8 @@ impl Assembly<'_> {
         }
         let view = Projection::onto(&group.plane, &self.table);
         let owners = Owners::new(group, &view, self.sources);
-        let triangles = triangles.into_iter();
-        Ok(triangles.map(|t| (t, owners.at_centre(t, &view))).collect())
+        let faces = owners.at_centres(&triangles, &view);
+        Ok(triangles.into_iter().zip(faces).collect())
     }
 
     /// The triangles of a region in a plane, which some faces make up.
