@@ -140,7 +140,8 @@ def _facing_inwards(mesh: Mesh) -> BoolArray:
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
     corners = mesh.vertices[mesh.faces]
     boxes = boxes_of(corners, owner)
-    a, b, c = (corners[:, k] - boxes[owner, 0] for k in range(3))
+    # Of a surface with holes, the volume as seen from the middle of its box.
+    a, b, c = (corners[:, k] - boxes.mean(axis=1)[owner] for k in range(3))
     volumes = np.bincount(owner, np.einsum("ij,ij->i", np.cross(a, b), c))
     # If all of it is inside out, so are the cavities.
     sign = -1 if volumes.sum() < 0 else 1

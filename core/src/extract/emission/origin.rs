@@ -12,7 +12,8 @@ use crate::mesh::source::Shape;
 /// So few points are looked for among all faces near them: halving them costs as much.
 const FEW: usize = 8;
 
-/// Halving points that leaves this many sixteenths of the faces, of both halves together, gains little.
+/// Halving points that leaves both halves together more sixteenths of the faces, seven of eight each,
+/// does not pay for itself.
 const LEFT: usize = 28;
 
 /// The share of the largest coordinate by which rounding may move a corner or a side.
@@ -77,6 +78,7 @@ impl<'a> Owners<'a> {
 
     fn compare(&self, search: Search, found: &mut [OrientedFace]) {
         for (number, point) in search.points {
+            poll();
             let mut near = search.faces.iter().map(|face| *face as usize);
             if let Some(face) = near.find(|face| self.holds(*face, *point)) {
                 found[*number] = self.group.faces[face];
