@@ -11,6 +11,7 @@ import pytest
 import bspcsg as b
 from bspcsg.above import Convenience
 from bspcsg.conveniences import _HOMES
+from bspcsg.modelling.bodies.sums import is_convex
 from support.checks import assert_sound
 
 
@@ -273,3 +274,29 @@ def test_all_that_methods_ask_for_is_there() -> None:
         module, name = home.split(":")
         assert callable(getattr(import_module(f"bspcsg.{module}"), name))
     assert set(_HOMES) == set(get_args(Convenience))
+
+
+def test_small_holes_in_large_bodies_count() -> None:
+    # By volume, the body is its hull but for a part in four thousand millions.
+    block = b.cube(1000) - b.box(0.5, 0.5, 2).translate(500, 500, 999)
+    within, past = [500.2, 500.2, 999.5], [500.2, 500.2, 998.5]
+    assert b.minkowski(block, b.cube(0.01)).classify([within, past]).tolist() == [-1, 1]
+    assert block.offset(0.01, segments=8).classify([within, past]).tolist() == [-1, 1]
+    beside = [499.995, 500.2, 999.5]
+    assert (
+        block.classify([beside]) == 1 and block.offset(-0.01, segments=8).classify([beside]) == -1
+    )
+    groove = b.cube(1000) - b.box(1000, 0.01, 0.01).translate(0, 500, 999.99)
+    assert b.minkowski(groove, b.cube(0.001)).classify([[5, 500.005, 999.9955]]) == -1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_turned_and_cut_convex_bodies_are_convex(seed: int) -> None:
+    turn = tuple(np.random.default_rng(seed).uniform(0, 360, 3))
+    ball = b.sphere(3, segments=24).rotate(turn)
+    for body in (
+        ball,
+        ball & b.half_space((1, 2, 3), 1.2345),
+        b.cylinder(9, 2, segments=90).rotate(turn),
+    ):
+        assert is_convex(body)

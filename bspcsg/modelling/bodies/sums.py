@@ -9,18 +9,23 @@ from ..._types import FloatArray
 from ...bsp import ObjectTree, Region
 from ...errors import LimitError, UnboundedError, invalid_parameter
 from ...geometry.hyperplane import Hyperplane
+from ...mesh.mesh import Mesh
 from ...operations import setops
 from ...solid.counting import counted
 from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
 from ..planar.sums import sum_of_regions
 from .hulls import hull_of
+from .shading import half_edges, next_side
 
 #: Corners of convex sets, each an array of shape (n, 3).
 ConvexParts: TypeAlias = list[FloatArray]
 
 #: Whole numbers of any size.
 LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
+
+#: By how much of its volume, and by how many steps a corner, rounding makes a convex solid another.
+_LARGER, _MOVED = 1e-9, 4
 
 #: A solid with more faces is not divided into convex parts, which grows with their square.
 _MOST_FACES = 2000
@@ -118,7 +123,33 @@ def convex_parts(solid: Solid) -> ConvexParts:
 def is_convex(solid: Solid) -> bool:
     """Say whether the hull is no larger, but for the rounding of its corners."""
     mesh = solid.normalized().to_mesh()
-    return hull_of(mesh.vertices, solid.pitch).volume <= mesh.volume * (1 + 1e-9)
+    largest = mesh.volume * (1 + _LARGER)
+    # Small holes in a large body hardly change its volume.
+    return hull_of(mesh.vertices, solid.pitch).volume <= largest and not _bends_inwards(
+        mesh, 10.0**solid.pitch
+    )
+
+
+def _bends_inwards(mesh: Mesh, step: float) -> bool:
+    """Say whether an edge is concave by more than moving corners by some steps can make it.
+
+    So far beside the larger triangle as the smaller one reaches, its plane is moved as often more
+    as that is longer than its edge or its height.
+    """
+    first, second = half_edges(mesh)
+    points = mesh.vertices[mesh.faces].reshape(-1, 3)
+    a, b, c = (points[k::3] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    sizes = np.linalg.norm(normals, axis=1)
+    is_first = sizes[first // 3] >= sizes[second // 3]
+    large, small = np.where(is_first, first, second), np.where(is_first, second, first)
+    start, end = points[large], points[next_side(large)]
+    tip = points[next_side(next_side(small))] - start
+    size, length = sizes[large // 3], np.linalg.norm(end - start, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):  # triangles without area have no plane
+        over = np.einsum("ij,ij->i", tip, normals[large // 3]) / size
+        reach = np.linalg.norm(tip, axis=1) / np.minimum(length, size / length)
+    return bool((over > _MOVED * step * (1 + reach)).any())
 
 
 def _sum_of_parts(first: ConvexParts, second: ConvexParts, pitch: int) -> Solid:
