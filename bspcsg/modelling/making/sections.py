@@ -118,11 +118,11 @@ def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) ->
     refuse_many_corners(len(low) * len(high), "This loft")
     gaps = np.linalg.norm(middles[0][:, None] - middles[1][None], axis=2)
     gaps[np.not_equal.outer(*holes)] = np.inf
-    order = [0] * len(low)
-    for _ in low:
-        one, other = np.unravel_index(int(gaps.argmin()), gaps.shape)
-        order[int(one)] = int(other)
-        gaps[one], gaps[:, other] = np.inf, np.inf
+    order, taken = [-1] * len(low), [False] * len(low)
+    nearest = np.argsort(gaps, axis=None, kind="stable")
+    for one, other in zip(*(k.tolist() for k in np.divmod(nearest, len(low))), strict=True):
+        if order[one] < 0 and not taken[other]:
+            order[one], taken[other] = other, True
     return order
 
 
