@@ -131,10 +131,11 @@ def is_convex(solid: Solid) -> bool:
 
 
 def _bends_inwards(mesh: Mesh, step: float) -> bool:
-    """Say whether an edge is concave by more than moving corners by some steps can make it.
+    """Say whether an edge is concave by more than rounding can make it.
 
-    So far beside the larger triangle as the smaller one reaches, its plane is moved as often more
-    as that is longer than its edge or its height.
+    Corners move by some steps. At the far corner of the smaller triangle the plane of the larger
+    one moves as many times more as that corner is farther away than the edge is long, or the
+    larger triangle high.
     """
     first, second = half_edges(mesh)
     points = mesh.vertices[mesh.faces].reshape(-1, 3)
