@@ -32,6 +32,11 @@ def _of(probe: Callable[..., list[Failure]], *settings: int) -> Callable[[int], 
     return lambda rounds: (probe(rounds, *settings), {})
 
 
+def _on_the_wall(triangles: int) -> Measured:
+    """Return the shares of proofs in the time that a writer waits for its file."""
+    return measures.shares_of_proofs(triangles, turns=7, clock=time.perf_counter)
+
+
 PROBES = [
     Probe("tetrahedra glued on a triangle", 20_000, _of(probes.glued_tetrahedra, 1)),
     Probe("(A & B) | (A - B) is A", 1000, _of(probes.parts_reunited, 2)),
@@ -47,6 +52,7 @@ PROBES = [
     Probe("crossings of nearly coincident parts", 10_000, measures.crossings),
     Probe("share of the proof in writing", 327_000, measures.shares_of_proofs),
     Probe("share of the proof in large files", 1_310_000, measures.shares_of_proofs),
+    Probe("share of the proof on the wall clock", 327_000, _on_the_wall),
     Probe("share of the checks in reading", 327_000, measures.shares_of_checks),
     Probe("jobs through a forked pool", 1000, measures.jobs_through_forks),
     Probe("memory after small operations", 100_000, measures.growth),

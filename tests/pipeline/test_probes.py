@@ -3,6 +3,7 @@
 `scripts/probes` runs the same functions at full counts.
 """
 
+import time
 from collections.abc import Callable
 
 import numpy as np
@@ -54,8 +55,9 @@ def test_points_on_half_spaces() -> None:
     assert probes.corner_of_a_box() == []
 
 
-def test_shares_of_proofs_are_told_of_each_form() -> None:
-    failed, shares = measures.shares_of_proofs(500, turns=1)
+@pytest.mark.parametrize("clock", [time.process_time, time.perf_counter])
+def test_shares_of_proofs_are_told_of_each_form(clock: measures.Clock) -> None:
+    failed, shares = measures.shares_of_proofs(500, 1, clock)
     assert failed == [] and {"stl", "stl as text", "ply", "vtu"} < set(shares)
     assert all(0 <= share < 1 for share in shares.values())
 
