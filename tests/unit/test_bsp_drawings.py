@@ -41,6 +41,18 @@ def test_round_trips_are_exact(suffix: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("suffix", ["svg", "dxf"])
+def test_drawings_far_out_and_of_large_and_small_parts_come_back(
+    suffix: str, tmp_path: Path
+) -> None:
+    small = R([[(0, 0), (1.5, 0), (0, 2.25)]], pitch=-6)
+    region = R.compose([R.empty(), small, R.rectangle(3e7, 2e7).translate(2, 0)])
+    path = tmp_path / f"region.{suffix}"
+    getattr(region, f"to_{suffix}")(path)
+    again = getattr(R, f"from_{suffix}")(path)
+    assert again == region and again.pitch == -6
+
+
+@pytest.mark.parametrize("suffix", ["svg", "dxf"])
 def test_the_empty_region_is_a_drawing_too(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"empty.{suffix}"
     getattr(R.empty(), f"to_{suffix}")(path)

@@ -16,6 +16,7 @@ from ...formats.source import limited_content
 from ...mesh.interop import optional
 from ...parameters import file_path, positive
 from ..sets.region import Region
+from ..trees.facets import chosen_pitch
 from .svg_tree import make_plain, name_of
 
 
@@ -51,14 +52,17 @@ def load_svg(
         If the file cannot be read, is no well-formed SVG, or declares an entity.
     """
     chord = positive(tolerance, "tolerance")
-    found = [Region(pitch=pitch)]
+    found: list[tuple[list[FloatArray], WindingRule]] = []
     for shape in shown_shapes(path, make_plain):
         if _is_filled(shape):
             with format_errors(os.fspath(path), "SVG"):
                 outlines = outlines_of(shape, _within(shape, chord))
                 loops = [corners for corners, _ in outlines if len(corners) >= 3]
-            found.append(Region(loops, winding=winding or _rule(shape), pitch=pitch))
-    return Region.compose(found)
+            found.append((loops, winding or _rule(shape)))
+    points = [np.zeros((0, 2)), *(corners for loops, _ in found for corners in loops)]
+    common = chosen_pitch(pitch, np.concatenate(points))
+    shapes = (Region(loops, winding=rule, pitch=common) for loops, rule in found)
+    return Region.compose([Region(pitch=common), *shapes])
 
 
 def shown_shapes(

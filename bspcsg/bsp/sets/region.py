@@ -172,7 +172,9 @@ class Region(PlaneQueries):
         parts = [of_kind(Region, part, "Each part") for part in regions]
         if not parts:
             return cls()
-        pitch = min(part.pitch for part in parts)
+        # Nothing and everything live on any lattice.
+        pitches = [part.pitch for part in parts if not (part.is_empty or part.is_full)]
+        pitch = min(pitches, default=parts[0].pitch)
         trees = [part.tree._refined(pitch) for part in parts]
         with core_errors():
             return cls._of(trees[0].composed(trees[1:]))
