@@ -126,6 +126,7 @@ class Tree:
         faces: npt.NDArray[np.int64],
         pitch: int | None = None,
         trusted: bool = False,
+        rounded: str | None = None,
     ) -> Tree: ...
     @classmethod
     def half_space(cls, hyperplane: list[int], pitch: int, rounded: str | None = None) -> Tree: ...

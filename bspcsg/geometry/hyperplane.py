@@ -123,6 +123,16 @@ class Hyperplane:
         off = turned * _REACH + abs(offset - scale * steps)
         return LatticeHyperplane([*normal, offset], float(off) / math.hypot(*normal) * 10.0**pitch)
 
+    def is_above_lattice(self, pitch: int) -> bool | None:
+        """Say on which side of the lattice of step ``10**pitch`` it lies; None if it crosses.
+
+        True if all of the lattice is on the minus side.
+        """
+        steps = self.offset / Fraction(10) ** pitch
+        if abs(steps) < sum(map(abs, self.normal)) * _REACH:
+            return None
+        return steps > 0
+
     @property
     def pitch(self) -> int:
         """The coarsest lattice that holds the hyperplane, from the default one down to 10**-12."""

@@ -7,7 +7,7 @@ from typing import Any, TypeVar, overload
 
 from .._core import CoreError, Tree
 from .._types import FloatArray, IndexArray, SetOp
-from ..errors import core_errors, invalid_parameter
+from ..errors import LimitError, core_errors, invalid_parameter
 from ..mesh import interop
 from ..solid.counting import counted
 from ..solid.leaf import at_pitch
@@ -155,7 +155,12 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     program = program_of(op, 2)
     trees = [_tree(va, fa), _tree(vb, fb)]
     pitch = min(tree.pitch for tree in trees)
-    operands = [at_pitch(tree, pitch) for tree in trees]
+    try:
+        operands = [at_pitch(tree, pitch) for tree in trees]
+    except LimitError:
+        # Solids find a lattice that holds both.
+        mesh = OPERATIONS[op](Solid(va, fa), Solid(vb, fb)).to_mesh()
+        return mesh.vertices.copy(), mesh.faces.copy()
     with core_errors():
         vertices, faces = Tree.evaluate(program, operands).to_mesh()
     return vertices, faces

@@ -5,7 +5,7 @@ A leaf answers with its tree at a pitch, and can be placed by a transform. Placi
 acts on the leaf's coordinates in one rounding, before they are snapped to the lattice again.
 """
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
@@ -57,6 +57,10 @@ class LastMoved:
         return moved
 
 
+#: The fewest steps across a mesh that may be rounded for others: import takes no fewer, either.
+_FEWEST_STEPS = 10**6
+
+
 class MeshLeaf:
     """A mesh as it was given.
 
@@ -91,6 +95,7 @@ class MeshLeaf:
         self._attributes = attributes
         self._tree: Tree | None = None
         self._before: FloatArray | None = None
+        self._rounded: str | None = None
         self._given_pitch = pitch
         self._is_mended = False
         self.last_moved = LastMoved()
@@ -136,6 +141,28 @@ class MeshLeaf:
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
         return _place(self, factors)
+
+    def coarsened(self, pitch: int) -> "MeshLeaf | None":
+        """Return the leaf rounded to a coarser lattice; None if its own was asked for."""
+        return self.rounded_to(pitch) if self._given_pitch is None else None
+
+    def rounded_to(self, pitch: int) -> "MeshLeaf | None":
+        """Return the leaf on a coarser lattice, with a note if that moves its corners.
+
+        None if they would move, and the mesh is small there.
+        """
+        vertices, faces = self.arrays()
+        is_exact = np.array_equal(np.round(vertices, -pitch), vertices)
+        if not is_exact and np.ptp(vertices, axis=0).max() < _FEWEST_STEPS * 10.0**pitch:
+            return None
+        leaf = MeshLeaf(vertices, faces, pitch, False, self._winding, self._attributes)
+        leaf._is_mended = self._is_mended
+        if not is_exact:
+            leaf._rounded = (
+                f"an operand was rounded to steps of 10^{pitch}, as another reaches beyond the"
+                f" lattice of its own pitch 10^{self.pitch}"
+            )
+        return leaf
 
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
@@ -184,7 +211,7 @@ class MeshLeaf:
 
     def _grow(self) -> Tree:
         with core_errors():
-            tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted)
+            tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted, self._rounded)
             # What crossed in doubles touches itself, and may cross on the lattice.
             if self._is_mended or self._winding != "positive":
                 tree = tree.normalized(self._winding)
@@ -237,13 +264,22 @@ class TreeLeaf:
 
         None if neither the solid nor its complement has an output mesh.
         """
+        return self._made_anew(lambda leaf: _moved_output(leaf, factors))
+
+    def coarsened(self, pitch: int) -> "ExpressionLeaf | None":
+        """Return the leaf of the output mesh rounded to a coarser lattice, or None as above."""
+        return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).rounded_to(pitch))
+
+    def _made_anew(self, make: "Callable[[TreeLeaf], MeshLeaf | None]") -> "ExpressionLeaf | None":
+        """Return what is made of the solid's mesh, or else the complement of that of its own."""
         if self._is_bounded():
-            return _moved_output(self, factors)
+            return make(self)
         outside = run(Record(COMPLEMENT, (self,)))
-        if not outside._is_bounded():
+        mesh = make(outside) if outside._is_bounded() else None
+        if mesh is None:
             return None
-        moved = run(Record(COMPLEMENT, (_moved_output(outside, factors),)))
-        return TreeLeaf(moved.result, extent=False, sayings=moved.sayings)
+        made = run(Record(COMPLEMENT, (mesh,)))
+        return TreeLeaf(made.result, extent=False, sayings=made.sayings)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
         """Return whether a mesh in the tree would cross itself once put on the lattice."""
@@ -295,6 +331,11 @@ class PlaneLeaf:
         plane = self.plane.on_lattice(pitch)
         with core_errors():
             return Tree.half_space(plane.row, pitch, plane.note)
+
+    def beyond(self, pitch: int) -> "ConstantLeaf | None":
+        """Return what the half-space is to a lattice if its plane lies beyond that."""
+        above = self.plane.is_above_lattice(pitch)
+        return None if above is None else ConstantLeaf(above)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the half-space moved by the factors, outermost first, in exact numbers."""
@@ -428,15 +469,64 @@ def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
 
 
 def run(record: Record) -> TreeLeaf:
-    """Evaluate a program on its leaves, all on the finest of their lattices."""
-    pitch = _common_pitch(record.leaves)
-    trees = [leaf.tree(pitch) for leaf in record.leaves]
-    with core_errors():
-        result = Tree.evaluate(record.program, trees)
+    """Evaluate a program on its leaves, all on one lattice (see `_on_one_lattice`)."""
     extents = [leaf.extent for leaf in record.leaves]
     extent = _EXTENTS.evaluate(record.program, extents)
-    operands = [(tree, leaf.sayings) for tree, leaf in zip(trees, record.leaves, strict=True)]
+    leaves, trees = _on_one_lattice(record.leaves, extent)
+    with core_errors():
+        result = Tree.evaluate(record.program, trees)
+    operands = [(tree, leaf.sayings) for tree, leaf in zip(trees, leaves, strict=True)]
     return TreeLeaf(result, record, extent, said_of(result, operands))
+
+
+def _on_one_lattice(
+    leaves: Sequence[ExpressionLeaf], extent: Extent
+) -> tuple[Sequence[ExpressionLeaf], list[Tree]]:
+    """Return leaves and their trees on the finest of their lattices, or the finest that holds all.
+
+    Parameters
+    ----------
+    leaves : sequence of leaves
+    extent : Extent
+        That of what becomes of them. If it is known, planes beyond the lattice have no part in it.
+    """
+    pitch = _common_pitch(leaves)
+    try:
+        return leaves, [leaf.tree(pitch) for leaf in leaves]
+    except LimitError:
+        coarser = _finest_for_all(leaves)
+        found = [_fitted(leaf, coarser, extent) for leaf in leaves]
+        fitted = [leaf for leaf in found if leaf is not None]
+        if len(fitted) < len(found):
+            raise
+        return fitted, [leaf.tree(coarser) for leaf in fitted]
+
+
+def _finest_for_all(leaves: Sequence[ExpressionLeaf]) -> int:
+    """Return the finest pitch at which every leaf of a coarser one stays on the lattice."""
+    own = sorted({leaf.pitch for leaf in leaves if leaf.pitch is not None})
+    between = range(own[0], own[-1]) if own else ()
+    held = (pitch for pitch in between if all(_is_held(leaf, pitch) for leaf in leaves))
+    return next(held, own[-1] if own else _common_pitch(leaves))
+
+
+def _is_held(leaf: ExpressionLeaf, pitch: int) -> bool:
+    if leaf.pitch is None or leaf.pitch <= pitch:
+        return True
+    try:
+        leaf.tree(pitch)
+    except LimitError:
+        return False
+    return True
+
+
+def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
+    """Return what stands for a leaf on a lattice that may be coarser than its own, if anything."""
+    if isinstance(leaf, PlaneLeaf):
+        return leaf if extent is None else leaf.beyond(pitch) or leaf
+    if isinstance(leaf, ConstantLeaf) or leaf.pitch is None or leaf.pitch >= pitch:
+        return leaf
+    return leaf if isinstance(leaf, TreeLeaf) and leaf.is_constant else leaf.coarsened(pitch)
 
 
 def _either(operands: Sequence[Extent]) -> Extent:

@@ -12,6 +12,7 @@ from ..errors import Finding, core_errors
 from ..mesh import interop
 from ..mesh.mesh import Mesh
 from ..parameters import at_least
+from .sides import sides_of
 
 #: The moduli of `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
@@ -208,16 +209,14 @@ class Measured(ABC):
         Parameters
         ----------
         points : (k, 3) array_like of float
-            In model units; snapped to the lattice.
+            In model units; snapped to the lattice. What is bounded may be asked about any point.
 
         Returns
         -------
         (k,) int8
             +1 inside, 0 on the boundary, -1 outside.
         """
-        array = interop.points_array(points)
-        with core_errors():
-            return self.normalized().tree.classify(array)
+        return sides_of(interop.points_array(points), self.normalized().tree)
 
 
 def volume_near(solid: Measured) -> Fraction:

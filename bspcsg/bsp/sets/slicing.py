@@ -55,9 +55,16 @@ def _sections(
     products = [_product(direction, offset, origin) for offset in offsets]
     planes = [Hyperplane.from_numbers(direction.tolist(), product) for product in products]
     tree = solid.normalized().tree
+    # Beyond the lattice, nothing of what is bounded is cut.
+    is_met = [plane.is_above_lattice(tree.pitch) is None for plane in planes]
+    if not all(is_met) and not solid.is_bounded:
+        is_met = [True] * len(planes)
+    met = [plane for plane, meets in zip(planes, is_met, strict=True) if meets]
     with core_errors():
-        sections = tree.sections([plane.on_lattice(tree.pitch).row for plane in planes])
-    return [_region(edges, direction, tree.pitch) for edges in sections]
+        sections = iter(tree.sections([plane.on_lattice(tree.pitch).row for plane in met]))
+    nothing = np.zeros((0, 6))
+    found = [next(sections) if meets else nothing for meets in is_met]
+    return [_region(edges, direction, tree.pitch) for edges in found]
 
 
 def _region(edges: FloatArray, normal: FloatArray, pitch: int) -> Region:

@@ -9,6 +9,7 @@ from ..._types import Scalar, SetOp, SideArray
 from ...errors import core_errors, invalid_parameter
 from ...parameters import shown
 from ...solid.point_set import PointSet
+from ...solid.sides import sides_of
 from .rows import point_rows
 
 if TYPE_CHECKING:
@@ -77,16 +78,15 @@ class TreeSet(PointSet):
         Parameters
         ----------
         points : (k, d) array_like of float
-            In model units, snapped to the lattice; on the line (k,) will do.
+            In model units, snapped to the lattice; on the line (k,) will do. What is bounded may be
+            asked about any point.
 
         Returns
         -------
         (k,) int8
             +1 inside, 0 on the boundary, -1 outside.
         """
-        array = point_rows(points, self.dimension)
-        with core_errors():
-            return self._tree.classify(array)
+        return sides_of(point_rows(points, self.dimension), self._tree)
 
     @property
     def measure(self) -> Fraction:

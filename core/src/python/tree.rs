@@ -26,7 +26,7 @@ use crate::merge::descent::descend::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
 use crate::merge::expression::{Expression, Term};
 use crate::merge::rule::Rule;
-use crate::mesh::finding::Finding;
+use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::half_space::{bounding_plane, half_space};
 use crate::mesh::import::import;
@@ -142,10 +142,15 @@ impl Tree {
     }
 }
 
+/// That the coordinates of an operand were rounded to a coarser lattice.
+fn operand_rounded(text: String) -> Finding {
+    Finding::about("operand_rounded", Severity::Note, &[0], text)
+}
+
 #[pymethods]
 impl Tree {
     #[classmethod]
-    #[pyo3(signature = (vertices, faces, pitch=None, trusted=false))]
+    #[pyo3(signature = (vertices, faces, pitch=None, trusted=false, rounded=None))]
     fn from_mesh(
         _cls: &Bound<'_, PyType>,
         py: Python<'_>,
@@ -153,6 +158,7 @@ impl Tree {
         faces: PyReadonlyArray2<'_, i64>,
         pitch: Option<i64>,
         trusted: bool,
+        rounded: Option<String>,
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
         let vertices = rows(&vertices, "vertices").map_err(fail)?;
@@ -167,6 +173,7 @@ impl Tree {
                 Ok(inputs)
             })
         })?;
+        let source = source.noting(rounded.map(operand_rounded).into_iter().collect());
         Ok(Self::of(Solid::of_source(Arc::new(source), trusted)))
     }
 

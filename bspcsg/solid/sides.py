@@ -1,0 +1,36 @@
+"""The sides of points that may lie beyond the lattice."""
+
+from typing import Protocol
+
+import numpy as np
+
+from .._types import FloatArray, SideArray
+from ..errors import core_errors
+from ..geometry.transform import LATTICE_REACH
+
+
+class Classifying(Protocol):
+    """A tree of the core that tells where points lie."""
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step."""
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if the set fits into some box."""
+
+    def classify(self, points: FloatArray, /) -> SideArray:
+        """Say of each point of the lattice whether it is inside."""
+
+
+def sides_of(points: FloatArray, tree: Classifying) -> SideArray:
+    """Say of each point whether it is inside; beyond the lattice nothing that is bounded is."""
+    largest = np.abs(points).max(axis=1, initial=0.0)
+    is_far = np.isfinite(largest) & (largest >= LATTICE_REACH * 10.0**tree.pitch)
+    with core_errors():
+        if not is_far.any() or not tree.is_bounded:
+            return tree.classify(points)
+        sides = np.full(len(points), -1, dtype=np.int8)
+        sides[~is_far] = tree.classify(points[~is_far])
+    return sides

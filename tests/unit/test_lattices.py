@@ -1,0 +1,126 @@
+"""Operands that one lattice of the finest step does not hold, and what lies beyond the lattice."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg import Solid
+
+CUBE = b.box(1, 2.5, 3)
+LARGE = b.box(2e8, 2e8, 2e8, center=True)
+
+
+def told(solid: Solid) -> list[str]:
+    return [finding.code for finding in solid.findings]
+
+
+def evaluated(solid: Solid) -> Solid:
+    assert solid.volume > 0
+    return solid
+
+
+@pytest.mark.parametrize("prepare", [lambda solid: solid, evaluated])
+def test_small_and_large_solids_meet_on_one_lattice(prepare: Callable[[Solid], Solid]) -> None:
+    small = prepare(CUBE - b.cube(0.5))
+    assert small.pitch == -9 and LARGE.pitch == -6
+    inside = small & LARGE
+    assert inside.pitch == -7 and inside.volume == 7.5 - 0.125
+    assert inside == small.translate(0, 0, 0) and "operand_rounded" not in told(inside)
+    assert (LARGE | small).volume == 8e24 and (small - LARGE).is_empty
+    assert (LARGE ^ small).exact_volume() == LARGE.exact_volume() - inside.exact_volume()
+
+
+@pytest.mark.parametrize("prepare", [lambda solid: solid, evaluated])
+def test_an_operand_that_has_to_be_rounded_says_so(prepare: Callable[[Solid], Solid]) -> None:
+    ball = prepare(b.sphere(1, segments=12).rotate((10, 20, 30)))
+    inside = ball & LARGE
+    assert "operand_rounded" in told(inside) and "operand_rounded" not in told(ball)
+    assert inside.volume == pytest.approx(ball.volume, abs=1e-6)
+    assert np.abs(inside.vertices - ball.vertices).max() <= 0.5e-7
+
+
+@pytest.mark.parametrize("prepare", [lambda solid: solid, evaluated])
+def test_no_operand_is_rounded_that_would_lose_its_shape(
+    prepare: Callable[[Solid], Solid],
+) -> None:
+    ball = prepare(b.sphere(1, segments=12))
+    for solid in (ball, ~ball, prepare(ball - b.cube(1e-3))):
+        with pytest.raises(b.LimitError, match="2\\^53 steps"):
+            (solid & b.cube(1e11)).volume  # noqa: B018
+    assert (prepare(CUBE) & b.cube(1e11)).volume == 7.5
+
+
+def test_complements_meet_large_solids_too() -> None:
+    outside = evaluated(~(~b.cube(1) & ~b.cube(2)))
+    assert (evaluated(LARGE) - outside).exact_volume() == LARGE.exact_volume() - 8
+    hollow = Solid.full() - b.cube(1)
+    assert hollow.classify([[0.5, 0.5, 0.5]])[0] == -1
+    assert (hollow & LARGE).exact_volume() == LARGE.exact_volume() - 1
+
+
+def test_words_on_faces_stay_with_an_operand_that_is_rounded() -> None:
+    painted = b.sphere(1, segments=8).rotate(10).tagged(part="ball")
+    mesh = (painted & LARGE).to_mesh()
+    assert mesh.face_attributes["part"].tolist() == ["ball"] * len(mesh.faces)
+
+
+def test_a_pitch_that_was_asked_for_is_kept_or_refused() -> None:
+    mesh = CUBE.to_mesh()
+    asked = Solid(mesh.vertices, mesh.faces, pitch=-9)
+    with pytest.raises(b.LimitError, match="2\\^53 steps"):
+        (asked & LARGE).volume  # noqa: B018
+
+
+def test_arrays_of_small_and_large_meshes() -> None:
+    small, large = CUBE.to_mesh(), LARGE.to_mesh()
+    vertices, faces = b.boolean(
+        small.vertices, small.faces, large.vertices, large.faces, "intersection"
+    )
+    assert Solid(vertices, faces) == CUBE
+
+
+@pytest.mark.parametrize("far", [1e8, 1e12, 1e30])
+def test_planes_beyond_the_lattice_take_all_or_nothing(far: float) -> None:
+    below, beyond = b.half_space((1, 2, 3), far), b.half_space((1, 2, 3), -far)
+    assert (CUBE & below) == CUBE and (CUBE - below).is_empty
+    assert (CUBE & beyond).is_empty and (CUBE - beyond) == CUBE
+    assert (CUBE & below).pitch == -9
+    assert CUBE.trim("x", far).is_empty and CUBE.trim((-1, 0, 0), -far) == CUBE
+    minus, plus = CUBE.split("z", far)
+    assert minus == CUBE and plus.is_empty
+    assert (~(~CUBE | beyond)).volume == (CUBE - beyond).volume == 7.5
+
+
+def test_what_reaches_beyond_the_lattice_is_refused_where_the_plane_matters() -> None:
+    with pytest.raises(b.LimitError):
+        (CUBE | b.half_space("x", -1e12)).is_empty  # noqa: B018
+
+
+def test_sections_beyond_the_lattice_are_empty() -> None:
+    assert CUBE.slice(1e12).is_empty
+    assert [region.area for region in CUBE.slice([-1e8, 1, 1e8, 2], "z")] == [0, 2.5, 0, 2.5]
+    column = b.half_space("z", 0) & b.half_space("x", 1) & b.half_space((-1, 0, 0), 1)
+    with pytest.raises(b.UnboundedError):
+        column.slice(1e12)
+
+
+def test_points_beyond_the_lattice_are_outside_of_what_is_bounded() -> None:
+    points = [[1e8, 0, 0], [0.5, 0.5, 0.5], [0, -1e300, 0], [0, 0, 0]]
+    assert CUBE.classify(points).tolist() == [-1, 1, -1, 0]
+    assert (1e9, 0.5, 0.5) not in CUBE
+    disc = b.Region.circle(1)
+    assert disc.classify([[1e8, 0], [0, 0]]).tolist() == [-1, 1]
+    assert b.bsp.Intervals([(0, 1)]).classify([1e8, 0.5]).tolist() == [-1, 1]
+
+
+@pytest.mark.parametrize("points", [[[np.inf, 0, 0]], [[np.nan, 0, 0]], [[1e8, np.nan, 0]]])
+def test_points_that_are_no_numbers_are_refused(points: list[list[float]]) -> None:
+    with pytest.raises(b.BspcsgError, match=r"finite|beyond"):
+        CUBE.classify(points)
+
+
+def test_points_far_out_are_refused_where_they_may_be_inside() -> None:
+    with pytest.raises(b.LimitError):
+        (~CUBE).classify([[1e8, 0, 0]])
