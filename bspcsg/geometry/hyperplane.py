@@ -24,6 +24,7 @@ import numpy as np
 
 from .._core import normal_bits
 from ..errors import InvalidMeshError
+from ..parameters import MOST_PITCH
 
 #: Exponent of the lattice step for sets that any lattice can hold.
 DEFAULT_PITCH = -9
@@ -135,11 +136,16 @@ class Hyperplane:
 
     @property
     def pitch(self) -> int:
-        """The coarsest lattice that holds the hyperplane, from the default one down to 10**-12."""
-        for pitch in range(DEFAULT_PITCH, _FINEST_PITCH - 1, -1):
-            if self.on_lattice(pitch).moved is None:
+        """The coarsest lattice that holds the hyperplane, from the default one down to 10**-12.
+
+        One that the default does not reach asks for a coarser one by powers of 1000, as meshes do.
+        """
+        within = range(DEFAULT_PITCH, MOST_PITCH, 3)
+        coarsest = next((p for p in within if self.is_above_lattice(p) is None), DEFAULT_PITCH)
+        for pitch in range(coarsest, _FINEST_PITCH - 1, -1):
+            if self.is_above_lattice(pitch) is None and self.on_lattice(pitch).moved is None:
                 return pitch
-        return DEFAULT_PITCH
+        return coarsest
 
     def _as_a_coordinate(self, pitch: int) -> Fraction:
         """Return the offset as that of a mesh's coordinate: halves go where its double lies."""

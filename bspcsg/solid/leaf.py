@@ -22,6 +22,7 @@ from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
+from ..parameters import MOST_PITCH
 from .moving import SaidMesh
 from .program import COMPLEMENT, Algebra
 from .sewing import sewn
@@ -143,10 +144,6 @@ class MeshLeaf:
         return _place(self, factors)
 
     def coarsened(self, pitch: int) -> "MeshLeaf | None":
-        """Return the leaf rounded to a coarser lattice; None if its own was asked for."""
-        return self.rounded_to(pitch) if self._given_pitch is None else None
-
-    def rounded_to(self, pitch: int) -> "MeshLeaf | None":
         """Return the leaf on a coarser lattice, with a note if that moves its corners.
 
         None if they would move, and the mesh is small there.
@@ -267,8 +264,8 @@ class TreeLeaf:
         return self._made_anew(lambda leaf: _moved_output(leaf, factors))
 
     def coarsened(self, pitch: int) -> "ExpressionLeaf | None":
-        """Return the leaf of the output mesh rounded to a coarser lattice, or None as above."""
-        return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).rounded_to(pitch))
+        """Return the leaf of the output mesh on a coarser lattice, or None as above."""
+        return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch))
 
     def _made_anew(self, make: "Callable[[TreeLeaf], MeshLeaf | None]") -> "ExpressionLeaf | None":
         """Return what is made of the solid's mesh, or else the complement of that of its own."""
@@ -494,7 +491,7 @@ def _on_one_lattice(
     try:
         return leaves, [leaf.tree(pitch) for leaf in leaves]
     except LimitError:
-        coarser = _finest_for_all(leaves)
+        coarser = _finest_for_all(leaves, extent)
         found = [_fitted(leaf, coarser, extent) for leaf in leaves]
         fitted = [leaf for leaf in found if leaf is not None]
         if len(fitted) < len(found):
@@ -502,15 +499,17 @@ def _on_one_lattice(
         return fitted, [leaf.tree(coarser) for leaf in fitted]
 
 
-def _finest_for_all(leaves: Sequence[ExpressionLeaf]) -> int:
+def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
     """Return the finest pitch at which every leaf of a coarser one stays on the lattice."""
-    own = sorted({leaf.pitch for leaf in leaves if leaf.pitch is not None})
-    between = range(own[0], own[-1]) if own else ()
-    held = (pitch for pitch in between if all(_is_held(leaf, pitch) for leaf in leaves))
-    return next(held, own[-1] if own else _common_pitch(leaves))
+    finest = _common_pitch(leaves)
+    coarser = range(finest, MOST_PITCH)
+    held = (pitch for pitch in coarser if all(_is_held(leaf, pitch, extent) for leaf in leaves))
+    return next(held, finest)
 
 
-def _is_held(leaf: ExpressionLeaf, pitch: int) -> bool:
+def _is_held(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
+    if isinstance(leaf, PlaneLeaf):
+        return extent is not None or leaf.beyond(pitch) is None
     if leaf.pitch is None or leaf.pitch <= pitch:
         return True
     try:

@@ -243,13 +243,30 @@ def test_a_plane_at_a_coordinate_of_a_mesh_meets_its_face(height: float) -> None
     assert not box.slice(height).is_empty
 
 
-def test_planes_that_miss_the_lattice_are_refused() -> None:
-    for normal, offset in [((1, 0, 0), 1e8), ((1, 1, 1), 1e8), ((1e-300, 0, 0), 1e300)]:
+def test_planes_that_miss_every_lattice_are_refused() -> None:
+    for normal, offset in [((1, 0, 0), 1e40), ((1, 1, 1), 1e40), ((1e-300, 0, 0), 1e300)]:
         with pytest.raises(b.LimitError) as raised:
             b.half_space(normal, offset).classify([(0, 0, 0)])
         assert raised.value.code == "too_large"
     with pytest.raises(b.LimitError):
-        bsp.Region.half_plane((1, 0), 1e8)
+        bsp.Region.half_plane((1, 0), 1e40)
+
+
+@pytest.mark.parametrize("size", [1e8, 1e12, 1e30])
+def test_planes_far_out_are_the_ones_that_were_asked_for(size: float) -> None:
+    far = b.half_space((1, 0, 0), size)
+    assert far.classify([(size, 0, 0), (size / 2, 0, 0), (1.25 * size, 0, 0)]).tolist() == [
+        0,
+        1,
+        -1,
+    ]
+    slanted = b.half_space((1, 1, 1), size)
+    assert slanted.classify([(size / 2, size / 4, size / 4), (size, 0, size / 8)]).tolist() == [
+        0,
+        -1,
+    ]
+    plane = bsp.Region.half_plane((1, 0), size)
+    assert plane.classify([(size, 0), (0, 0), (1.25 * size, 0)]).tolist() == [0, 1, -1]
     # A corner of the lattice is farther out than its faces.
     assert (b.half_space((1, 1, 1), 2e7) & b.cube(1)).volume == 1
 

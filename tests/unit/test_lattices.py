@@ -66,11 +66,12 @@ def test_words_on_faces_stay_with_an_operand_that_is_rounded() -> None:
     assert mesh.face_attributes["part"].tolist() == ["ball"] * len(mesh.faces)
 
 
-def test_a_pitch_that_was_asked_for_is_kept_or_refused() -> None:
+def test_what_is_made_of_small_and_large_solids_meets_too() -> None:
+    part = b.cube(1e8) - b.sphere(1, segments=8)
+    assert part.offset(5).volume == pytest.approx(b.cube(1e8).offset(5).volume, rel=1e-12)
+    assert part.rotate(30).volume == pytest.approx(1e24)
     mesh = CUBE.to_mesh()
-    asked = Solid(mesh.vertices, mesh.faces, pitch=-9)
-    with pytest.raises(b.LimitError, match="2\\^53 steps"):
-        (asked & LARGE).volume  # noqa: B018
+    assert (Solid(mesh.vertices, mesh.faces, pitch=-9) & LARGE) == CUBE
 
 
 def test_arrays_of_small_and_large_meshes() -> None:
@@ -93,9 +94,21 @@ def test_planes_beyond_the_lattice_take_all_or_nothing(far: float) -> None:
     assert (~(~CUBE | beyond)).volume == (CUBE - beyond).volume == 7.5
 
 
-def test_what_reaches_beyond_the_lattice_is_refused_where_the_plane_matters() -> None:
+def test_planes_beyond_the_lattice_of_a_mesh_count_where_they_matter() -> None:
+    far = b.half_space("x", -1e12)
+    both = CUBE | far
+    assert both.pitch == -3
+    points = [[0.5, 0.5, 0.5], [2, 0.5, 0.5], [-1.1e12, 0, 0], [-1e12, 7, 7]]
+    assert both.classify(points).tolist() == [1, -1, 1, 0]
     with pytest.raises(b.LimitError):
-        (CUBE | b.half_space("x", -1e12)).is_empty  # noqa: B018
+        (b.sphere(1) | far).is_empty  # noqa: B018
+
+
+def test_planes_alone_choose_a_lattice_that_reaches_them() -> None:
+    sides = [b.half_space(normal, 5e9) for normal in np.vstack([np.eye(3), -np.eye(3)])]
+    assert b.intersection(sides) == b.cube(1e10).translate(-5e9, -5e9, -5e9)
+    assert (b.half_space("x", 1e12) - b.half_space("x", 1)).classify([[2, 0, 0]]).tolist() == [1]
+    assert b.cube(1e8).offset(-5).volume == (1e8 - 10) ** 3
 
 
 def test_sections_beyond_the_lattice_are_empty() -> None:
