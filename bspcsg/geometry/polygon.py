@@ -7,6 +7,7 @@ from typing import Any
 import manifold3d
 import numpy as np
 
+from .._core import outline_triangles
 from .._types import FloatArray, IndexArray
 from ..errors import invalid_parameter
 from .arrays import doubles
@@ -70,8 +71,19 @@ def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
     The directed edges that no other triangle cancels are exactly those of the contours, whatever
     the input; triangles overlap only if the contours cross.
     """
-    triangles = np.asarray(manifold3d.triangulate(list(contours)), dtype=np.int64).reshape(-1, 3)
-    return triangles if _has_border(triangles, contours) else _fans(contours)
+    edges = directed_edges(contours)
+    many = outline_triangles(np.concatenate(contours), edges) if len(edges) > _FEW else None
+    triangles = many if many is not None else _few_triangles(contours)
+    return triangles if _has_border(triangles, edges) else _fans(contours)
+
+
+#: Corners up to which manifold3d is quick; beyond, it takes the square of their number, and needles
+#: that import takes the square of, too.
+_FEW = 200
+
+
+def _few_triangles(contours: Sequence[FloatArray]) -> IndexArray:
+    return np.asarray(manifold3d.triangulate(list(contours)), dtype=np.int64).reshape(-1, 3)
 
 
 def triangulate_face(corners: FloatArray) -> IndexArray:
@@ -207,22 +219,34 @@ def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
 def _contains(outer: FloatArray, inner: FloatArray) -> bool:
     """Say whether most corners and edge midpoints of `inner` are inside; some may touch `outer`."""
     probes = np.concatenate([inner, (inner + np.roll(inner, -1, axis=0)) / 2])
-    return bool(np.mean([_crossings(outer, probe) % 2 for probe in probes]) > 0.5)
+    is_near = ((probes >= outer.min(axis=0)) & (probes <= outer.max(axis=0))).all(axis=1)
+    if 2 * is_near.sum() <= len(probes):
+        return False
+    together = max(1, _PAIRS // len(outer))
+    near = probes[is_near]
+    parts = [near[start : start + together] for start in range(0, len(near), together)]
+    inside = sum(int((_crossings(outer, part) % 2).sum()) for part in parts)
+    return 2 * inside > len(probes)
 
 
-def _crossings(contour: FloatArray, point: FloatArray) -> int:
-    """Count the edges that a ray from the point to the right crosses."""
+#: Pairs of a point and an edge that are looked at together.
+_PAIRS = 1 << 16
+
+
+def _crossings(contour: FloatArray, points: FloatArray) -> IndexArray:
+    """Count for each point the edges that a ray from there to the right crosses."""
     start, end = contour, np.roll(contour, -1, axis=0)
-    spans = (start[:, 1] <= point[1]) != (end[:, 1] <= point[1])
-    start, end = start[spans], end[spans]
-    along = (point[1] - start[:, 1]) / (end[:, 1] - start[:, 1])
-    return int((start[:, 0] + along * (end[:, 0] - start[:, 0]) > point[0]).sum())
+    y = points[:, 1:]
+    point, edge = np.nonzero((start[:, 1] <= y) != (end[:, 1] <= y))
+    start, end = start[edge], end[edge]
+    along = (points[point, 1] - start[:, 1]) / (end[:, 1] - start[:, 1])
+    crossed = start[:, 0] + along * (end[:, 0] - start[:, 0]) > points[point, 0]
+    return np.bincount(point[crossed], minlength=len(points))
 
 
-def _has_border(triangles: IndexArray, contours: Sequence[FloatArray]) -> bool:
-    """Say whether the triangles' directed edges cancel to those of the contours."""
-    count = sum(len(contour) for contour in contours)
-    border = directed_edges(contours)
+def _has_border(triangles: IndexArray, border: IndexArray) -> bool:
+    """Say whether the triangles' directed edges cancel to those of a border."""
+    count = len(border)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     balance = np.concatenate([edges, border[:, ::-1]])
     forward = np.sort(balance[:, 0] * count + balance[:, 1])

@@ -98,6 +98,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(numbers::are_words, module)?)?;
     module.add_function(wrap_pyfunction!(numbers::are_triangles, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::welded_points, module)?)?;
+    module.add_function(wrap_pyfunction!(surfaces::outline_triangles, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::surfaces_of, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::mesh_counts, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::mesh_measures, module)?)?;

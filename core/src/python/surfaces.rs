@@ -3,10 +3,11 @@
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use super::arrays::{array, rows, triangles_of};
+use super::arrays::{array, rows, triangles_of, wide};
 use super::calls::errors::to_python;
 use super::calls::run::run;
 use crate::error::{Error, ErrorKind};
+use crate::extract::outlines::triangulate_outlines;
 use crate::mesh::measures::measures;
 use crate::mesh::surfaces::{counts, surfaces};
 use crate::mesh::weld::welded;
@@ -28,6 +29,37 @@ pub fn welded_points<'py>(
     let found = run(py, 0, points.len(), || Ok(welded(&points)))?;
     let same = found.same.into_iter().map(i64::from).collect();
     Ok((array(py, found.points)?, PyArray1::from_vec(py, same)))
+}
+
+/// Triangles of what lies on the left of edges between points of the plane; None if these are not the
+/// boundary of a region.
+#[pyfunction]
+pub fn outline_triangles<'py>(
+    py: Python<'py>,
+    points: PyReadonlyArray2<'py, f64>,
+    edges: PyReadonlyArray2<'py, i64>,
+) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
+    let fail = |e: Error| to_python(py, &e);
+    let points = rows::<f64, 2>(&points, "points").map_err(fail)?;
+    let edges = rows::<i64, 2>(&edges, "edges").map_err(fail)?;
+    let number = |end: i64| {
+        u32::try_from(end)
+            .ok()
+            .filter(|n| (*n as usize) < points.len())
+    };
+    let ends = edges
+        .iter()
+        .map(|[from, to]| Some((number(*from)?, number(*to)?)));
+    let Some(ends) = ends.collect::<Option<Vec<_>>>() else {
+        let text = "an edge names a point that does not exist";
+        return Err(to_python(py, &Error::new(ErrorKind::IndexOutOfRange, text)));
+    };
+    let found = run(py, 0, ends.len(), || {
+        Ok(triangulate_outlines(&points, &ends))
+    })?;
+    found
+        .map(|triangles| array(py, wide(&triangles)))
+        .transpose()
 }
 
 /// For each triangle the number of its connected surface.
