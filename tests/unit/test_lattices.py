@@ -137,3 +137,27 @@ def test_points_that_are_no_numbers_are_refused(points: list[list[float]]) -> No
 def test_points_far_out_are_refused_where_they_may_be_inside() -> None:
     with pytest.raises(b.LimitError):
         (~CUBE).classify([[1e8, 0, 0]])
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_random_small_and_large_solids_agree_with_their_points(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    size = 10.0 ** rng.integers(7, 10)
+    large = [
+        b.box(size, size, size, center=True),
+        b.sphere(size, segments=8).rotate((rng.uniform(0, 90), 7, 0)),
+        b.box(size, 2, 2, center=True).rotate(rng.uniform(0, 90)),
+    ][seed % 3].translate(rng.uniform(-0.7, 0.7) * size, 0, 0)
+    place = rng.uniform(-1, 1, 3) * rng.choice([1.0, size / 4])
+    shapes = [b.sphere(50, segments=12), b.torus(40, 9, segments=8), b.box(30, 40, 50).rotate(9)]
+    small = shapes[rng.integers(3)].translate(place)
+    if rng.random() < 0.5:
+        small -= b.half_space((1, 2, 3), float(place @ (1, 2, 3)))
+    if rng.random() < 0.5:
+        evaluated(small)
+    if rng.random() < 0.2:
+        small = ~small
+    points = place + rng.uniform(-60, 60, (60, 3))
+    p, q = large.classify(points) > 0, small.classify(points) > 0
+    found = [one.classify(points) > 0 for one in (large | small, large & small, large - small)]
+    assert np.array_equal(found, [p | q, p & q, p & ~q])
