@@ -33,6 +33,7 @@ __all__ = [
     "mesh_moved",
     "normal_bits",
     "numbers_in_rows",
+    "outline_triangles",
     "set_threads",
     "suited_pitch",
     "surfaces_of",
