@@ -347,9 +347,9 @@ fn split_faces(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::extract::mesh::edges;
     use crate::merge::expression::Term;
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
+    use crate::mesh::faces::edges;
 
     /// The directed edges of a mesh, sorted.
     fn sorted_edges(mesh: &ExactMesh) -> Vec<[VertexId; 2]> {

@@ -47,12 +47,6 @@ pub fn outward_normal(face: OrientedFace, sources: &Sources) -> [i128; 3] {
     normal.map(|c| face.orientation.signed(c))
 }
 
-/// The directed edges of a triangle, each from a corner to the next.
-#[inline]
-pub fn edges([a, b, c]: [VertexId; 3]) -> [[VertexId; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
-}
-
 /// The numbers of vertices once those that are not used are left out; the others keep their order.
 pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
     let number = |next: &mut u32, used: &bool| {
@@ -83,12 +77,6 @@ pub struct Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_triangle_has_its_edges_in_its_direction() {
-        let edges = edges([4, 7, 9].map(VertexId));
-        assert_eq!(edges.map(|e| e.map(|v| v.0)), [[4, 7], [7, 9], [9, 4]]);
-    }
 
     #[test]
     fn vertices_that_are_left_are_numbered_in_their_order() {

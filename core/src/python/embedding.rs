@@ -8,9 +8,9 @@ use super::arrays::{array, rows, triangles_of, wide};
 use super::calls::errors::to_python;
 use super::calls::run::run;
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::{all_faults, Faults};
 use crate::extract::rounding::settle::{settle_in_single, settle_moved, Rounded, Settled};
+use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 use crate::mesh::handle::VertexId;
 

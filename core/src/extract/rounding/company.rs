@@ -4,28 +4,9 @@ use std::ops::Range;
 
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
-use crate::geometry::doubles::{Point, Triangle};
-use crate::mesh::handle::VertexId;
+use crate::geometry::doubles::Point;
+use crate::mesh::faces::Faces;
 use crate::mesh::tasks::{each, fill_chunks, Worth, CHUNK};
-
-/// A mesh in doubles, closed by index.
-#[derive(Clone, Copy, Debug)]
-pub struct Faces<'a> {
-    /// The vertices.
-    pub vertices: &'a [Point],
-    /// The triangles, each directed edge with one opposite.
-    pub triangles: &'a [[VertexId; 3]],
-}
-
-impl Faces<'_> {
-    /// The corners of a triangle.
-    #[inline]
-    pub fn corners(&self, triangle: u32) -> Triangle {
-        let [a, b, c] = self.triangles[triangle as usize];
-        let at = |vertex: VertexId| self.vertices[vertex.place()];
-        [at(a), at(b), at(c)]
-    }
-}
 
 /// The most cells along an axis: the grid then fits into a cache, and the number of a cell into
 /// sixteen bits.
@@ -315,6 +296,7 @@ impl Grid {
 mod tests {
     use super::*;
     use crate::geometry::doubles::extent::Extent;
+    use crate::mesh::handle::VertexId;
 
     /// Small triangles in a cube, their places taken from numbers that look random.
     fn scattered(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {

@@ -5,10 +5,9 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::company::{in_company, Faces};
+use super::company::in_company;
 use super::image::Image;
 use super::star::is_star_shaped;
-use super::terrains::terrains;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::meeting::{
     are_clear, folds_over, has_no_area, interleave, meeting_of, passes, Meeting,
@@ -16,8 +15,10 @@ use crate::geometry::doubles::meeting::{
 use crate::geometry::doubles::{Facing, Point, Triangle};
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
+use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, each, each_chunk, Worth, CHUNK};
+use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 
 /// The faults that keep a mesh from being embedded.
@@ -314,7 +315,7 @@ impl<'a> Search<'a> {
         };
         let search = Self { candidates, image };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
-        let parts = Part::of(boxes.collect()).divided(SHARE);
+        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(SHARE);
         let found = each(Worth::Pool, parts, |part| search.kept(part));
         found.into_iter().fold(K::default(), K::with)
     }

@@ -9,7 +9,6 @@ pub mod round;
 pub mod settle;
 pub mod snapping;
 mod star;
-mod terrains;
 mod touching;
 pub mod unfold;
 mod upright;

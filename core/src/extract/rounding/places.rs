@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
-use super::company::Faces;
 use super::crossings::Faults;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
+use crate::mesh::faces::Faces;
 
 /// For each pair of triangles that cross, a point about in the middle of what they have in common.
 pub fn places(faces: &Faces, found: &Faults) -> Vec<Point> {

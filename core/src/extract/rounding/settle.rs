@@ -2,15 +2,16 @@
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
-use super::company::{in_company, Faces};
+use super::company::in_company;
 use super::crossings::{all_faults, faults, Faults};
 use super::mend::{Mending, Precision};
 use super::snapping::crossed;
 use crate::arith::convert::as_number;
-use crate::extract::mesh::edges;
 use crate::geometry::doubles::Point;
 use crate::geometry::vertex::Vertex;
 use crate::mesh::chain::is_closed;
+use crate::mesh::faces::edges;
+use crate::mesh::faces::Faces;
 use crate::mesh::grid::{snap_point, Pitch};
 use crate::mesh::handle::VertexId;
 use crate::mesh::snap::snap_all;

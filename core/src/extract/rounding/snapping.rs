@@ -5,12 +5,12 @@
 //! rounded to doubles in their turn, each shift in another way: what touches on the lattice is looked
 //! at wherever it is made into a mesh.
 
-use super::company::Faces;
 use super::crossings::{all_faults, close_pairs, crossings_among, faults, Faults};
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
 use crate::geometry::spaces::motion::Motion;
+use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;

@@ -2,13 +2,13 @@
 //! lattice (`merge::simple::star`): where a point lies behind the planes of all faces, and a ray from
 //! it leaves through one of them, no two cross.
 
-use super::company::Faces;
 use crate::arith::convert::{as_double, as_number};
 use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
 use crate::geometry::side::Side;
 use crate::mesh::chain::is_closed;
+use crate::mesh::faces::Faces;
 
 /// Return whether a mesh is closed by index and star-shaped about the mean of its vertices; errs on
 /// no.

@@ -8,11 +8,12 @@ use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::convert::as_place;
 use crate::arith::Sign;
-use crate::extract::mesh::{edges, outward_normal, Corner, ExactMesh, Mesh};
+use crate::extract::mesh::{outward_normal, Corner, ExactMesh, Mesh};
 use crate::geometry::doubles::{seen_along, turn};
 use crate::geometry::plane::Plane;
 use crate::geometry::side::Orientation;
 use crate::merge::lists::list::Sources;
+use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 /// Swaps tried per triangle found turned over; each lowers the number of such triangles.

@@ -10,13 +10,13 @@
     reason = "equal coordinates are meant to the last bit"
 )]
 
-use super::company::Faces;
 use crate::arith::Sign;
 use crate::extract::mesh::{outward_normal, Corner, ExactMesh};
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
+use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 
 /// Different coordinates up to so many steps have different nearest doubles: one step is at least

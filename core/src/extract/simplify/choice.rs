@@ -4,8 +4,8 @@ use super::edit::{Act, Edit, Limits, MOST_AROUND};
 use super::sizes::{height, lengths};
 use super::surface::Surface;
 use crate::arith::convert::as_number;
-use crate::extract::mesh::edges;
 use crate::interrupt::poll;
+use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 

@@ -4,9 +4,9 @@ use rustc_hash::FxHashMap as HashMap;
 
 use super::edit::{Act, Edit};
 use super::shells::Shells;
-use crate::extract::rounding::company::Faces;
 use crate::extract::rounding::crossings::faults;
 use crate::geometry::doubles::Point;
+use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 
 /// Makes changes; returns those that stay, and what had to be taken back.

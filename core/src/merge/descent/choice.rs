@@ -42,8 +42,12 @@ pub const CROWD: usize = 512;
 /// Three halvings, one round of the axes, should leave at most 7/8 of the elements in a child.
 const ROUND: u32 = 3;
 
-/// Longer lists than this are halved on, stuck or not: the kernel's cost grows with their square.
-pub const STUCK: usize = 2048;
+/// Longer lists than this are halved on, stuck or not: the kernel's memory grows with their square, to
+/// a gigabyte for two fans of needles around one corner.
+///
+/// Of many needles near a line nearly all run through each of the small cells along it, so halving them
+/// on costs far more than the kernel.
+pub const STUCK: usize = 1 << 14;
 
 /// A kernel that refused a cell is asked again when one in so many elements is left: from `FRESH`
 /// down to `LEAF` at most three times in vain.

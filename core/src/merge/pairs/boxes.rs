@@ -19,6 +19,9 @@ const PAIRS: usize = 16;
 /// So many boxes are compared with one at a time.
 const LANES: usize = 8;
 
+/// Coordinates as short integers.
+type Ends = [i32; 3];
+
 /// An element with its box in short integers.
 #[derive(Clone, Copy)]
 pub struct Boxed {
@@ -41,6 +44,38 @@ impl Boxed {
             number,
         }
     }
+
+    /// The same under another number.
+    #[must_use]
+    pub const fn numbered(self, number: u32) -> Self {
+        Self { number, ..self }
+    }
+
+    /// The lowest and the highest coordinates.
+    pub const fn ends(&self) -> (Ends, Ends) {
+        (self.low, self.high)
+    }
+
+    /// The same with the part of its box inside another one; `None` if there is none.
+    pub fn within(&self, low: Ends, high: Ends) -> Option<Self> {
+        let part = Self {
+            low: each_axis(|i| self.low[i].max(low[i])),
+            high: each_axis(|i| self.high[i].min(high[i])),
+            ..*self
+        };
+        let is_some = (0..3).all(|i| part.low[i] <= part.high[i]);
+        is_some.then_some(part)
+    }
+
+    /// Return whether the box reaches up to a place on an axis, from below or at it.
+    pub const fn is_below(&self, axis: usize, at: i32) -> bool {
+        self.low[axis] <= at
+    }
+
+    /// Return whether the box reaches above a place on an axis.
+    pub const fn is_above(&self, axis: usize, at: i32) -> bool {
+        self.high[axis] > at
+    }
 }
 
 /// By how many bits coordinates up to this size are shortened to fit into 31 with their sign.
@@ -58,6 +93,8 @@ struct Lanes {
 pub struct Part {
     elements: Vec<Boxed>,
     space: Space,
+    /// By how many bits their boxes were shortened.
+    shift: u32,
 }
 
 /// The places above `low`, up to `high`.
@@ -79,19 +116,22 @@ pub fn pairs(
 ) -> Option<()> {
     part.halved(FEW, |part| {
         if part.elements.len() <= SOME {
-            compare_all(&part.elements, &part.space, &mut meet)
+            let space = part.space;
+            compare_all(&part.elements, &space, |a, b| {
+                space.if_owned(a, b, || meet(a.number, b.number))
+            })
         } else {
             crowd(&part.elements, &part.space)
         }
     })
 }
 
-/// Calls `meet` for the pairs that belong to a space, comparing all elements with all of other
-/// operands; gives up where it does.
+/// Calls `meet` for the pairs whose boxes overlap, comparing all elements in a space with all of other
+/// operands, the lower number first; gives up where it does.
 pub fn compare_all(
     elements: &[Boxed],
     space: &Space,
-    meet: &mut impl FnMut(u32, u32) -> Option<()>,
+    mut meet: impl FnMut(&Boxed, &Boxed) -> Option<()>,
 ) -> Option<()> {
     let operands = elements.chunk_by(|a, b| a.operand == b.operand).count();
     if 2 * operands > elements.len() {
@@ -107,8 +147,8 @@ pub fn compare_all(
             let mut goes_on = Some(());
             Lanes::each_overlapping(&lanes, end, one, |at| {
                 let other = &elements[at];
-                if goes_on.is_some() && space.owns(one, other) {
-                    goes_on = meet(one.number, other.number);
+                if goes_on.is_some() {
+                    goes_on = meet(one, other);
                 }
             });
             goes_on?;
@@ -122,7 +162,7 @@ pub fn compare_all(
 fn compare_in_order(
     elements: &[Boxed],
     space: &Space,
-    meet: &mut impl FnMut(u32, u32) -> Option<()>,
+    mut meet: impl FnMut(&Boxed, &Boxed) -> Option<()>,
 ) -> Option<()> {
     let axis = space.sparsest(elements);
     let sorted = sorted_along(axis, elements);
@@ -134,9 +174,13 @@ fn compare_in_order(
         let reached = &lanes[..(next + reached).div_ceil(LANES)];
         Lanes::each_overlapping(reached, next, one, |at| {
             let other = &sorted[at];
-            if goes_on.is_some() && one.operand != other.operand && space.owns(one, other) {
-                let (a, b) = (one.number, other.number);
-                goes_on = meet(a.min(b), a.max(b));
+            if goes_on.is_some() && one.operand != other.operand {
+                let (a, b) = if one.number < other.number {
+                    (one, other)
+                } else {
+                    (other, one)
+                };
+                goes_on = meet(a, b);
             }
         });
         goes_on?;
@@ -152,16 +196,13 @@ fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
     order.into_iter().map(|(_, at)| elements[at]).collect()
 }
 
-/// Calls `meet` for the pairs of two groups that belong to a space, comparing all with all.
-pub fn compare_groups(first: &[Boxed], second: &[Boxed], space: &Space, meet: impl Fn(u32, u32)) {
+/// Calls `meet` for the pairs of two groups whose boxes overlap, comparing all with all.
+pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &Boxed)) {
     let lanes = Lanes::of(second);
     for one in first {
         spend(1 + second.len() / PAIRS);
         Lanes::each_overlapping(&lanes, 0, one, |at| {
-            let other = &second[at];
-            if space.owns(one, other) {
-                meet(one.number, other.number);
-            }
+            meet(one, &second[at]);
         });
     }
 }
@@ -222,7 +263,8 @@ impl Lanes {
 }
 
 impl Space {
-    fn around(elements: &[Boxed]) -> Self {
+    /// The space around elements.
+    pub fn around(elements: &[Boxed]) -> Self {
         let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
         let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
         Self {
@@ -246,6 +288,28 @@ impl Space {
         }
     }
 
+    /// The place below the lowest, and the highest.
+    pub const fn ends(&self) -> (Ends, Ends) {
+        (self.low, self.high)
+    }
+
+    /// The parts up to a place on an axis and above it.
+    pub const fn divided(&self, axis: usize, at: i32) -> [Self; 2] {
+        let (mut below, mut above) = (*self, *self);
+        below.high[axis] = at;
+        above.low[axis] = at;
+        [below, above]
+    }
+
+    /// Calls `meet` if a pair belongs here.
+    pub fn if_owned(&self, a: &Boxed, b: &Boxed, meet: impl FnOnce() -> Option<()>) -> Option<()> {
+        if self.owns(a, b) {
+            meet()
+        } else {
+            Some(())
+        }
+    }
+
     /// Return whether a pair belongs here.
     pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
         (0..3).all(|i| {
@@ -255,22 +319,49 @@ impl Space {
     }
 }
 
+/// Elements in the order of their numbers, each once.
+pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
+    elements.sort_unstable_by_key(|e| e.number);
+    elements.dedup_by_key(|e| e.number);
+    elements
+}
+
 impl Part {
-    /// All elements, of which those of one operand follow each other.
+    /// All elements, of which those of one operand follow each other; by how many bits their boxes were
+    /// shortened.
     #[must_use]
-    pub fn of(elements: Vec<Boxed>) -> Self {
+    pub fn of(elements: Vec<Boxed>, shift: u32) -> Self {
         let space = Space::around(&elements);
-        Self { elements, space }
+        Self {
+            elements,
+            space,
+            shift,
+        }
     }
 
-    /// Parts of up to so many elements, or that halving does not separate: each pair belongs to one.
+    /// By how many bits the boxes were shortened.
+    #[must_use]
+    pub const fn shift(&self) -> u32 {
+        self.shift
+    }
+
+    /// Parts of up to so many elements, and one of all elements that halving does not separate. Each pair
+    /// belongs to one of the former, or is in the latter.
     #[must_use]
     pub fn divided(self, most: usize) -> Vec<Self> {
-        let mut parts = Vec::new();
+        let shift = self.shift;
+        let (mut parts, mut crowded) = (Vec::new(), Vec::new());
         let _ = self.halved(most, |part| {
-            parts.push(part);
+            if part.elements.len() <= most {
+                parts.push(part);
+            } else {
+                crowded.extend(part.elements);
+            }
             Some(())
         });
+        if !crowded.is_empty() {
+            parts.push(Self::of(each_once(crowded), shift));
+        }
         parts
     }
 
@@ -302,11 +393,9 @@ impl Part {
             return false;
         };
         let at = self.middle(axis);
-        let (mut below, mut above) = (self.space, self.space);
-        below.high[axis] = at;
-        above.low[axis] = at;
-        self.push(below, few, |e| e.low[axis] <= at, open);
-        self.push(above, many, |e| e.high[axis] > at, open);
+        let [below, above] = self.space.divided(axis, at);
+        self.push(below, few, |e| e.is_below(axis, at), open);
+        self.push(above, many, |e| e.is_above(axis, at), open);
         true
     }
 
@@ -319,8 +408,8 @@ impl Part {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &Boxed| {
             [
-                below + u32::from(e.low[axis] <= at),
-                above + u32::from(e.high[axis] > at),
+                below + u32::from(e.is_below(axis, at)),
+                above + u32::from(e.is_above(axis, at)),
             ]
         };
         self.elements.iter().fold([0; 2], count).map(|n| n as usize)
@@ -337,7 +426,11 @@ impl Part {
         elements.extend(self.elements.iter().filter(reaches));
         let alone = |e: &Boxed| e.operand == elements[0].operand;
         if !elements.iter().all(alone) {
-            open.push(Self { elements, space });
+            open.push(Self {
+                elements,
+                space,
+                ..*self
+            });
         }
     }
 }

@@ -25,7 +25,7 @@ struct Run<'a> {
 ///
 /// Bundles of needles then come apart before they are divided in themselves: two bundles at an angle
 /// show few pairs as seen along the line across both, and one bundle as seen along itself.
-pub fn divided(crowd: &[Boxed], swept: impl Fn(u32) -> Swept) -> Option<Groups> {
+pub fn divided(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Option<Groups> {
     let mut runs = runs(crowd, swept);
     runs.sort_by(|a, b| a.bend.total_cmp(&b.bend));
     let (count, middle) = division(&runs, crowd.len())?;
@@ -37,9 +37,9 @@ pub fn divided(crowd: &[Boxed], swept: impl Fn(u32) -> Swept) -> Option<Groups> 
     })
 }
 
-fn runs(crowd: &[Boxed], swept: impl Fn(u32) -> Swept) -> Vec<Run<'_>> {
+fn runs(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Vec<Run<'_>> {
     let long = |run: &[Boxed]| {
-        let swept: Vec<Swept> = run.iter().map(|e| swept(e.number)).collect();
+        let swept: Vec<Swept> = run.iter().map(&swept).collect();
         direction_along(&swept.iter().collect::<Vec<_>>())
     };
     let chunks = crowd.chunk_by(|a, b| a.operand == b.operand);
@@ -110,12 +110,12 @@ mod tests {
             Boxed::new(e.operand, at, [&e.low, &e.high], 0)
         };
         let crowd: Vec<Boxed> = (0..200).map(boxed).collect();
-        let groups = divided(&crowd, swept).expect("twenty operands");
+        let groups = divided(&crowd, |e| swept(e.number)).expect("twenty operands");
         let (first, second) = groups.elements.split_at(groups.middle);
         assert_eq!((first.len(), second.len()), (100, 100));
         let bundle = |e: &Boxed| e.operand % 2;
         assert!(first.iter().all(|e| bundle(e) == bundle(&first[0])));
         assert!(second.iter().all(|e| bundle(e) != bundle(&first[0])));
-        assert!(divided(&crowd[..10], swept).is_none());
+        assert!(divided(&crowd[..10], |e| swept(e.number)).is_none());
     }
 }

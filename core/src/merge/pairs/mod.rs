@@ -1,11 +1,13 @@
 //! Pairs of elements of different operands that may meet.
 //!
-//! Space is halved while that separates boxes. Of crowds that it does not separate the pairs are
-//! found by sweeps along the lines on which their elements overlap least.
+//! Space is halved while that separates boxes. Crowds that it does not separate are told apart by what
+//! their elements have in smaller cells, and by sweeps along the lines on which these overlap least.
 
 mod boxes;
+mod clip;
 mod direction;
 mod divide;
+mod fragments;
 mod line;
 mod rim;
 mod sweep;
@@ -14,9 +16,10 @@ mod view;
 use std::cell::{Cell, RefCell};
 
 use crate::geometry::plane::Lattice;
-use boxes::Space;
+use boxes::each_once;
 pub use boxes::{shift_of, Boxed, Part};
 use divide::{divided, Groups};
+use fragments::{Crowd, Fragments};
 use view::share_corner;
 
 /// An element as a sweep sees it: its operand, its box, and corners whose convex hull holds it.
@@ -44,7 +47,7 @@ pub fn pairs(
 ) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    boxes::pairs(Part::of(elements), found, |crowd, space| {
+    boxes::pairs(Part::of(elements, 0), found, |crowd, space| {
         let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
         if share_corner(&some) {
             return None;
@@ -62,9 +65,12 @@ pub fn pairs(
 
 /// As [`pairs`], for any number of operands with few elements each; gives up only if `meet` does.
 ///
+/// A pair may be found more than once.
+///
 /// # Cost
-/// A crowd that halving does not separate is divided between two groups of operands again and
-/// again, each swept against the other; where sweeps separate nothing either, all are compared.
+/// Crowds that halving does not separate are clipped to smaller cells as long as these separate them.
+/// What is left is divided between two groups of operands again and again, each swept against the
+/// other; where sweeps separate nothing either, all are compared.
 ///
 /// # Example
 /// ```
@@ -79,7 +85,7 @@ pub fn pairs(
 ///     Swept { operand, low, high, corners: None }
 /// };
 /// let mut found = Vec::new();
-/// let all = Part::of((0..).zip(&boxes).map(boxed).collect());
+/// let all = Part::of((0..).zip(&boxes).map(boxed).collect(), 0);
 /// pairs_of_many(all, swept, |a, b| {
 ///     found.push([a, b]);
 ///     Some(())
@@ -93,39 +99,70 @@ pub fn pairs_of_many(
 ) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    boxes::pairs(part, found, |crowd, space| {
-        let mut open = vec![crowd.to_vec()];
-        while let Some(crowd) = open.pop() {
-            let groups = (crowd.len() > boxes::SOME).then(|| divided(&crowd, &swept));
-            if let Some(Groups { elements, middle }) = groups.flatten() {
-                let (first, second) = elements.split_at(middle);
-                sweep_groups((first, second), space, &swept, found)?;
-                open.extend([first.to_vec(), second.to_vec()]);
-            } else {
-                boxes::compare_all(&crowd, space, &mut |i, j| found(i, j))?;
-            }
-        }
+    let shift = part.shift();
+    let mut crowded = Vec::new();
+    boxes::pairs(part, found, |crowd, _| {
+        crowded.extend_from_slice(crowd);
         Some(())
-    })
+    })?;
+    // Fragments of a pair may meet elsewhere than where its boxes have their low corner, so all crowds
+    // are one.
+    let crowded = each_once(crowded);
+    let all: Vec<Swept> = crowded.iter().map(|e| swept(e.number)).collect();
+    let meet = |a: &Boxed, b: &Boxed| {
+        let [a, b] = [a, b].map(|e| crowded[e.number as usize].number);
+        found(a, b)
+    };
+    let mut cells = Crowd::of(&crowded, &all, shift);
+    cells.try_for_each(|cell| compare(cell, |e| swept_as(e, &all, shift), meet))
+}
+
+/// A fragment as a sweep sees it.
+fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
+    let (low, high) = fragment.ends();
+    Swept {
+        low: low.map(|x| i64::from(x) << shift),
+        high: high.map(|x| (i64::from(x) + 1) << shift),
+        ..all[fragment.number as usize].clone()
+    }
+}
+
+/// Calls `meet` for the pairs of fragments in a cell; gives up where it does.
+fn compare(
+    cell: Fragments,
+    swept: impl Fn(&Boxed) -> Swept,
+    meet: impl Fn(&Boxed, &Boxed) -> Option<()>,
+) -> Option<()> {
+    let mut open = vec![cell.elements];
+    while let Some(crowd) = open.pop() {
+        let groups = (crowd.len() > boxes::SOME).then(|| divided(&crowd, &swept));
+        if let Some(Groups { elements, middle }) = groups.flatten() {
+            let (first, second) = elements.split_at(middle);
+            sweep_groups((first, second), &swept, &meet)?;
+            open.extend([first.to_vec(), second.to_vec()]);
+        } else {
+            boxes::compare_all(&crowd, &cell.space, &meet)?;
+        }
+    }
+    Some(())
 }
 
 /// Calls `meet` for the pairs of an element of one group and one of another; gives up where it does.
 fn sweep_groups(
     (first, second): (&[Boxed], &[Boxed]),
-    space: &Space,
-    swept: &impl Fn(u32) -> Swept,
-    meet: impl Fn(u32, u32) -> Option<()>,
+    swept: &impl Fn(&Boxed) -> Swept,
+    meet: &impl Fn(&Boxed, &Boxed) -> Option<()>,
 ) -> Option<()> {
     let goes_on = Cell::new(true);
-    let meet = |i: u32, j: u32| {
+    let meet = |a: &Boxed, b: &Boxed| {
         if goes_on.get() {
-            goes_on.set(meet(i, j).is_some());
+            goes_on.set(meet(a, b).is_some());
         }
     };
     let of = |operand: usize| {
         move |e: &Boxed| Swept {
             operand,
-            ..swept(e.number)
+            ..swept(e)
         }
     };
     let some: Vec<Swept> = first
@@ -134,14 +171,9 @@ fn sweep_groups(
         .chain(second.iter().map(of(1)))
         .collect();
     let element = |i: usize| first.get(i).unwrap_or_else(|| &second[i - first.len()]);
-    let done = sweep::pairs(&some, |i, j| {
-        let (a, b) = (element(i), element(j));
-        if space.owns(a, b) {
-            meet(a.number, b.number);
-        }
-    });
+    let done = sweep::pairs(&some, |i, j| meet(element(i), element(j)));
     if done.is_none() {
-        boxes::compare_groups(first, second, space, meet);
+        boxes::compare_groups(first, second, meet);
     }
     goes_on.get().then_some(())
 }
@@ -269,7 +301,7 @@ mod tests {
         let boxes = (0..).zip(&elements).map(boxed).collect();
         let mut found = HashSet::new();
         let one = |k: u32| elements[k as usize].clone();
-        pairs_of_many(Part::of(boxes), one, |i, j| {
+        pairs_of_many(Part::of(boxes, 0), one, |i, j| {
             found.insert((i.min(j) as usize, i.max(j) as usize));
             Some(())
         });

@@ -1,6 +1,6 @@
 //! Quick looks at pairs of faces: most share a vertex or lie beyond each other's planes.
 
-use super::flats::doubles;
+use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::meeting::{meeting, Meeting};
@@ -26,14 +26,14 @@ pub(super) struct Looked {
     has_area: bool,
     /// The corners, whose coordinates doubles hold.
     doubles: Triangle,
-    /// The flat piece to which the face belongs, or `NONE`.
+    /// The terrain to which the face belongs, or `NONE`.
     piece: u32,
 }
 
 impl Looked {
     pub(super) fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool], piece: u32) -> Self {
         let (low, high) = mesh.face_box(face);
-        let corners = doubles(mesh, face);
+        let corners = mesh.corners(face).map(|c| c.map(as_double));
         let u = difference(&corners[1], &corners[0]);
         let v = difference(&corners[2], &corners[0]);
         let normal = [

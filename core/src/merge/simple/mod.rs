@@ -7,7 +7,6 @@
 
 mod copies;
 mod cuts;
-mod flats;
 mod looked;
 mod places;
 mod probes;

@@ -3,17 +3,19 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::flats::flat_pieces;
 use super::looked::Looked;
 use super::MOST_PAIRS;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
+use crate::mesh::faces::Faces;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{each_chunk, CHUNK};
+use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
@@ -28,7 +30,7 @@ pub(super) struct View<'a> {
     pub(super) mesh: &'a TriangleMesh,
     /// By vertex, whether surfaces may meet there that pairs of faces do not show.
     pub(super) irregular: Vec<bool>,
-    /// By face, its flat piece.
+    /// By face, its terrain.
     pub(super) pieces: Vec<u32>,
 }
 
@@ -88,6 +90,8 @@ impl Unclear {
     }
 
     fn of(mut pairs: Vec<[FaceId; 2]>, count: usize) -> Self {
+        pairs.sort_unstable();
+        pairs.dedup();
         pairs.extend_from_within(..);
         let turned = pairs.len() / 2;
         pairs[turned..].iter_mut().for_each(|pair| pair.reverse());
@@ -118,7 +122,7 @@ impl<'a> View<'a> {
         for vertex in source.irregular_vertices() {
             irregular[vertex.place()] = true;
         }
-        let pieces = flat_pieces(source, mesh);
+        let pieces = pieces(source, mesh);
         Self {
             mesh,
             irregular,
@@ -132,7 +136,7 @@ impl<'a> View<'a> {
         Looked::at(self.mesh, face, &self.irregular, piece)
     }
 
-    /// The party of a face: faces of one flat piece are not compared with each other.
+    /// The party of a face: faces of one terrain are not compared with each other.
     fn party(&self, face: FaceId) -> usize {
         match self.pieces[face.place()] {
             NONE => self.mesh.faces.len() + face.place(),
@@ -199,7 +203,9 @@ impl<'a> Search<'a> {
         let face = |number: u32| sorted[number as usize];
         let swept = |number: u32| view.swept(face(number), &origin);
         let boxes = sorted.iter().enumerate().map(boxed).collect();
-        pairs_of_many(Part::of(boxes), swept, |a, b| self.add([face(a), face(b)]))?;
+        pairs_of_many(Part::of(boxes, shift), swept, |a, b| {
+            self.add([face(a), face(b)])
+        })?;
         self.look()
     }
 
@@ -226,6 +232,21 @@ impl<'a> Search<'a> {
         }
         self.end.is_none().then_some(())
     }
+}
+
+/// Return for each face the number of its terrain; `NONE` where there is none, and where the mesh is not
+/// closed by index.
+fn pieces(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
+    let all: Vec<u32> = (0..as_number(mesh.faces.len())).collect();
+    if source.topology().is_none() {
+        return vec![NONE; all.len()];
+    }
+    let vertices: Vec<Point> = mesh.vertices.iter().map(|v| v.map(as_double)).collect();
+    let faces = Faces {
+        vertices: &vertices,
+        triangles: &mesh.faces,
+    };
+    terrains(&faces, &all)
 }
 
 /// Those of some pairs that a quick look does not tell clear.

@@ -2,8 +2,8 @@
 
 use super::part::{distance, Edit, Mending};
 use crate::arith::Sign;
-use crate::extract::mesh::edges;
 use crate::geometry::doubles::{seen_along, turn, Point, Triangle};
+use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 /// Directions in which a vertex is moved, in spacings of the largest coordinate.

@@ -7,10 +7,10 @@ use smallvec::SmallVec;
 
 use super::blocks::Blocks;
 use crate::arith::convert::as_number;
-use crate::extract::mesh::edges;
 use crate::extract::rounding::crossings::Faults;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::{Point, Triangle};
+use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 /// The numbers in which coordinates are delivered.

@@ -1,10 +1,10 @@
 //! Changes carried out and taken back, and the faults that are left.
 
 use super::part::{Edit, Mending, Star, MEETING};
-use crate::extract::mesh::edges;
 use crate::extract::rounding::crossings::crosses_at;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::meeting::{has_no_area, meeting, Meeting};
+use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 impl Mending {

@@ -11,15 +11,15 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::company::Faces;
 use crate::arith::convert::as_number;
 use crate::arith::Sign;
-use crate::extract::mesh::edges;
 use crate::geometry::doubles::meeting::has_no_area;
 use crate::geometry::doubles::vector::{cross, dot, normal};
 use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
 use crate::geometry::winding::covering::{winds_at_most_once, Place};
 use crate::interrupt::poll;
+use crate::mesh::faces::edges;
+use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 

@@ -1,0 +1,317 @@
+//! Crowds of long triangles, told apart by their fragments in small cells.
+//!
+//! The boxes of needles overlap whatever is near them, so halving space does not separate them. But a
+//! needle crosses few of the cells in which its box lies, and its fragment there has a small box.
+
+use super::boxes::{Boxed, Space};
+use super::clip::part_within;
+use super::direction::SLACK;
+use super::Swept;
+use crate::arith::convert::as_double;
+use crate::geometry::doubles::Triangle;
+use crate::interrupt::spend;
+
+/// So few fragments are compared all with all: dividing them costs about as much.
+const FEW: usize = 64;
+
+/// Each axis is divided at one of so many places, less one.
+const PLACES: usize = 16;
+
+/// A division separates elements if the parts of the cell have less than this share of its pairs.
+const FEWER: f64 = 7.0 / 8.0;
+
+/// So many divisions may separate nothing, one after the other, unless the part at hand has half of the
+/// pairs. Near the corner of a fan one axis leaves all needles on both sides, and another then parts them
+/// from walls.
+///
+/// None leaves more pairs than there were, so there are never more fragments than pairs.
+const PATIENCE: u32 = 2;
+
+/// A crowd's elements, and the cells that are still to be divided.
+pub struct Crowd {
+    /// By number, where they are known; scaled as the boxes are.
+    corners: Vec<Option<Triangle>>,
+    /// Above what clipping is off.
+    slack: f64,
+    open: Vec<Fragments>,
+}
+
+/// The fragments of elements in a cell, those of one operand after each other.
+pub struct Fragments {
+    /// The boxes around them, numbered by the elements' places in the crowd.
+    pub elements: Vec<Boxed>,
+    pub space: Space,
+    /// So many divisions more may leave many pairs.
+    patience: u32,
+}
+
+/// A place on an axis.
+struct Division {
+    axis: usize,
+    at: i32,
+    /// The pairs of elements below it and above it.
+    pairs: [f64; 2],
+}
+
+impl Division {
+    /// The pairs on both sides.
+    fn left(&self) -> f64 {
+        self.pairs[0] + self.pairs[1]
+    }
+}
+
+impl Crowd {
+    /// Elements: their boxes, and what these were before they were shortened by some bits.
+    pub fn of(boxed: &[Boxed], swept: &[Swept], shift: u32) -> Self {
+        let scale = 1.0 / as_double(1u64 << shift);
+        let scaled = |corners: Triangle| corners.map(|p| p.map(|x| x * scale));
+        let corners: Vec<Option<Triangle>> = swept.iter().map(|e| e.corners.map(scaled)).collect();
+        let coordinates = corners.iter().flatten().flatten().flatten();
+        let size = coordinates.fold(1.0f64, |most, x| most.max(x.abs()));
+        let numbered = (0..).zip(boxed).map(|(number, e)| e.numbered(number));
+        let all = Fragments {
+            elements: numbered.collect(),
+            space: Space::around(boxed),
+            patience: PATIENCE,
+        };
+        Self {
+            corners,
+            slack: SLACK * size,
+            open: vec![all],
+        }
+    }
+
+    /// The fragment in a cell of one in a larger cell; `None` if there is none.
+    fn fragment(&self, of: &Boxed, space: &Space) -> Option<Boxed> {
+        let Some(corners) = &self.corners[of.number as usize] else {
+            return Some(*of);
+        };
+        let (low, high) = space.ends();
+        // A cell holds the places above its low end, up to the next above its high one.
+        let low = low.map(|x| f64::from(x) + 1.0 - self.slack);
+        let high = high.map(|x| f64::from(x) + 1.0 + self.slack);
+        let [low, high] = part_within(corners, &[low, high])?;
+        of.within(
+            low.map(|x| as_coordinate(x - self.slack)),
+            high.map(|x| as_coordinate(x + self.slack)),
+        )
+    }
+
+    /// The fragments on both sides of the place that leaves the fewest pairs; `None` if it is not worth
+    /// dividing them.
+    fn divide(&self, whole: &Fragments) -> Option<[Fragments; 2]> {
+        let places = (0..3).flat_map(|axis| whole.divisions(axis));
+        let best = places.min_by(|a, b| a.left().total_cmp(&b.left()))?;
+        let Division { axis, at, .. } = best;
+        let fragment = |e: &Boxed, space: &Space| {
+            let crosses = e.is_below(axis, at) && e.is_above(axis, at);
+            if crosses {
+                self.fragment(e, space)
+            } else {
+                Some(*e)
+            }
+        };
+        let part = |space: Space, patience: u32, reaches: fn(&Boxed, usize, i32) -> bool| {
+            let own = whole.elements.iter().filter(|e| reaches(e, axis, at));
+            Fragments {
+                elements: own.filter_map(|e| fragment(e, &space)).collect(),
+                space,
+                patience,
+            }
+        };
+        let patience = whole.patience_after(&best)?;
+        let [below, above] = whole.space.divided(axis, at);
+        Some([
+            part(below, patience[0], Boxed::is_below),
+            part(above, patience[1], Boxed::is_above),
+        ])
+    }
+}
+
+impl Iterator for Crowd {
+    type Item = Fragments;
+
+    /// The fragments in a cell that is not worth dividing. In the end any two elements that meet had
+    /// fragments in one whose boxes overlap.
+    fn next(&mut self) -> Option<Fragments> {
+        while let Some(whole) = self.open.pop() {
+            spend(whole.elements.len());
+            if whole.are_of_one_operand() {
+                continue;
+            }
+            let many = whole.elements.len() > FEW;
+            match many.then(|| self.divide(&whole)).flatten() {
+                Some(parts) => self.open.extend(parts),
+                None => return Some(whole),
+            }
+        }
+        None
+    }
+}
+
+impl Fragments {
+    /// The patience with the parts below and above a place; `None` if there is none for dividing there.
+    fn patience_after(&self, division: &Division) -> Option<[u32; 2]> {
+        let before = self.pairs();
+        if division.left() <= FEWER * before {
+            return Some([PATIENCE; 2]);
+        }
+        let less = self.patience.checked_sub(1);
+        let less = less.filter(|_| division.left() <= before)?;
+        let of_part = |own: f64| if 2.0 * own <= before { PATIENCE } else { less };
+        Some(division.pairs.map(of_part))
+    }
+
+    fn are_of_one_operand(&self) -> bool {
+        let [first, last] = [self.elements.first(), self.elements.last()];
+        first.map(|e| e.operand) == last.map(|e| e.operand)
+    }
+
+    /// The number of pairs of different operands.
+    fn pairs(&self) -> f64 {
+        let mut all = Tally::default();
+        self.runs().for_each(|run| all.add(run.iter().map(|_| 0)));
+        all.pairs()[0]
+    }
+
+    /// The fragments of each operand.
+    fn runs(&self) -> impl Iterator<Item = &[Boxed]> {
+        self.elements.chunk_by(|a, b| a.operand == b.operand)
+    }
+
+    /// The places at which an axis can be divided.
+    fn divisions(&self, axis: usize) -> impl Iterator<Item = Division> + use<> {
+        let (low, high) = self.space.ends();
+        let (low, length) = (low[axis], high[axis] - low[axis]);
+        let scale = as_double(PLACES) / f64::from(length);
+        let first_from = |x: i32| as_place((f64::from(x - low) * scale).ceil());
+        let (mut below, mut above) = (Tally::default(), Tally::default());
+        for run in self.runs() {
+            let ends = || run.iter().map(Boxed::ends);
+            below.add(ends().map(|(low, _)| first_from(low[axis])));
+            above.add(ends().map(|(_, high)| PLACES - first_from(high[axis])));
+        }
+        let (below, above) = (below.pairs(), above.pairs());
+        (1..PLACES).filter_map(move |k| {
+            let at = low + as_coordinate(as_double(k) / scale);
+            let pairs = [below[k], above[PLACES - 1 - k]];
+            let is_inside = low < at && at < low + length;
+            is_inside.then_some(Division { axis, at, pairs })
+        })
+    }
+}
+
+/// How many elements there are up to each of some places.
+#[derive(Default)]
+struct Tally {
+    /// How many more than up to the place before.
+    more: [f64; PLACES + 1],
+    /// How many more there are in the sum of the squares of each operand's number.
+    more_squares: [f64; PLACES + 1],
+}
+
+impl Tally {
+    /// Adds an operand's elements, each from a place on.
+    fn add(&mut self, places: impl Iterator<Item = usize>) {
+        let mut own = [0.0; PLACES + 1];
+        places.for_each(|place| own[place] += 1.0);
+        let mut before = 0.0;
+        for (k, more) in own.into_iter().enumerate() {
+            self.more[k] += more;
+            self.more_squares[k] += (2.0 * before + more) * more;
+            before += more;
+        }
+    }
+
+    /// The number of pairs of different operands up to each place.
+    fn pairs(&self) -> [f64; PLACES + 1] {
+        let (mut count, mut squares) = (0.0, 0.0);
+        std::array::from_fn(|k| {
+            count += self.more[k];
+            squares += self.more_squares[k];
+            (count * count - squares) / 2.0
+        })
+    }
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "places in a cell fit as its ends do"
+)]
+fn as_coordinate(x: f64) -> i32 {
+    x.floor() as i32
+}
+
+/// One of the places on an axis, or the nearest end.
+#[allow(
+    clippy::cast_sign_loss,
+    clippy::cast_possible_truncation,
+    reason = "the cast saturates"
+)]
+fn as_place(x: f64) -> usize {
+    (x as usize).min(PLACES)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arith::convert::as_whole;
+    use crate::geometry::axes::each_axis;
+
+    /// A disc of needles from one corner to an arc of short walls, each an operand of its own.
+    fn disc(sides: u32) -> Vec<Swept> {
+        let corner = |k: u32| {
+            let (y, x) = (f64::from(k) / f64::from(sides) * std::f64::consts::PI).sin_cos();
+            [x, y, 0.0].map(|x| (x * 1e6).round() + 1e6)
+        };
+        let swept = |operand: usize, corners: Triangle| {
+            let end = |i: usize, most: fn(f64, f64) -> f64| {
+                as_whole(most(corners[0][i], most(corners[1][i], corners[2][i])))
+            };
+            Swept {
+                operand,
+                low: each_axis(|i| end(i, f64::min)),
+                high: each_axis(|i| end(i, f64::max)),
+                corners: Some(corners),
+            }
+        };
+        let needle = |k: u32| swept(0, [corner(0), corner(k), corner(k + 1)]);
+        let wall = |k: u32| {
+            let [x, y, _] = corner(k);
+            swept(k as usize, [corner(k), corner(k + 1), [x, y, 2e6]])
+        };
+        let needles = (1..sides).map(needle);
+        needles.chain((1..sides).map(wall)).collect()
+    }
+
+    fn crowd(swept: &[Swept]) -> Crowd {
+        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
+        let boxes: Vec<Boxed> = (0..).zip(swept).map(boxed).collect();
+        Crowd::of(&boxes, swept, 0)
+    }
+
+    /// Twice as many needles and walls are about twice as many pairs in cells.
+    #[test]
+    fn needles_come_apart_from_walls_at_their_ends() {
+        let pairs = |sides: u32| crowd(&disc(sides)).map(|cell| cell.pairs()).sum::<f64>();
+        let (half, whole) = (pairs(2000), pairs(4000));
+        assert!(whole < 3.0 * half && whole < 1e6, "{half} {whole}");
+    }
+
+    #[test]
+    fn those_with_a_common_corner_are_in_one_cell() {
+        let swept = disc(500);
+        let cells: Vec<Fragments> = crowd(&swept).collect();
+        let is_in =
+            |cell: &Fragments, k: usize| cell.elements.iter().any(|e| e.number as usize == k);
+        let needles = swept.len() / 2;
+        for k in 0..needles {
+            assert!(
+                cells
+                    .iter()
+                    .any(|cell| is_in(cell, k) && is_in(cell, needles + k)),
+                "{k}"
+            );
+        }
+    }
+}
