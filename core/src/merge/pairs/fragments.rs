@@ -201,12 +201,12 @@ impl Fragments {
     }
 }
 
-/// How many elements there are up to each of some places.
+/// The numbers of elements up to each of some places.
 #[derive(Default)]
 struct Tally {
-    /// How many more than up to the place before.
+    /// By so many more than up to the place before.
     more: [f64; PLACES + 1],
-    /// How many more there are in the sum of the squares of each operand's number.
+    /// By so much more is the sum of the squares of the operands' numbers.
     more_squares: [f64; PLACES + 1],
 }
 
