@@ -24,8 +24,8 @@ use crate::error::{Error, ErrorKind, Result};
 /// a pass; a pair of elements; an exact question), so looks are 10 µs to some milliseconds apart.
 const BUDGET: usize = 1 << 10;
 
-/// The time between two questions to a caller who works himself.
-const ASK_EVERY: Duration = Duration::from_millis(50);
+/// The time between two questions to a caller: two threads work less than a tenth of a second in it.
+pub const ASK_EVERY: Duration = Duration::from_millis(30);
 
 /// The number of no call.
 const NOBODY: u64 = 0;

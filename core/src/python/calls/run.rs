@@ -2,7 +2,6 @@
 
 use std::cell::{Cell, RefCell};
 use std::sync::{mpsc, Arc};
-use std::time::Duration;
 
 use pyo3::prelude::*;
 
@@ -10,7 +9,7 @@ use super::errors::to_python;
 use super::pool::{pool, Pool};
 use crate::error::panics::caught;
 use crate::error::{Error, Result};
-use crate::interrupt::{Call, Means, Share, Task};
+use crate::interrupt::{Call, Means, Share, Task, ASK_EVERY};
 
 /// Work on fewer elements than this begins on the caller's thread: passes over them are not shared,
 /// and what is worth more wakes the pool by itself.
@@ -21,8 +20,6 @@ const MEANS: Means = Means {
     wants_to_stop: signal_raised,
     hand_over,
 };
-
-const POLL: Duration = Duration::from_millis(50);
 
 thread_local! {
     /// The pool that does shares of this thread's call, and for how many threads it was asked.
@@ -116,7 +113,7 @@ fn awaited<T: Send>(pool: &Pool, task: Task, work: impl FnOnce() -> T + Send) ->
             let _ = done.send(work());
         });
         loop {
-            match wait.recv_timeout(POLL) {
+            match wait.recv_timeout(ASK_EVERY) {
                 Ok(value) => return Some(value),
                 Err(mpsc::RecvTimeoutError::Disconnected) => return None,
                 Err(mpsc::RecvTimeoutError::Timeout) => {
