@@ -18,8 +18,7 @@ use crate::geometry::doubles::vector::{cross, dot, normal};
 use crate::geometry::doubles::{seen_along, turn, Facing, Point, Triangle};
 use crate::geometry::winding::covering::{winds_at_most_once, Place};
 use crate::interrupt::poll;
-use crate::mesh::faces::edges;
-use crate::mesh::faces::Faces;
+use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 

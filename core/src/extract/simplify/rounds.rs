@@ -154,8 +154,7 @@ fn without_unused(
 mod tests {
     use super::*;
     use crate::extract::rounding::crossings::all_faults;
-    use crate::mesh::faces::edges;
-    use crate::mesh::faces::Faces;
+    use crate::mesh::faces::{edges, Faces};
 
     /// A cube of edge 1 whose top, z = 1, is divided by more vertices.
     fn cube(more: &[Point], top: &[[u32; 3]]) -> (Vec<Point>, Vec<[VertexId; 3]>) {
