@@ -16,6 +16,7 @@ use super::joining::patches::Patches;
 use super::joining::planes::{group, PlaneGroup};
 use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::mesh::{Corner, ExactMesh};
+use super::order::put_in_order;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::side::Orientation;
@@ -97,8 +98,15 @@ fn attempt(
     let mut assembly = Assembly::new(sources, &fates);
     assembly.verify = join && !solid.is_reduced();
     assembly.run(&mut fates, groups, &rims, &near)?;
-    let findings = contacts::split(&mut assembly)?;
-    Ok(assembly.finish(findings))
+    let is_manifold = contacts::is_manifold(&assembly)?;
+    let mut mesh = assembly.finish();
+    if !is_manifold {
+        // Which faces stay together at a contact may depend on the order in which they come.
+        let mut positions = mesh.positions(solid);
+        put_in_order(&mut mesh, &mut positions);
+        contacts::split(&mut mesh, sources)?;
+    }
+    Ok(mesh)
 }
 
 fn unbounded() -> Error {
@@ -231,7 +239,7 @@ impl Assembly<'_> {
                 for vertex in mesh.faces[face] {
                     let place = mesh.vertices[vertex.place()];
                     if let Some(point) = self.table.find(&Vertex::lattice(place)) {
-                        self.names.entry(point).or_insert((slot, vertex));
+                        self.name(point, (slot, vertex));
                     }
                 }
             }

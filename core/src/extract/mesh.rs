@@ -1,16 +1,22 @@
 //! Closed triangle meshes, exact and in doubles.
 
+use std::sync::Arc;
+
 use crate::geometry::plane::normal;
+use crate::geometry::vertex::Vertex;
 use crate::geometry::vertices::VertexTable;
+use crate::interrupt::spend;
 use crate::merge::lists::list::Sources;
 use crate::mesh::finding::Finding;
 use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::source::Shape;
+use crate::mesh::tasks::fill_chunks;
+use crate::tree::solid::Solid;
 
 /// A closed triangle mesh with exact vertices.
 #[derive(Debug, Default)]
 pub struct ExactMesh {
-    /// The places of the vertices.
+    /// The places of the vertices: those of sources, by slot and number, then constructed points.
     pub vertices: Vec<Corner>,
     /// Triangles, counterclockwise as seen from outside.
     pub triangles: Vec<[VertexId; 3]>,
@@ -26,8 +32,40 @@ pub struct ExactMesh {
     pub findings: Vec<Finding>,
 }
 
+impl ExactMesh {
+    /// The place of a vertex.
+    pub fn exact(&self, vertex: VertexId, sources: &Sources) -> Arc<Vertex> {
+        match self.vertices[vertex.place()] {
+            Corner::Point(point) => Arc::clone(self.table.point(point)),
+            Corner::Source(slot, index) => {
+                let mesh = sources.get(slot).mesh();
+                let place = mesh.map_or([0; 3], |m| m.vertices[index.place()]);
+                Arc::new(Vertex::lattice(place))
+            }
+        }
+    }
+
+    /// Each vertex in doubles, in model units: those that a source was given, or the nearest ones.
+    pub fn positions(&self, solid: &Solid) -> Vec<[f64; 3]> {
+        let position = |corner: &Corner| match *corner {
+            Corner::Point(point) => solid.pitch().position(self.table.point(point)),
+            Corner::Source(slot, vertex) => {
+                let mesh = solid.sources().get(slot).mesh();
+                mesh.map_or([0.0; 3], |m| m.doubles[vertex.place()])
+            }
+        };
+        let mut positions = vec![[0.0; 3]; self.vertices.len()];
+        fill_chunks(&self.vertices, &mut positions, |_, corners, out| {
+            for (corner, place) in corners.iter().zip(out) {
+                *place = position(corner);
+            }
+        });
+        positions
+    }
+}
+
 /// The place of a vertex of an [`ExactMesh`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Corner {
     /// A vertex of a source.
     Source(Slot, VertexId),
@@ -45,6 +83,24 @@ pub fn outward_normal(face: OrientedFace, sources: &Sources) -> [i128; 3] {
         Shape::HalfSpace(plane) => *plane.normal(),
     };
     normal.map(|c| face.orientation.signed(c))
+}
+
+/// Give vertices the numbers of their places in an order, which all that triangles name are in.
+pub fn renumber(
+    vertices: &mut Vec<Corner>,
+    triangles: &mut [[VertexId; 3]],
+    order: &[VertexId],
+) -> Vec<VertexId> {
+    let mut numbers = vec![VertexId::default(); vertices.len()];
+    for (number, vertex) in VertexId::all().zip(order) {
+        numbers[vertex.place()] = number;
+    }
+    *vertices = order.iter().map(|v| vertices[v.place()]).collect();
+    spend(triangles.len());
+    for vertex in triangles.iter_mut().flatten() {
+        *vertex = numbers[vertex.place()];
+    }
+    numbers
 }
 
 /// The numbers of vertices once those that are not used are left out; the others keep their order.

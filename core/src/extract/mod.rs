@@ -8,6 +8,7 @@ pub mod emission;
 mod failure;
 pub mod joining;
 pub mod mesh;
+mod order;
 pub mod outlines;
 pub mod rounding;
 pub mod simplify;

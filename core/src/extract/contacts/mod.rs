@@ -7,69 +7,62 @@ use rustc_hash::FxHashSet as HashSet;
 use self::fans::{split_fans, Radial};
 use super::emission::assembly::Assembly;
 use super::failure::{Failure, Overlap};
-use super::mesh::outward_normal;
+use super::mesh::{outward_normal, renumber, ExactMesh};
 use super::vertices::direction;
 use crate::arith::convert::as_number;
 use crate::arith::Sign;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::interrupt::poll;
+use crate::merge::lists::list::Sources;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::handle::VertexId;
 
 /// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
-/// one fan; reports them.
-pub(super) fn split(assembly: &mut Assembly) -> Result<Vec<Finding>, Failure> {
-    let special: Vec<u32> = assembly.special_triangles().collect();
-    if is_manifold(assembly, &special)? {
-        return Ok(Vec::new());
-    }
-    let count = as_number(assembly.vertices.len());
-    let split = split_fans(&assembly.triangles, count, &Geometry(assembly))
+/// one fan; reports them. Copies of a vertex follow it.
+pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
+    let count = as_number(mesh.vertices.len());
+    let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })
         .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
-    let place = |ids: &[VertexId]| ids.iter().map(|v| u64::from(*v)).collect::<Vec<_>>();
-    let edges: Vec<VertexId> = split.split_edges.iter().map(|e| e[0]).collect();
-    let mut findings = Vec::new();
-    if !edges.is_empty() {
-        let text = "the solid touches itself along edges, here split (start vertices)";
-        findings.push(Finding::about(
-            "edge_contact",
-            Severity::Note,
-            &place(&edges),
-            text,
-        ));
-    }
+    let origin = &split.origin;
+    mesh.vertices = origin.iter().map(|v| mesh.vertices[v.place()]).collect();
+    mesh.triangles = split.corners;
+    // Copies follow their originals.
+    let mut order: Vec<VertexId> = VertexId::all().take(origin.len()).collect();
+    order.sort_by_key(|v| origin[v.place()]);
+    let numbers = renumber(&mut mesh.vertices, &mut mesh.triangles, &order);
+    let starts = split.split_edges.iter().map(|e| e[0]);
+    let text = "the solid touches itself along edges, here split (start vertices)";
+    tell(mesh, "edge_contact", starts, &numbers, text);
     let ends: HashSet<VertexId> = split.split_edges.iter().flatten().copied().collect();
-    let alone: Vec<VertexId> = split
-        .split_vertices
-        .iter()
-        .copied()
-        .filter(|v| !ends.contains(v))
-        .collect();
-    if !alone.is_empty() {
-        let text = "the solid touches itself at vertices, here split";
-        let places = place(&alone);
-        findings.push(Finding::about(
-            "vertex_contact",
-            Severity::Note,
-            &places,
-            text,
-        ));
+    let alone = split.split_vertices.iter().copied();
+    let alone = alone.filter(|v| !ends.contains(v));
+    let text = "the solid touches itself at vertices, here split";
+    tell(mesh, "vertex_contact", alone, &numbers, text);
+    Ok(())
+}
+
+/// Add a finding about vertices, given with their new numbers, if there are some.
+fn tell(
+    mesh: &mut ExactMesh,
+    code: &'static str,
+    vertices: impl Iterator<Item = VertexId>,
+    numbers: &[VertexId],
+    text: &str,
+) {
+    let places: Vec<u64> = vertices.map(|v| u64::from(numbers[v.place()])).collect();
+    if !places.is_empty() {
+        let finding = Finding::about(code, Severity::Note, &places, text);
+        mesh.findings.push(finding);
     }
-    assembly.vertices = split
-        .origin
-        .iter()
-        .map(|v| assembly.vertices[v.place()])
-        .collect();
-    assembly.triangles = split.corners;
-    Ok(findings)
 }
 
 /// Return whether the triangles around special vertices form one closed fan each.
 ///
 /// # Errors
 /// `Overlap` if an edge at a special vertex has no opposite: the assembly is not closed.
-fn is_manifold(assembly: &Assembly, triangles: &[u32]) -> Result<bool, Failure> {
-    let mut fans = Fans::of(assembly, triangles);
+pub(super) fn is_manifold(assembly: &Assembly) -> Result<bool, Failure> {
+    let special: Vec<u32> = assembly.special_triangles().collect();
+    let mut fans = Fans::of(assembly, &special);
     let mut single = fans.edges_apart_are_single();
     for place in 0..fans.starts.len() - 1 {
         poll();
@@ -164,15 +157,19 @@ fn is_single_fan(fan: &mut [[VertexId; 2]]) -> bool {
     next == first
 }
 
-struct Geometry<'a, 'b>(&'a Assembly<'b>);
+struct Geometry<'a> {
+    mesh: &'a ExactMesh,
+    sources: &'a Sources,
+}
 
-impl Radial for Geometry<'_, '_> {
+impl Radial for Geometry<'_> {
     fn normal(&self, triangle: u32) -> [i128; 3] {
-        outward_normal(self.0.faces[triangle as usize], self.0.sources)
+        outward_normal(self.mesh.faces[triangle as usize], self.sources)
     }
 
     fn direction(&self, a: VertexId, b: VertexId) -> [Sign; 3] {
-        direction(&self.0.position(a), &self.0.position(b))
+        let [a, b] = [a, b].map(|v| self.mesh.exact(v, self.sources));
+        direction(&a, &b)
     }
 }
 

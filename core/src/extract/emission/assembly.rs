@@ -1,18 +1,16 @@
 //! A mesh in the making: its vertices by number, whatever they were made from, and its triangles.
 
-use std::sync::Arc;
+use std::ops::Range;
 
 use rustc_hash::FxHashMap as HashMap;
 
 use super::untouched::Untouched;
 use crate::arith::convert::as_number;
 use crate::extract::boundary::leaves::{Fate, Fates};
-use crate::extract::mesh::{numbers_left, Corner, ExactMesh};
-use crate::geometry::vertex::Vertex;
+use crate::extract::mesh::{renumber, Corner, ExactMesh};
 use crate::geometry::vertices::VertexTable;
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
-use crate::mesh::finding::Finding;
 use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::triangles::TriangleMesh;
 
@@ -70,10 +68,17 @@ impl<'a> Assembly<'a> {
             return *point;
         }
         let point = self.table.number_at(mesh.vertices[vertex.place()]);
-        self.names.entry(point).or_insert((slot, vertex));
+        self.name(point, (slot, vertex));
         let image = self.image_of_point(point);
         self.images[slot.place()][vertex.place()] = image;
         point
+    }
+
+    /// Remembers that a point is a vertex of a source; of several the first names it, whoever is
+    /// asked first.
+    pub(in crate::extract) fn name(&mut self, point: u32, vertex: (Slot, VertexId)) {
+        let name = self.names.entry(point).or_insert(vertex);
+        *name = vertex.min(*name);
     }
 
     pub(in crate::extract) fn image_of_point(&mut self, point: u32) -> VertexId {
@@ -92,11 +97,6 @@ impl<'a> Assembly<'a> {
     pub(in crate::extract) fn special_triangles(&self) -> impl Iterator<Item = u32> + '_ {
         let last = as_number(self.untouched.count)..as_number(self.triangles.len());
         self.untouched.special.iter().copied().chain(last)
-    }
-
-    /// Return whether an output vertex lies where something was cut or may touch.
-    fn is_special(&self, vertex: VertexId) -> bool {
-        !self.untouched.vertices.contains(&vertex)
     }
 
     /// Return the number of special vertices.
@@ -138,7 +138,7 @@ impl<'a> Assembly<'a> {
         self.faces.push(face);
     }
 
-    pub(in crate::extract) fn finish(mut self, findings: Vec<Finding>) -> ExactMesh {
+    pub(in crate::extract) fn finish(mut self) -> ExactMesh {
         for vertex in &mut self.vertices {
             if let Corner::Point(point) = *vertex
                 && let Some((slot, index)) = self.names.get(&point)
@@ -146,7 +146,10 @@ impl<'a> Assembly<'a> {
                 *vertex = Corner::Source(*slot, *index);
             }
         }
-        self.drop_unused();
+        let order = self.order();
+        if order.len() < self.vertices.len() || !order.is_sorted() {
+            renumber(&mut self.vertices, &mut self.triangles, &order);
+        }
         ExactMesh {
             vertices: self.vertices,
             triangles: self.triangles,
@@ -154,41 +157,50 @@ impl<'a> Assembly<'a> {
             untouched: self.untouched.count,
             special: self.untouched.special,
             table: self.table,
-            findings,
+            findings: Vec::new(),
         }
     }
 
-    /// Leaves out vertices that no triangle uses; the others keep their order.
-    fn drop_unused(&mut self) {
-        let all = VertexId::all().take(self.vertices.len());
-        let mut used: Vec<bool> = all.map(|v| !self.is_special(v)).collect();
+    /// The vertices that triangles use: those of sources by slot and number, then constructed points.
+    fn order(&self) -> Vec<VertexId> {
+        let mut given: Vec<(Slot, VertexId, VertexId)> = Vec::new();
+        let mut points: Vec<VertexId> = Vec::new();
+        for vertex in self.used_special_vertices() {
+            match self.vertices[vertex.place()] {
+                Corner::Source(slot, number) => given.push((slot, number, vertex)),
+                Corner::Point(_) => points.push(vertex),
+            }
+        }
+        given.sort_unstable();
+        // The others are in order already.
+        let Range { start, end } = self.untouched.vertices.clone();
+        let own = &self.vertices[start.place()..end.place()];
+        let mut order = Vec::with_capacity(own.len() + given.len() + points.len());
+        let mut done = 0;
+        for (slot, number, vertex) in given {
+            let is_before = |corner: &Corner| *corner < Corner::Source(slot, number);
+            let next = done + own[done..].partition_point(is_before);
+            order.extend((start.place() + done..start.place() + next).map(VertexId::of));
+            order.push(vertex);
+            done = next;
+        }
+        order.extend((start.place() + done..end.place()).map(VertexId::of));
+        order.extend(points);
+        order
+    }
+
+    /// The special vertices that triangles use, ascending.
+    fn used_special_vertices(&self) -> impl Iterator<Item = VertexId> {
+        let mut used = vec![false; self.special_count()];
         for triangle in self.special_triangles() {
             poll();
             for vertex in self.triangles[triangle as usize] {
-                used[vertex.place()] = true;
+                if let Some(place) = self.special_place(vertex) {
+                    used[place] = true;
+                }
             }
         }
-        if used.iter().all(|u| *u) {
-            return;
-        }
-        let image = numbers_left(&used);
-        let mut keep = used.iter();
-        self.vertices
-            .retain(|_| keep.next().copied().unwrap_or(false));
-        for vertex in self.triangles.iter_mut().flatten() {
-            *vertex = image[vertex.place()];
-        }
-    }
-
-    /// The exact position of an output vertex.
-    pub(in crate::extract) fn position(&self, vertex: VertexId) -> Arc<Vertex> {
-        match self.vertices[vertex.place()] {
-            Corner::Point(point) => Arc::clone(self.table.point(point)),
-            Corner::Source(slot, index) => {
-                let mesh = self.sources.get(slot).mesh();
-                let place = mesh.map_or([0; 3], |m| m.vertices[index.place()]);
-                Arc::new(Vertex::lattice(place))
-            }
-        }
+        let places = (0..used.len()).filter(move |place| used[*place]);
+        places.map(|place| self.special_vertex(place))
     }
 }

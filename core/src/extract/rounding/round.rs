@@ -15,6 +15,7 @@ use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
+use crate::extract::order::put_in_order;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
@@ -23,7 +24,7 @@ use crate::mesh::disjoint::DisjointSets;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::snap_point;
 use crate::mesh::handle::{OrientedFace, VertexId};
-use crate::mesh::tasks::{both, fill_chunks, Worth, CHUNK};
+use crate::mesh::tasks::{both, Worth, CHUNK};
 use crate::mesh::topology::NONE;
 use crate::tree::solid::Solid;
 
@@ -60,12 +61,8 @@ pub fn mesh(solid: &Solid) -> Result<Mesh> {
 /// `Unbounded`.
 pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     let mut exact = assemble_patches(solid, patches)?;
-    let mut vertices = vec![[0.0; 3]; exact.vertices.len()];
-    fill_chunks(&exact.vertices, &mut vertices, |_, corners, out| {
-        for (corner, place) in corners.iter().zip(out) {
-            *place = position(solid, &exact, *corner);
-        }
-    });
+    let mut vertices = exact.positions(solid);
+    put_in_order(&mut exact, &mut vertices);
     let mut mesh = Mesh {
         vertices,
         triangles: std::mem::take(&mut exact.triangles),
@@ -301,16 +298,6 @@ fn used(mesh: &Mesh) -> Vec<bool> {
 
 fn is_left(triangle: &[VertexId; 3]) -> bool {
     triangle[0] != triangle[1]
-}
-
-fn position(solid: &Solid, exact: &ExactMesh, corner: Corner) -> [f64; 3] {
-    match corner {
-        Corner::Point(point) => solid.pitch().position(exact.table.point(point)),
-        Corner::Source(slot, vertex) => {
-            let mesh = solid.sources().get(slot).mesh();
-            mesh.map_or([0.0; 3], |m| m.doubles[vertex.place()])
-        }
-    }
 }
 
 /// Reports the corners that were put on the lattice.
