@@ -311,7 +311,7 @@ def test_blends_count_once_in_a_block() -> None:
         (lambda: BOX.fillet(BOX.edges(), 1), "no room"),
         (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "no room"),
         (lambda: STAR.chamfer(STAR.edges(), 0.1), "convex and concave edges meet, and more than"),
-        (lambda: FLUSH.fillet(FLUSH.edges(), 0.25), r"no room at \(1\.98808, 3\.82222, 4\)"),
+        (lambda: FLUSH.fillet(FLUSH.edges(), 0.25), r"no room at \(1\.82222, 2\.01192, 4\)"),
         (lambda: BOX.chamfer(STEP.edges(), 0.1), "another solid"),
         (lambda: BOX.chamfer(cast("Any", [0]), 0.1), "selection"),
         (lambda: BOX.chamfer(BOX.edges(), 0), "above 0"),
