@@ -10,6 +10,7 @@ import numpy as np
 
 import bspcsg as b
 from bspcsg.verify import oracle
+from bspcsg.verify.check import Verdict, check_result
 
 from .places import (
     Balls,
@@ -230,8 +231,17 @@ class _Trial:
             return
         ours = float(self.kernel.volume(self.result))
         area = sum(mesh.area for mesh in meshes)
-        if abs(theirs.volume - ours) > MERGED * area:
+        if abs(theirs.volume - ours) > MERGED * area and not self._is_rival_wrong(ours):
             yield f"rival: manifold3d has the volume {theirs.volume}, not {ours}"
+
+    def _is_rival_wrong(self, volume: float) -> bool:
+        """Say whether counts of crossings with the operands show that the rival's mesh is wrong.
+
+        They are exact, and ask neither engine. The set they speak for must have this volume.
+        """
+        report = check_result(self.result)
+        is_settled = report.verdict is Verdict.ORACLE_FAILED and report.compared == "sets"
+        return is_settled and report.set_volume == volume
 
 
 def _corners(faces: Sequence[Sequence[int]]) -> dict[tuple[int, int], int] | None:

@@ -23,7 +23,7 @@ from bspcsg.verify.referee import count_agreeing
 from fuzzing.files import good_file, judge_file
 from fuzzing.judge import Kernel, judge
 from fuzzing.places import Point
-from fuzzing.scenes import random_scene
+from fuzzing.scenes import UNIT, Body, Scene, cuboid_part, random_scene
 
 Patch = pytest.MonkeyPatch
 Broken = Callable[[Patch], None]
@@ -275,6 +275,33 @@ def test_the_referee_notices_broken_results(change: Callable[[b.Mesh], b.Mesh]) 
 
 
 # The judge of random scenes
+
+
+class Larger(Kernel):
+    """A kernel whose volumes are one unit too large."""
+
+    def volume(self, solid: b.Solid) -> Fraction:
+        return super().volume(solid) + 1
+
+
+def test_the_judge_hears_a_rival_unless_that_is_wrong_itself(monkeypatch: Patch) -> None:
+    low, high = (0, 0, 0), (2 * UNIT, 2 * UNIT, 2 * UNIT)
+    bodies = [
+        Body((cuboid_part(tuple(c + k for c in low), tuple(c + k for c in high)),))
+        for k in (0, UNIT)
+    ]
+    scene = Scene(tuple(bodies), ("|", 0, 1), ())
+    heard = [word for word in judge(scene, Larger()) if word.startswith("rival")]
+    assert heard == ["rival: manifold3d has the volume 15.0, not 16.0"]
+    right = oracle.ask
+
+    def wrong(*given: Any) -> oracle.Answer:
+        answer = right(*given)
+        return replace(answer, mesh=replace(answer.mesh, vertices=answer.mesh.vertices * 1.5))
+
+    monkeypatch.setattr(oracle, "ask", wrong)
+    assert judge(scene) == []
+    assert any(word.startswith("rival") for word in judge(scene, Larger()))
 
 
 class Faulty(Kernel):
