@@ -39,11 +39,18 @@ class Mutant(NamedTuple):
 
 MUTANTS = [
     Mutant(
-        "what is left of equal operands is turned inside out",
+        "lines that are equal decide a union, and lines that are opposite do not",
+        "merge/residual.rs",
+        "is_decided |= named[usize::from(!negate)];",
+        "is_decided |= named[usize::from(negate)];",
+        ("expressions",),
+    ),
+    Mutant(
+        "all that change at a place own it",
         "merge/expression.rs",
-        "            Residual::Literal(operand, outside)\n",
-        "            Residual::Literal(operand, inside)\n",
-        ("revisions",),
+        "        open &= !changes[line];\n",
+        "        open &= u64::MAX;\n",
+        ("expressions",),
     ),
     Mutant(
         "a triangle that a path crosses counts with the other sign",
@@ -68,9 +75,9 @@ MUTANTS = [
     ),
     Mutant(
         "what absorbs an expression is turned around",
-        "merge/expression.rs",
-        "Known::Value(v) if v == absorbing => return Known::Value(absorbing)",
-        "Known::Value(v) if v == absorbing => return Known::Value(!absorbing)",
+        "merge/residual.rs",
+        "Known::Value(v) => is_decided |= v == absorbing,",
+        "Known::Value(v) => is_decided |= v != absorbing,",
         ("expressions",),
     ),
     Mutant(

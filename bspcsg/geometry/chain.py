@@ -27,11 +27,12 @@ class FactorChain:
         The factors inside of them.
     """
 
-    __slots__ = ("_head", "_rest")
+    __slots__ = ("__weakref__", "_head", "_rest", "_shorter")
 
     def __init__(self, head: Factors = (), rest: "FactorBlock | None" = None) -> None:
         self._head = head
         self._rest = rest
+        self._shorter: tuple[int, FactorChain] | None = None
 
     @classmethod
     def of(cls, factors: Sequence[Factor]) -> "FactorChain":
@@ -77,7 +78,14 @@ class FactorChain:
         return reduce(step, reversed(self._head), value)
 
     def without(self, count: int) -> "FactorChain":
-        """Return the chain without so many of its outermost factors."""
+        """Return the chain without so many outermost factors, the same one as the last time."""
+        if count == 0:
+            return self
+        if self._shorter is None or self._shorter[0] != count:
+            self._shorter = (count, self._without(count))
+        return self._shorter[1]
+
+    def _without(self, count: int) -> "FactorChain":
         head, rest = self._head, self._rest
         while count >= len(head) and rest is not None:
             count -= len(head)

@@ -10,7 +10,7 @@ from .._types import FloatArray, IndexArray, SetOp
 from ..errors import LimitError, core_errors, invalid_parameter
 from ..mesh import interop
 from ..solid.counting import counted
-from ..solid.leaf import at_pitch
+from ..solid.leaf import Pitches
 from ..solid.point_set import PointSet
 from ..solid.program import Operator, program_of
 from ..solid.solid import Solid, combine
@@ -156,7 +156,7 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     trees = [_tree(va, fa), _tree(vb, fb)]
     pitch = min(tree.pitch for tree in trees)
     try:
-        operands = [at_pitch(tree, pitch) for tree in trees]
+        operands = [Pitches().of(tree, pitch) for tree in trees]
     except LimitError:
         # Solids find a lattice that holds both.
         mesh = OPERATIONS[op](Solid(va, fa), Solid(vb, fb)).to_mesh()

@@ -9,6 +9,7 @@ transform acts on its result as a whole. There is no recursion: expressions may 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 from .._types import ProgramLine
 from ..errors import internal
@@ -39,10 +40,24 @@ class ExpressionNode:
     so that another thread sees either all of the operation or all of the result.
     """
 
-    __slots__ = ("__weakref__", "content")
+    __slots__ = ("__weakref__", "_moved", "content")
 
     def __init__(self, content: Pending | ExpressionLeaf) -> None:
         self.content = content
+        self._moved: WeakKeyDictionary[FactorChain, ExpressionLeaf] | None = None
+
+    def placed(self, factors: FactorChain) -> ExpressionLeaf:
+        """Return the evaluated leaf under a transform, the same one while anybody has that one.
+
+        So a moved solid is one mesh to all operations that it is part of.
+        """
+        leaf = _evaluated(self.content)
+        if not factors:
+            return leaf
+        if self._moved is None:
+            self._moved = WeakKeyDictionary()
+        moved = self._moved.get(factors)
+        return self._moved.setdefault(factors, leaf.placed(factors)) if moved is None else moved
 
 
 def complement(placed: Placed) -> Placed:
@@ -138,8 +153,7 @@ def _evaluated(content: Pending | ExpressionLeaf) -> ExpressionLeaf:
 
 
 def _operand_leaf(placed: Placed) -> ExpressionLeaf:
-    content = _evaluated(placed.node.content)
-    leaf = content.placed(placed.factors) if placed.factors else content
+    leaf = placed.node.placed(placed.factors)
     # What remembers its operands must not be remembered in turn, or a chain would keep all of it.
     return leaf.forgetful() if isinstance(leaf, TreeLeaf) else leaf
 

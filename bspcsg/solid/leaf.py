@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Any, TypeAlias
+from typing import Any, Generic, TypeAlias, TypeVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -27,13 +27,8 @@ from .moving import SaidMesh
 from .program import COMPLEMENT, Algebra
 from .sewing import sewn
 
-
-def at_pitch(tree: Tree, pitch: int) -> Tree:
-    """Return the same solid on the lattice of this pitch, which must not be coarser."""
-    if tree.pitch == pitch:
-        return tree
-    with core_errors():
-        return tree.refined(pitch)
+_Key = TypeVar("_Key")
+_Value = TypeVar("_Value")
 
 
 def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
@@ -41,21 +36,35 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
         return tree.moving_crosses(list(motion.axes), list(motion.shift))
 
 
-class LastMoved:
-    """A leaf as its coordinates were last moved: copies of it share that."""
+class Last(Generic[_Key, _Value]):
+    """The value that was made last, and its key."""
 
     def __init__(self) -> None:
-        self._last: tuple[FactorChain, ExpressionLeaf] | None = None
+        self._last: tuple[_Key, _Value] | None = None
 
-    def get(self, factors: FactorChain) -> "ExpressionLeaf | None":
-        """Return the leaf moved by these factors, if they were the last."""
+    def get(self, key: _Key) -> _Value | None:
+        """Return what was made for this key, if it was the last."""
         last = self._last
-        return last[1] if last is not None and last[0] == factors else None
+        return last[1] if last is not None and last[0] == key else None
 
-    def keep(self, factors: FactorChain, moved: "ExpressionLeaf") -> "ExpressionLeaf":
-        """Remember a moved leaf in place of the last; return it."""
-        self._last = (factors, moved)
-        return moved
+    def keep(self, key: _Key, value: _Value) -> _Value:
+        """Remember a value in place of the last; return it."""
+        self._last = (key, value)
+        return value
+
+
+class Pitches(Last[int, Tree]):
+    """A tree as it was last put on a finer lattice: so it is one mesh to all that want it there."""
+
+    def of(self, tree: Tree, pitch: int) -> Tree:
+        """Return the same solid on the lattice of this pitch, which must not be coarser."""
+        if tree.pitch == pitch:
+            return tree
+        known = self.get(pitch)
+        if known is not None:
+            return known
+        with core_errors():
+            return self.keep(pitch, tree.refined(pitch))
 
 
 #: The fewest steps across a mesh that may be rounded for others: import takes no fewer, either.
@@ -99,7 +108,8 @@ class MeshLeaf:
         self._rounded: str | None = None
         self._given_pitch = pitch
         self._is_mended = False
-        self.last_moved = LastMoved()
+        self._pitches = Pitches()
+        self.last_moved: Last[FactorChain, ExpressionLeaf] = Last()
 
     @property
     def pitch(self) -> int | None:
@@ -137,7 +147,7 @@ class MeshLeaf:
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
-        return at_pitch(self.grown(), pitch)
+        return self._pitches.of(self.grown(), pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
@@ -241,7 +251,10 @@ class TreeLeaf:
     record: Record | None = None
     extent: "Extent" = None
     sayings: "Sayings" = ()
-    last_moved: LastMoved = field(default_factory=LastMoved, init=False, repr=False)
+    _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
+    last_moved: "Last[FactorChain, ExpressionLeaf]" = field(
+        default_factory=Last, init=False, repr=False
+    )
 
     @property
     def pitch(self) -> int | None:
@@ -250,7 +263,7 @@ class TreeLeaf:
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
-        return at_pitch(self.result, pitch)
+        return self._pitches.of(self.result, pitch)
 
     def placed(self, factors: FactorChain) -> "ExpressionLeaf":
         """Return the leaf moved by the factors, outermost first."""
@@ -322,12 +335,16 @@ class PlaneLeaf:
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
         default_factory=WeakKeyDictionary, init=False, repr=False
     )
+    _trees: Last[int, Tree] = field(default_factory=Last, init=False, repr=False)
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
+        known = self._trees.get(pitch)
+        if known is not None:
+            return known
         plane = self.plane.on_lattice(pitch)
         with core_errors():
-            return Tree.half_space(plane.row, pitch, plane.note)
+            return self._trees.keep(pitch, Tree.half_space(plane.row, pitch, plane.note))
 
     def beyond(self, pitch: int) -> "ConstantLeaf | None":
         """Return what the half-space is to a lattice if its plane lies beyond that."""

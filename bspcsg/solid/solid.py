@@ -302,8 +302,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     def _leaf(self) -> ExpressionLeaf:
         """Return what the solid is evaluated to, in its place."""
         if self._placed is None:
-            leaf = evaluate(self._node)
-            self._placed = leaf.placed(self._factors) if self._factors else leaf
+            evaluate(self._node)
+            self._placed = self._node.placed(self._factors)
         return self._placed
 
     @property

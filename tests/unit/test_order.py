@@ -51,14 +51,63 @@ def folded(operands: list[b.Solid], seed: int, ask: Callable[[b.Solid], object])
     return result
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_what_was_asked_before_leaves_the_bytes_as_they_are(seed: int) -> None:
+def woven(operands: list[b.Solid], seed: int, ask: Callable[[b.Solid], object]) -> b.Solid:
+    """Combine operands, some of them again later, and ask something of each result."""
+    rng = np.random.default_rng(seed)
+    pool = list(operands)
+    spare = len(pool)
+    while len(pool) > 1:
+        one, other = rng.permutation(len(pool))[:2]
+        first, second = pool[one], pool[other]
+        combined = (first | second, first - second, first & second, first ^ second, ~(~first))
+        result = combined[rng.integers(5)]
+        if rng.random() < 0.3:
+            result = result.translate(rng.integers(-1, 2, 3))
+        ask(result)
+        stays = spare > 0 and rng.random() < 0.4
+        spare -= stays
+        pool = [solid for k, solid in enumerate(pool) if k != one and (stays or k != other)]
+        pool.append(result)
+    return pool[0]
+
+
+@pytest.mark.parametrize("combine", [folded, woven])
+@pytest.mark.parametrize("make", [balls, boxes])
+@pytest.mark.parametrize("seed", range(12))
+def test_what_was_asked_before_leaves_the_bytes_as_they_are(
+    seed: int,
+    make: Callable[[int, int], list[b.Solid]],
+    combine: Callable[[list[b.Solid], int, Callable[[b.Solid], object]], b.Solid],
+) -> None:
     def final(ask: Callable[[b.Solid], object]) -> tuple[bytes, ...]:
-        return bytes_of(folded(balls(seed, 5), seed, ask))
+        return bytes_of(combine(make(seed, 6), seed, ask))
 
     unasked = final(lambda _: None)
     for question in QUESTIONS:
         assert final(question) == unasked
+
+
+def test_where_three_faces_coincide_the_owner_is_that_of_the_steps() -> None:
+    # In x = 1 one box ends where another begins, and a third ends, whose face is left.
+    def faces(ask: Callable[[b.Solid], object]) -> set[int]:
+        both = b.cube(1) | b.cube(1).translate(1, 0, 0)
+        ask(both)
+        left = both & b.cube(1)
+        mesh = left.to_mesh()
+        at_wall = (mesh.vertices[mesh.faces][:, :, 0] == 1).all(axis=1)
+        return set(mesh.source[at_wall, 0].tolist())
+
+    assert [faces(ask) for ask in (lambda _: None, *QUESTIONS)] == [{2}] * 5
+
+
+def test_a_moved_solid_is_one_mesh_to_all_operations() -> None:
+    moved = b.sphere(1, segments=8).translate(1, 2, 3)
+    plane = b.half_space([1, 0, 0], 1)
+    parts = [moved & plane, moved - plane]
+    for part in parts:
+        part.to_mesh()
+    whole = (parts[0] | parts[1]).to_mesh()
+    assert set(whole.source[:, 0].tolist()) == {0}
 
 
 @pytest.mark.parametrize("make", [balls, boxes])

@@ -9,6 +9,7 @@ pub mod lists;
 pub mod op;
 pub mod pairs;
 pub mod plane;
+pub mod residual;
 pub mod rule;
 #[cfg(test)]
 pub(crate) mod scenes;

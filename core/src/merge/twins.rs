@@ -17,13 +17,11 @@ const SAMPLE: usize = 32;
 /// at most so many passes over the operands.
 const KINDS: usize = 4;
 
-/// The expression with no list that names two operands which are one mesh; `None` if it has none.
-///
-/// Of coinciding faces of a list the first operand's stay. So the first of equal meshes can stand
-/// for all. Equal meshes in different lists are left: each may be cut by others.
+/// The expression with no list that names two operands which are one mesh; `None` if no two operands
+/// are.
 pub(super) fn without_twins(expression: &Expression, solids: &[Solid]) -> Option<Expression> {
     let firsts = firsts(solids)?;
-    expression.merged(|operand| firsts[operand as usize])
+    Some(expression.merged(|operand| firsts[operand as usize]))
 }
 
 /// For each operand the first that is the same mesh; `None` if all differ.

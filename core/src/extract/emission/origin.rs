@@ -22,7 +22,8 @@ const ROUNDING: f64 = 1e-12;
 /// The faces of one plane in a projection, to be asked for those at points.
 ///
 /// A triangle of a joined polygon may lie in several faces; the face at its centre stands for it.
-/// Doubles decide, for nothing but the name depends on it; where faces overlap, the first counts.
+/// Doubles decide, for nothing but the name depends on it. The first face counts that holds the centre
+/// but for rounding: so of faces on whose common edge it lies always the same.
 pub struct Owners<'a> {
     group: &'a PlaneGroup,
     /// The corners of each face; none for a half-space, which is everywhere.
@@ -79,9 +80,9 @@ impl<'a> Owners<'a> {
     fn compare(&self, search: Search, found: &mut [OrientedFace]) {
         for (number, point) in search.points {
             poll();
-            let mut near = search.faces.iter().map(|face| *face as usize);
-            if let Some(face) = near.find(|face| self.holds(*face, *point)) {
-                found[*number] = self.group.faces[face];
+            let mut near = search.faces.iter();
+            if let Some(face) = near.find(|face| self.reaches(**face, &[*point; 2])) {
+                found[*number] = self.group.faces[*face as usize];
             }
         }
     }
@@ -111,19 +112,15 @@ impl<'a> Owners<'a> {
 
     /// Those of some faces that may hold a point of a box.
     fn reaching(&self, faces: &[u32], bounds: &Bounds) -> Vec<u32> {
-        let reaches = |face: &u32| {
-            let corners = self.corners[*face as usize];
-            corners.is_none_or(|corners| may_meet(&corners, bounds))
-        };
-        faces.iter().copied().filter(reaches).collect()
+        let faces = faces.iter().copied();
+        faces.filter(|face| self.reaches(*face, bounds)).collect()
     }
 
-    fn holds(&self, face: usize, p: [f64; 2]) -> bool {
-        let Some(corners) = self.corners[face] else {
-            return true;
-        };
-        let turns = sides(&corners).map(|side| turn(side, p));
-        turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
+    /// Return false only if a face leaves out a box; a point is left out if it lies outside by more
+    /// than rounding.
+    fn reaches(&self, face: u32, bounds: &Bounds) -> bool {
+        let corners = self.corners[face as usize];
+        corners.is_none_or(|corners| may_meet(&corners, bounds))
     }
 }
 

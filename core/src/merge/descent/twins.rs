@@ -13,22 +13,31 @@ use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 use crate::merge::kernels::problem::Listed;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::merge::residual::Twin;
 use crate::tree::node::Part;
 
-/// Operands with the one that stands for each, ascending.
-pub struct Firsts(Vec<(u32, u32)>);
+/// Operands with the twin of each, ascending.
+pub struct Firsts(Vec<(u32, Twin)>);
 
 impl Firsts {
-    /// The operand that stands for another one.
-    pub fn of(&self, operand: u32) -> u32 {
+    /// The twin of an operand; an operand without another is its own.
+    pub fn of(&self, operand: u32) -> Twin {
         let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
-        at.map_or(operand, |at| self.0[at].1)
+        at.map_or(itself(operand), |at| self.0[at].1)
     }
 
-    /// `None` if each stands for itself only.
-    fn found(pairs: Vec<(u32, u32)>) -> Option<Self> {
-        let is_other = |pair: &(u32, u32)| pair.0 != pair.1;
+    /// `None` if each is its own twin.
+    fn found(pairs: Vec<(u32, Twin)>) -> Option<Self> {
+        let is_other = |pair: &(u32, Twin)| pair.0 != pair.1.first;
         pairs.iter().any(is_other).then_some(Self(pairs))
+    }
+}
+
+/// Return the twin of an operand that is none of another.
+fn itself(operand: u32) -> Twin {
+    Twin {
+        first: operand,
+        has_its_faces: true,
     }
 }
 
@@ -54,7 +63,7 @@ pub fn of_one_node(states: &States) -> Option<Firsts> {
             }
             State::Constant(_) | State::List(_) | State::Bins(_) => *number,
         };
-        (*number, first)
+        (*number, itself(first))
     };
     Firsts::found(states.iter().map(pair).collect())
 }
@@ -82,12 +91,16 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
         }
         let mark = mark(&listed.list, sources)?;
         let other = *known.entry((size(listed), mark)).or_insert(listed);
-        let is_new = other.number == listed.number;
-        let are_one = is_new || are_equal(&other.list, &listed.list, sources);
-        are_one.then_some(other.number)
+        if other.number == listed.number {
+            return None;
+        }
+        are_equal(&other.list, &listed.list, |r| corners(r, sources)).then(|| Twin {
+            first: other.number,
+            has_its_faces: are_equal(&other.list, &listed.list, |r| (r.slot(), r.face)),
+        })
     };
     let own = operands.iter().map(|listed| listed.number);
-    let pair = |(number, listed)| (number, first(listed).unwrap_or(number));
+    let pair = |(number, listed)| (number, first(listed).unwrap_or_else(|| itself(number)));
     Firsts::found(own.zip(operands).map(pair).collect())
 }
 
@@ -103,9 +116,10 @@ fn mark(list: &List, sources: &Sources) -> Option<u64> {
     Some(parts.fold(sum, u64::wrapping_add))
 }
 
-fn are_equal(a: &List, b: &List, sources: &Sources) -> bool {
+/// Return whether two lists have the same elements, of which faces are the same if they have one key.
+fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool {
     let faces = |list: &List| {
-        let mut faces: Vec<_> = list.records.iter().map(|r| corners(r, sources)).collect();
+        let mut faces: Vec<K> = list.records.iter().map(&key_of).collect();
         faces.sort_unstable();
         faces
     };
@@ -158,7 +172,7 @@ mod tests {
     fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
         let shared = Shared::of(solids);
         let firsts = of_one_boundary(&shared.operands(), &shared.sources)?;
-        Some((0..).zip(solids).map(|(k, _)| firsts.of(k)).collect())
+        Some((0..).zip(solids).map(|(k, _)| firsts.of(k).first).collect())
     }
 
     #[test]
@@ -208,7 +222,7 @@ mod tests {
         ];
         let states: States = (4..).zip(states).collect();
         let found = of_one_node(&states).expect("the last is the first");
-        assert_eq!([4, 5, 6, 7].map(|k| found.of(k)), [4, 5, 6, 4]);
+        assert_eq!([4, 5, 6, 7].map(|k| found.of(k).first), [4, 5, 6, 4]);
         assert!(of_one_node(&states[..3].to_vec()).is_none());
     }
 }

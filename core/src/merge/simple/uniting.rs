@@ -15,7 +15,7 @@ use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::merge::descent::join;
 use crate::merge::kernels::kept::{assemble, Kept};
-use crate::merge::kernels::trees::{keep, Piece};
+use crate::merge::kernels::trees::{keep, orientation, Piece};
 use crate::merge::lists::list::{List, Sources};
 use crate::merge::rule::Rule;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
@@ -103,7 +103,9 @@ impl CutUp {
             }
         };
         let pieces = self.pieces.into_iter().zip(sides).map(piece).collect();
-        keep(&self.fragment, 0, pieces, &mut |labels: &[bool]| labels[0])
+        keep(&self.fragment, pieces, |piece| {
+            orientation([piece.minus[0], piece.plus[0]])
+        })
     }
 }
 

@@ -2,12 +2,15 @@
 
 use std::ops::Range;
 
+use smallvec::SmallVec;
+
 use super::extent::Extent;
 use super::facet::{Facet, Facets, ACROSS};
 use super::grid::{mask, Grid};
 use super::pieces::pieces;
 use crate::geometry::cell::Cell;
 use crate::interrupt::poll;
+use crate::merge::expression::Expression;
 use crate::merge::kernels::kept::Kept;
 use crate::merge::kernels::stays::{kept, Settled, Stays};
 
@@ -22,7 +25,13 @@ pub(super) struct Scene<'a> {
     pub(super) fields: &'a [Vec<u64>],
     /// The columns of the expression's value.
     pub(super) value: &'a [u64],
+    pub(super) expression: &'a Expression,
+    /// The operands' places by their numbers.
+    pub(super) places: &'a [usize],
 }
+
+/// A plane by its axis and the number of its line.
+type Plane = (usize, usize);
 
 impl Scene<'_> {
     /// Return what stays of all facets; `None` if two of an operand overlap.
@@ -41,40 +50,68 @@ impl Scene<'_> {
         Some(kept(settled.into_iter(), &self.facets.parts, polygon))
     }
 
-    /// Settles the facets of one plane, operand by operand: the first of which the label differs
-    /// on the two sides owns a place.
+    /// Settles the facets of one plane.
     fn keep_sheet(&self, sheet: &[usize], settled: &mut Vec<Settled>) -> Option<()> {
-        let facet = &self.facets.all[sheet[0]];
-        let (row, _) = ACROSS[facet.axis];
-        let mut free = vec![u64::MAX; self.grid.count(row)];
         let all = &self.facets.all;
-        for own in sheet.chunk_by(|a, b| all[*a].operand == all[*b].operand) {
+        let facet = &all[sheet[0]];
+        let plane = (facet.axis, self.extents[sheet[0]].line);
+        let runs = sheet.chunk_by(|a, b| all[*a].operand == all[*b].operand);
+        let runs: Vec<&[usize]> = runs.collect();
+        if runs.iter().any(|own| self.overlap(own)) {
+            return None;
+        }
+        let operands: Vec<usize> = runs.iter().map(|own| all[own[0]].operand).collect();
+        for (own, owned) in runs.iter().zip(self.owned(plane, &operands)) {
             poll();
-            if self.overlap(own) {
-                return None;
-            }
-            let owned = self.owned(own[0], &mut free);
             settled.extend(own.iter().filter_map(|i| self.settled(*i, &owned)));
         }
         Some(())
     }
 
-    /// The free rectangles of a facet's plane across which its operand's label and the expression
-    /// change, row by row: those with the inside below, and above. They are free no more.
-    fn owned(&self, i: usize, free: &mut [u64]) -> Vec<[u64; 2]> {
-        let (facet, line) = (&self.facets.all[i], self.extents[i].line);
-        let owned = free.iter_mut().enumerate().map(|(row, free)| {
-            let sides = |field: &[u64]| self.grid.sides(field, facet.axis, line, row);
-            let [below, above] = sides(&self.fields[facet.operand]);
-            let differs = (below ^ above) & *free;
-            if differs == 0 {
-                return [0; 2];
+    /// For each operand with facets in a plane the rectangles that it owns and across which the
+    /// expression changes, row by row: those with the inside below, and above.
+    fn owned(&self, plane: Plane, operands: &[usize]) -> Vec<Vec<[u64; 2]>> {
+        let (row, _) = ACROSS[plane.0];
+        let rows = self.grid.count(row);
+        let mut owned = vec![Vec::with_capacity(rows); operands.len()];
+        for row in 0..rows {
+            poll();
+            let [below, above] = self.sides(self.value, plane, row);
+            let changed = below ^ above;
+            let bounds = |k: &usize| self.changes(*k, plane, row) & changed;
+            let bounds: SmallVec<[u64; 4]> = operands.iter().map(bounds).collect();
+            let contested = contested(&bounds);
+            let owners = self.owners(contested, plane, row);
+            for ((owned, k), bounds) in owned.iter_mut().zip(operands).zip(bounds) {
+                let won = owners.iter().filter(|(owner, _)| owner == k);
+                let won = won.fold(0, |all, (_, won)| all | won);
+                let own = bounds & !contested | won & contested;
+                owned.push([below & own, above & own]);
             }
-            *free &= !differs;
-            let [below, above] = sides(self.value);
-            [below & !above & differs, above & !below & differs]
-        });
-        owned.collect()
+        }
+        owned
+    }
+
+    /// The owners of rectangles of a row of a plane in which faces of several operands bound the
+    /// expression.
+    fn owners(&self, contested: u64, plane: Plane, row: usize) -> Vec<(usize, u64)> {
+        if contested == 0 {
+            return Vec::new();
+        }
+        let place = |number: u32| self.places[number as usize];
+        let side = |side: usize| move |k: u32| self.sides(&self.fields[place(k)], plane, row)[side];
+        let owners = self.expression.owners(side(0), side(1)).into_iter();
+        owners.map(|(k, won)| (place(k), won)).collect()
+    }
+
+    /// The rectangles of a row of a plane across which an operand's label changes.
+    fn changes(&self, operand: usize, plane: Plane, row: usize) -> u64 {
+        let [below, above] = self.sides(&self.fields[operand], plane, row);
+        below ^ above
+    }
+
+    fn sides(&self, field: &[u64], (axis, line): Plane, row: usize) -> [u64; 2] {
+        self.grid.sides(field, axis, line, row)
     }
 
     /// Return whether facets of one operand and plane that face different ways overlap. Those that
@@ -156,6 +193,16 @@ impl Scene<'_> {
             touched.fold(0, |all, b| all | 1 << b)
         })
     }
+}
+
+/// Return the bits that more than one word has.
+fn contested(words: &[u64]) -> u64 {
+    let (mut once, mut more) = (0, 0);
+    for word in words {
+        more |= once & word;
+        once |= word;
+    }
+    more
 }
 
 /// Return whether all bits of a mask are set on one side of every row, or none; `None` if they

@@ -48,7 +48,8 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     }
     let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
     let fields = fields(&grid, &facets, &extents, operands)?;
-    let value = value(problem.expression, operands, &fields, grid.columns());
+    let places = places(operands);
+    let value = value(problem.expression, &places, &fields, grid.columns());
     let scene = Scene {
         cell: problem.cell,
         grid: &grid,
@@ -56,6 +57,8 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
         extents: &extents,
         fields: &fields,
         value: &value,
+        expression: problem.expression,
+        places: &places,
     };
     let kept = scene.keep()?;
     Some((kept, i32::from(value[0] & 1 != 0)))
@@ -78,18 +81,23 @@ fn fields(
     operands.iter().enumerate().map(field).collect()
 }
 
-/// Return the cells in which an expression is true.
-fn value(
-    expression: &Expression,
-    operands: &[Listed],
-    fields: &[Vec<u64>],
-    columns: usize,
-) -> Vec<u64> {
+/// Return the places of operands by their numbers.
+fn places(operands: &[Listed]) -> Vec<usize> {
     let last = operands.last().map_or(0, |l| l.number as usize);
     let mut places = vec![0; last + 1];
     for (place, listed) in operands.iter().enumerate() {
         places[listed.number as usize] = place;
     }
+    places
+}
+
+/// Return the cells in which an expression is true.
+fn value(
+    expression: &Expression,
+    places: &[usize],
+    fields: &[Vec<u64>],
+    columns: usize,
+) -> Vec<u64> {
     let scratch = &mut Vec::new();
     let word = |i: usize, scratch: &mut _| {
         expression.words(|k: u32| fields[places[k as usize]][i], scratch)

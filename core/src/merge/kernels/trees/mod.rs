@@ -49,25 +49,71 @@ impl Kernel for LocalTrees {
 
 /// Return what stays of all operands, and the value at the cell's corner.
 fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<Kept>, i32) {
-    let place = |number: u32| {
-        operands
-            .iter()
-            .position(|o| o.number == number)
-            .unwrap_or(0)
+    let bounds = Bounds {
+        operands,
+        expression,
     };
     let scratch = &mut Vec::new();
-    let mut value = |labels: &[bool]| expression.value(|k| labels[place(k)], scratch);
     let at_corner: Vec<bool> = operands.iter().map(|o| rule.inside(o.corner)).collect();
-    let corner = i32::from(value(&at_corner));
+    let corner = i32::from(bounds.value(&at_corner, scratch));
     let mut kept = Vec::new();
     for (i, operand) in operands.iter().enumerate() {
         for fragment in &operand.fragments {
             poll();
             let pieces = sides(fragment, i, operands, rule);
-            kept.extend(keep(fragment, i, pieces, &mut value));
+            kept.extend(keep(fragment, pieces, |piece| {
+                bounds.side(piece, i, scratch)
+            }));
         }
     }
     (kept, corner)
+}
+
+/// The pieces that bound an expression.
+struct Bounds<'a> {
+    operands: &'a [Operand],
+    expression: &'a Expression,
+}
+
+impl Bounds<'_> {
+    fn place(&self, number: u32) -> usize {
+        let place = self.operands.iter().position(|o| o.number == number);
+        place.unwrap_or(0)
+    }
+
+    fn value(&self, labels: &[bool], scratch: &mut Vec<u64>) -> bool {
+        let label = |k: u32| labels[self.place(k)];
+        self.expression.value(label, scratch)
+    }
+
+    /// Return the orientation in which a piece of an operand bounds the expression; `None` if it does
+    /// not, or another operand owns the place.
+    fn side(&self, piece: &Piece, own: usize, scratch: &mut Vec<u64>) -> Option<Orientation> {
+        if piece.minus[own] == piece.plus[own] {
+            return None;
+        }
+        let sides = [&piece.minus, &piece.plus].map(|labels| self.value(labels, scratch));
+        let orientation = orientation(sides)?;
+        (piece.is_alone(own) || self.is_owned(piece, own)).then_some(orientation)
+    }
+
+    fn is_owned(&self, piece: &Piece, own: usize) -> bool {
+        let word = |labels: &[bool], k: u32| u64::from(labels[self.place(k)]);
+        let [minus, plus] = [&piece.minus, &piece.plus];
+        let owners = self
+            .expression
+            .owners(|k| word(minus, k), |k| word(plus, k));
+        owners.iter().any(|(k, _)| self.place(*k) == own)
+    }
+}
+
+/// Return the orientation of a piece with these values behind and in front of it, if they differ.
+pub(in crate::merge) fn orientation([minus, plus]: [bool; 2]) -> Option<Orientation> {
+    (minus != plus).then_some(if minus {
+        Orientation::Same
+    } else {
+        Orientation::Opposite
+    })
 }
 
 /// Cuts a fragment into pieces that have one label of each operand on either side.
@@ -118,29 +164,27 @@ impl Piece {
         pieces
     }
 
-    /// Return whether this operand is the first whose label differs on the two sides: it owns the
-    /// piece.
-    fn is_owned_by(&self, operand: usize) -> bool {
+    /// Return whether of no other operand the label differs on the two sides.
+    fn is_alone(&self, operand: usize) -> bool {
         let differs = |k: usize| self.minus[k] != self.plus[k];
-        differs(operand) && !(0..operand).any(differs)
+        (0..self.minus.len()).all(|k| k == operand || !differs(k))
     }
 }
 
-/// The pieces across which the expression changes, by orientation.
+/// The pieces of a fragment that stay, by the orientation in which they do.
 pub(in crate::merge) fn keep(
     fragment: &Fragment,
-    own: usize,
     pieces: Vec<Piece>,
-    value: &mut impl FnMut(&[bool]) -> bool,
+    mut side: impl FnMut(&Piece) -> Option<Orientation>,
 ) -> Vec<Kept> {
     let total = pieces.len();
     let mut same = Vec::new();
     let mut turned = Vec::new();
-    for piece in pieces.into_iter().filter(|p| p.is_owned_by(own)) {
-        match (value(&piece.minus), value(&piece.plus)) {
-            (true, false) => same.push(piece.polygon),
-            (false, true) => turned.push(piece.polygon),
-            _ => {}
+    for piece in pieces {
+        match side(&piece) {
+            Some(Orientation::Same) => same.push(piece.polygon),
+            Some(Orientation::Opposite) => turned.push(piece.polygon),
+            None => {}
         }
     }
     [(same, Orientation::Same), (turned, Orientation::Opposite)]

@@ -1,0 +1,335 @@
+//! The rest of an expression where some operands are known, or known to be equal.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::expression::{only_needed, Expression, Term};
+use crate::arith::convert::as_number;
+
+/// An expression after some of its operands have become constant.
+#[derive(Clone, Debug)]
+pub enum Residual {
+    /// Inside or outside, whatever the unknown operands are.
+    Constant(bool),
+    /// One operand, or its complement.
+    Literal(u32, bool),
+    /// More than one operand matters.
+    Open(Arc<Expression>),
+}
+
+/// A simplified line: a value, or a line of the new expression and whether to negate it.
+#[derive(Clone, Copy)]
+enum Known {
+    Value(bool),
+    Line(u32, bool),
+}
+
+impl Expression {
+    /// Puts in what is known and folds constants.
+    pub fn residual(&self, known: impl Fn(u32) -> Option<bool>) -> Residual {
+        self.folded(known, |folding, operand| {
+            folding.append(Term::Operand(operand))
+        })
+    }
+
+    /// Puts in what is known and folds constants; `add` makes a line of an operand that is not known.
+    fn folded(
+        &self,
+        known: impl Fn(u32) -> Option<bool>,
+        mut add: impl FnMut(&mut Folding, u32) -> u32,
+    ) -> Residual {
+        let mut folding = Folding::default();
+        for term in &self.terms {
+            let line = match term {
+                Term::Operand(k) => match known(*k) {
+                    Some(v) => Known::Value(v),
+                    None => Known::Line(add(&mut folding, *k), false),
+                },
+                Term::Not(a) => folding.folded[*a as usize].negated(),
+                Term::And(list) => folding.list(list, false),
+                Term::Or(list) => folding.list(list, true),
+                Term::Xor(list) => folding.xor(list),
+            };
+            folding.folded.push(line);
+        }
+        folding.close()
+    }
+
+    /// The same set where some operands are equal: `first` maps each to the one that stands for it. Of
+    /// equal operands of one list only the first is named.
+    ///
+    /// ```
+    /// use bspcsg::merge::expression::{Expression, Term};
+    ///
+    /// let [a, b, c] = [0, 1, 2].map(Term::Operand);
+    /// let union = Expression::new(vec![a, b, c, Term::Or(vec![0, 1, 2])])?;
+    /// assert_eq!(union.merged(|k| k.min(1)).operands(), [0, 1]);
+    /// # Ok::<(), bspcsg::error::Error>(())
+    /// ```
+    #[must_use]
+    pub fn merged(&self, first: impl Fn(u32) -> u32) -> Self {
+        let terms = match self.where_equal(|k| Twin::of(first(k))) {
+            Residual::Constant(false) => vec![Term::Or(Vec::new())],
+            Residual::Constant(true) => vec![Term::And(Vec::new())],
+            Residual::Literal(k, false) => vec![Term::Operand(k)],
+            Residual::Literal(k, true) => vec![Term::Operand(k), Term::Not(0)],
+            Residual::Open(left) => return Arc::unwrap_or_clone(left),
+        };
+        Self { terms }
+    }
+
+    /// The rest of the expression where some operands are equal.
+    ///
+    /// Equal arguments of one line fold. Operands of different lines that are equal, but by other faces,
+    /// stay: whose faces are left at a place depends on the others ([`Self::owners`]).
+    ///
+    /// ```
+    /// use bspcsg::merge::expression::{Expression, Term};
+    /// use bspcsg::merge::residual::{Residual, Twin};
+    ///
+    /// let [a, b] = [0, 1].map(Term::Operand);
+    /// let difference = Expression::new(vec![a, b, Term::Not(1), Term::And(vec![0, 2])])?;
+    /// let nothing = difference.where_equal(|_| Twin::of(0));
+    /// assert!(matches!(nothing, Residual::Constant(false)));
+    /// # Ok::<(), bspcsg::error::Error>(())
+    /// ```
+    pub fn where_equal(&self, twin: impl Fn(u32) -> Twin) -> Residual {
+        let mut firsts: HashMap<u32, u32> = HashMap::default();
+        let mut same: HashMap<u32, u32> = HashMap::default();
+        let add = |folding: &mut Folding, operand| {
+            let twin = twin(operand);
+            if let Some(line) = same.get(&twin.first).filter(|_| twin.has_its_faces) {
+                return *line;
+            }
+            let line = folding.append(Term::Operand(operand));
+            folding.twins[line as usize] = *firsts.entry(twin.first).or_insert(line);
+            if twin.has_its_faces {
+                same.insert(twin.first, line);
+            }
+            line
+        };
+        self.folded(|_| None, add)
+    }
+}
+
+/// The first operand that equals another one.
+#[derive(Clone, Copy, Debug)]
+pub struct Twin {
+    /// Its number.
+    pub first: u32,
+    /// True if the other one has the very faces of the first, not only equal ones.
+    pub has_its_faces: bool,
+}
+
+impl Twin {
+    /// The twin of an operand with other faces.
+    pub fn of(first: u32) -> Self {
+        Self {
+            first,
+            has_its_faces: false,
+        }
+    }
+}
+
+impl Known {
+    fn negated(self) -> Self {
+        match self {
+            Self::Value(v) => Self::Value(!v),
+            Self::Line(line, negate) => Self::Line(line, !negate),
+        }
+    }
+}
+
+/// An expression that is being folded.
+#[derive(Default)]
+struct Folding {
+    /// The lines so far, folded.
+    folded: Vec<Known>,
+    /// The new lines.
+    terms: Vec<Term>,
+    /// For each new line the first that equals it, as far as that is known.
+    twins: Vec<u32>,
+    /// For each new line whether the list at hand names it, and its complement.
+    named: Vec<[bool; 2]>,
+}
+
+impl Folding {
+    fn append(&mut self, term: Term) -> u32 {
+        let line = as_number(self.terms.len());
+        self.terms.push(term);
+        self.twins.push(line);
+        self.named.push([false; 2]);
+        line
+    }
+
+    fn twin(&self, line: u32) -> usize {
+        self.twins[line as usize] as usize
+    }
+
+    /// Folds a union (`absorbing` is true) or an intersection (`absorbing` is false).
+    fn list(&mut self, list: &[u32], absorbing: bool) -> Known {
+        let Some(open) = self.open(list, absorbing) else {
+            return Known::Value(absorbing);
+        };
+        match open.as_slice() {
+            [] => Known::Value(!absorbing),
+            [(line, negate)] => Known::Line(*line, *negate),
+            _ => {
+                let signed = |(line, negate): (u32, bool)| self.signed(line, negate);
+                let lines = open.into_iter().map(signed).collect();
+                let term = if absorbing {
+                    Term::Or(lines)
+                } else {
+                    Term::And(lines)
+                };
+                Known::Line(self.append(term), false)
+            }
+        }
+    }
+
+    /// The lines of a list that are open, the first of equal ones; `None` if a value or two lines that
+    /// are opposite decide all.
+    fn open(&mut self, list: &[u32], absorbing: bool) -> Option<Vec<(u32, bool)>> {
+        let mut open: Vec<(u32, bool)> = Vec::new();
+        let mut is_decided = false;
+        for i in list {
+            match self.folded[*i as usize] {
+                Known::Value(v) => is_decided |= v == absorbing,
+                Known::Line(line, negate) => {
+                    let twin = self.twin(line);
+                    let named = &mut self.named[twin];
+                    is_decided |= named[usize::from(!negate)];
+                    if !std::mem::replace(&mut named[usize::from(negate)], true) {
+                        open.push((line, negate));
+                    }
+                }
+            }
+            if is_decided {
+                break;
+            }
+        }
+        for (line, _) in &open {
+            let twin = self.twin(*line);
+            self.named[twin] = [false; 2];
+        }
+        (!is_decided).then_some(open)
+    }
+
+    /// Folds a symmetric difference, in which equal lines cancel each other.
+    fn xor(&mut self, list: &[u32]) -> Known {
+        let mut parity = false;
+        let mut open: Vec<u32> = Vec::new();
+        for i in list {
+            match self.folded[*i as usize] {
+                Known::Value(v) => parity ^= v,
+                Known::Line(line, negate) => {
+                    parity ^= negate;
+                    let twin = self.twin(line);
+                    if let Some(other) = open.iter().position(|l| self.twin(*l) == twin) {
+                        open.remove(other);
+                    } else {
+                        open.push(line);
+                    }
+                }
+            }
+        }
+        match open.as_slice() {
+            [] => Known::Value(parity),
+            [line] => Known::Line(*line, parity),
+            _ => Known::Line(self.append(Term::Xor(open)), parity),
+        }
+    }
+
+    /// A line, or a new one for its complement.
+    fn signed(&mut self, line: u32, negate: bool) -> u32 {
+        if negate {
+            self.append(Term::Not(line))
+        } else {
+            line
+        }
+    }
+
+    fn close(self) -> Residual {
+        match self.folded.last() {
+            None => Residual::Constant(false),
+            Some(Known::Value(v)) => Residual::Constant(*v),
+            Some(Known::Line(line, negate)) => close(self.terms, *line, *negate),
+        }
+    }
+}
+
+/// Keeps the lines the value depends on.
+fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
+    if let Term::Operand(k) = terms[line as usize] {
+        return Residual::Literal(k, negate);
+    }
+    terms.truncate(line as usize + 1);
+    if negate {
+        terms.push(Term::Not(line));
+    }
+    let terms = only_needed(terms);
+    Residual::Open(Arc::new(Expression { terms }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_folds_away() {
+        let terms = vec![Term::Operand(0), Term::Operand(1), Term::And(vec![0, 1])];
+        let both = Expression::new(terms).expect("well formed");
+        let with_first = |value: bool| both.residual(|k| (k == 0).then_some(value));
+        assert!(matches!(with_first(false), Residual::Constant(false)));
+        assert!(matches!(with_first(true), Residual::Literal(1, false)));
+        assert!(matches!(both.residual(|_| None), Residual::Open(_)));
+    }
+
+    #[test]
+    fn equal_operands_fold_away() {
+        let [a, b, c] = [0, 1, 2].map(Term::Operand);
+        // (a ∪ c) − b, (a ∩ c) ∪ b, and a ⊖ c ⊖ b, where b is a.
+        let cases = [
+            (
+                vec![Term::Or(vec![0, 2]), Term::Not(1), Term::And(vec![3, 4])],
+                None,
+            ),
+            (vec![Term::And(vec![0, 2]), Term::Or(vec![3, 1])], None),
+            (vec![Term::Xor(vec![0, 2, 1])], Some(2)),
+        ];
+        for (rest, alone) in cases {
+            let terms = [vec![a.clone(), b.clone(), c.clone()], rest].concat();
+            let whole = Expression::new(terms).expect("an expression");
+            let left = whole.where_equal(|k| Twin::of(if k == 1 { 0 } else { k }));
+            let scratch = &mut Vec::new();
+            for bits in 0..4u32 {
+                let holds = |k: u32| bits >> (k / 2) & 1 == 1;
+                let value = match &left {
+                    Residual::Constant(value) => *value,
+                    Residual::Literal(k, negate) => holds(*k) != *negate,
+                    Residual::Open(left) => left.value(holds, scratch),
+                };
+                assert_eq!(value, whole.value(holds, scratch));
+            }
+            let found = match left {
+                Residual::Literal(k, false) => Some(k),
+                _ => None,
+            };
+            assert_eq!(found, alone);
+        }
+        let same = Expression::new(vec![
+            a.clone(),
+            b,
+            c,
+            Term::Or(vec![0, 1]),
+            Term::And(vec![3, 2]),
+        ]);
+        let all = same.expect("an expression").where_equal(|_| Twin::of(0));
+        assert!(matches!(all, Residual::Literal(0, false)));
+        let alone = Expression::new(vec![a])
+            .expect("an expression")
+            .where_equal(|_| Twin::of(0));
+        assert!(matches!(alone, Residual::Literal(0, false)));
+    }
+}
