@@ -7,7 +7,7 @@ mod support;
 
 use bspcsg::geometry::cell::Cell;
 use bspcsg::merge::SetOp;
-use bspcsg::tree::node::{Branch, Deferred, Node, Work};
+use bspcsg::tree::node::{Branch, Deferred, Node};
 use bspcsg::tree::solid::Solid;
 use support::{applied, Shape};
 
@@ -66,7 +66,7 @@ fn is_drawn(cell: &Cell) -> bool {
 }
 
 fn meaning(leaf: &Deferred, solids: &[Solid; 2]) -> usize {
-    if leaf.work != Work::Given {
+    if leaf.worked {
         return 2;
     }
     let first = solids[0].sources().iter().next().map(|s| s.id());

@@ -1,5 +1,6 @@
 """The content of pickles: bytes with a checksum, looked at in full before use."""
 
+import base64
 import random
 import zlib
 
@@ -32,6 +33,27 @@ def loaded(data: bytes) -> b.Solid:
 
     with core_errors():
         return from_leaf(TreeLeaf(_core.Tree.load(data)))
+
+
+#: Two cubes that touch in a corner, as version 2 of the bytes has them, compressed, in base 85.
+TOUCHING_CUBES = (
+    "c-l)UE=Vp;FJ=;CU}R$8U;u%J71wsMLrDmQAW&qHgwgmAgNOzn?D6x_#nEYE&BLV+Q=W%`k(q&+iG_`wg`Jgwg_VJok"
+    "%^g|iJgssiH(7cg^`t=k)4@=fdkFoNW_ITpZU;P2rh!asRK<3su%};k70P!0Y4vI9GxcCJY4!P<%tVmCI$weLMCPwRyK"
+    "AHPA+anR4&8BOpiJMT4#&1"
+)
+
+
+def test_bytes_of_the_version_before_are_read() -> None:
+    old = zlib.decompress(base64.b85decode(TOUCHING_CUBES))
+    cubes = b.cube(1) | b.cube(1).translate(1, 1, 1)
+    again = loaded(old)
+    assert again.equals(cubes)
+    assert old[HEAD - 1] == 2
+    assert again.tree.dump()[HEAD - 1] == 3
+    newer = bytearray(old[:-CHECKSUM])
+    newer[HEAD - 1] = 4
+    with pytest.raises(b.FormatError, match="newer"):
+        loaded(bytes(newer) + zlib.crc32(newer).to_bytes(CHECKSUM, "little"))
 
 
 def test_any_damaged_byte_shows() -> None:

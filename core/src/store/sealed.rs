@@ -23,7 +23,10 @@ pub enum Kind {
 const MARK: [u8; 6] = *b"bspcsg";
 
 /// The version that is written.
-const VERSION: u8 = 2;
+const VERSION: u8 = 3;
+
+/// The first version with a mark. It knew of whole faces only whether they are turned.
+const OLDEST: u8 = 2;
 
 /// The first byte of version 1, which had neither mark nor checksum.
 const FIRST: u8 = 1;
@@ -72,7 +75,7 @@ pub fn seal(kind: Kind, value: &impl Serialize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A value from bytes, also of version 1.
+/// A value from bytes, also of earlier versions.
 ///
 /// # Errors
 /// `BadSnapshot`.
@@ -92,7 +95,7 @@ fn payload(kind: Kind, bytes: &[u8]) -> Result<&[u8]> {
     let Some((version, _)) = bytes.strip_prefix(&*head).and_then(<[u8]>::split_first) else {
         return Err(kind.refusal("they do not begin as one"));
     };
-    if *version != VERSION {
+    if !(OLDEST..=VERSION).contains(version) {
         let why = format!("version {version} is not known; a newer bspcsg may have written it");
         return Err(kind.refusal(&why));
     }

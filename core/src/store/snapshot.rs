@@ -9,7 +9,7 @@ use super::sound::is_sound;
 use crate::arith::bounds::{self, is_coordinate, COORDINATE_BITS};
 use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::boundary::collect::{collect, CutFace};
+use crate::extract::boundary::collect::{collect, Boundary, CutFace};
 use crate::extract::boundary::leaves::Fate;
 use crate::extract::rounding::snapping::{
     crosses_once_snapped, crossing_faces, look_at_contacts, moved_doubles,
@@ -28,7 +28,7 @@ use crate::merge::evaluate::normalize;
 use crate::merge::lists::list::Sources;
 use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
-use crate::mesh::handle::{FaceId, Slot, VertexId};
+use crate::mesh::handle::{FaceId, Slot, SourceFace, VertexId};
 use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::triangles::TriangleMesh;
@@ -76,9 +76,37 @@ enum SourceData {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct WholeFaces {
     slot: Slot,
-    /// True if they are turned around.
-    flip: bool,
+    manner: Manner,
     faces: Vec<FaceId>,
+}
+
+/// The orientation of whole faces, and whether they may touch others anywhere. The first two stand where
+/// version 2 has `false` and `true`.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+enum Manner {
+    Same,
+    Opposite,
+    TouchingSame,
+    TouchingOpposite,
+}
+
+impl Manner {
+    fn of(orientation: Orientation, touching: bool) -> Self {
+        match (orientation, touching) {
+            (Orientation::Same, false) => Self::Same,
+            (Orientation::Opposite, false) => Self::Opposite,
+            (Orientation::Same, true) => Self::TouchingSame,
+            (Orientation::Opposite, true) => Self::TouchingOpposite,
+        }
+    }
+
+    fn orientation(self) -> Orientation {
+        Orientation::turned_around(matches!(self, Self::Opposite | Self::TouchingOpposite))
+    }
+
+    fn is_touching(self) -> bool {
+        matches!(self, Self::TouchingSame | Self::TouchingOpposite)
+    }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -126,18 +154,7 @@ impl Snapshot {
     pub fn of(solid: &Solid) -> Self {
         let sources = Sources::new(solid.sources().clone());
         let boundary = collect(solid, &sources);
-        let mut wholes = Vec::new();
-        for (slot, fates) in boundary.fates.by_slot() {
-            for orientation in Orientation::BOTH {
-                let like = |(_, f): &(FaceId, &Fate)| **f == Fate::Whole(orientation);
-                let alike = FaceId::all().zip(fates).filter(like);
-                let faces: Vec<FaceId> = alike.map(|(face, _)| face).collect();
-                if !faces.is_empty() {
-                    let flip = orientation.is_opposite();
-                    wholes.push(WholeFaces { slot, flip, faces });
-                }
-            }
-        }
+        let mut wholes = WholeFaces::of(&boundary);
         let (planes, cut): (Vec<_>, Vec<_>) = boundary.cut.iter().partition(|c| is_full_plane(c));
         wholes.extend(planes.into_iter().map(WholeFaces::plane));
         let parts = cut.into_iter().map(|c| PartData {
@@ -188,7 +205,8 @@ impl Snapshot {
             let source = Arc::clone(source);
             leaf.groups.push(Group {
                 source,
-                orientation: Orientation::turned_around(w.flip),
+                orientation: w.manner.orientation(),
+                touching: w.manner.is_touching(),
                 faces: w.faces.clone(),
             });
         }
@@ -306,7 +324,8 @@ impl Snapshot {
             && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.place())
         {
             let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
-            return Ok(i32::from((side == Half::Minus) != only.flip));
+            let turned = only.manner.orientation().is_opposite();
+            return Ok(i32::from((side == Half::Minus) != turned));
         }
         Ok(self.outside)
     }
@@ -348,10 +367,38 @@ fn is_full_plane(cut: &CutFace) -> bool {
 }
 
 impl WholeFaces {
+    /// The whole faces of a boundary, by source and manner.
+    fn of(boundary: &Boundary) -> Vec<Self> {
+        let mut wholes = Vec::new();
+        for (slot, fates) in boundary.fates.by_slot() {
+            for orientation in Orientation::BOTH {
+                let like = |(_, f): &(FaceId, &Fate)| **f == Fate::Whole(orientation);
+                let alike = FaceId::all().zip(fates).filter(like);
+                let touches = |face: &FaceId| {
+                    let face = SourceFace::new(slot, *face);
+                    boundary.near.binary_search(&face).is_ok()
+                };
+                let (touching, apart): (Vec<_>, Vec<_>) =
+                    alike.map(|(face, _)| face).partition(touches);
+                for (faces, touching) in [(apart, false), (touching, true)] {
+                    if !faces.is_empty() {
+                        let manner = Manner::of(orientation, touching);
+                        wholes.push(Self {
+                            slot,
+                            manner,
+                            faces,
+                        });
+                    }
+                }
+            }
+        }
+        wholes
+    }
+
     fn plane(cut: &CutFace) -> Self {
         Self {
             slot: cut.face.slot(),
-            flip: cut.face.orientation.is_opposite(),
+            manner: Manner::of(cut.face.orientation, false),
             faces: vec![cut.face.id()],
         }
     }

@@ -139,27 +139,18 @@ pub struct Deferred {
     pub parts: Vec<PartElement>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
-    /// The work that several operands' boundaries here went through.
-    pub work: Work,
+    /// True if a kernel left the elements; else they are an operand's boundary, as it was.
+    pub worked: bool,
     /// The node's share of the volume, once somebody has asked.
     pub share: Cached<Share>,
-}
-
-/// The kernel that made a leaf; the later ones leave more open.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Work {
-    /// None: it is an operand's boundary, as it was.
-    #[default]
-    Given,
-    /// That for general position: elements touch only where one was cut.
-    General,
-    /// Local trees or a grid: elements may touch each other anywhere.
-    Trees,
 }
 
 /// Whole faces of one source with one orientation.
 #[derive(Clone, Debug)]
 pub struct Group {
+    /// True if they may touch other elements anywhere: local trees or a grid left them. Other faces
+    /// touch only where one was cut.
+    pub touching: bool,
     /// The source in which the faces live.
     pub source: Arc<Source>,
     /// The orientation of the faces, seen from the source.

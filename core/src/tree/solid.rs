@@ -189,6 +189,7 @@ impl Solid {
         let sources = [&source].into_iter().collect();
         let faces = source.face_ids().collect();
         let group = Group {
+            touching: false,
             source,
             orientation: Orientation::Same,
             faces,

@@ -19,7 +19,7 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node, Part, Work};
+use crate::tree::node::{Branch, Deferred, Group, Node, Part};
 
 /// A face that reaches out of a leaf that lists it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -383,7 +383,7 @@ impl<'a> Leaf<'a> {
         let mut found = Found::default();
         for group in &self.content.groups {
             let slot = sources.slot(&group.source);
-            if self.content.work == Work::Trees {
+            if group.touching {
                 let faces = group.faces.iter();
                 found.near.extend(faces.map(|f| SourceFace::new(slot, *f)));
             }

@@ -90,8 +90,9 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     let mut faces = listed(minus, a);
     for element in listed(plus, b) {
         poll();
-        if !faces.iter().any(|f| f.same_as(&element)) {
-            faces.push(element);
+        match faces.iter_mut().find(|f| f.same_as(&element)) {
+            Some(known) => known.touching |= element.touching,
+            None => faces.push(element),
         }
     }
     if faces.len() > JOINED {
@@ -111,7 +112,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         }
     }
     let mut faces = held;
-    faces.sort_by_key(|f| (sources.slot(&f.source), f.orientation, f.face));
+    faces.sort_by_key(|f| (sources.slot(&f.source), f.orientation, f.touching, f.face));
     let corner = corner_of(minus, a, cell);
     let plus_corner = corner_of(plus, b, &halves[1].2);
     if plus_corner != corner + change_along_edge(&faces, cell, cut) {
@@ -121,7 +122,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
         groups: grouped(faces),
         parts: Vec::new(),
         corner,
-        work: a.work.max(b.work),
+        worked: a.worked || b.worked,
         share: Cached::new(),
     }))
 }
@@ -160,6 +161,7 @@ fn small_leaf(branch: &Branch) -> Option<&Deferred> {
 }
 
 struct Listed {
+    touching: bool,
     source: Arc<Source>,
     orientation: Orientation,
     face: FaceId,
@@ -167,6 +169,7 @@ struct Listed {
 
 fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
     let entry = |g: &Group, face: &FaceId| Listed {
+        touching: g.touching,
         source: Arc::clone(&g.source),
         orientation: g.orientation.turned_if(branch.complement),
         face: *face,
@@ -231,10 +234,15 @@ fn grouped(faces: Vec<Listed>) -> Vec<Group> {
     for f in faces {
         poll();
         match groups.last_mut() {
-            Some(g) if Arc::ptr_eq(&g.source, &f.source) && g.orientation == f.orientation => {
+            Some(g)
+                if Arc::ptr_eq(&g.source, &f.source)
+                    && g.orientation == f.orientation
+                    && g.touching == f.touching =>
+            {
                 g.faces.push(f.face);
             }
             _ => groups.push(Group {
+                touching: f.touching,
                 source: f.source,
                 orientation: f.orientation,
                 faces: vec![f.face],

@@ -11,7 +11,7 @@ use crate::geometry::side::Half;
 use crate::merge::lists::bins::Bins;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::mesh::tasks::Worth;
-use crate::tree::node::{Branch, Node, Work};
+use crate::tree::node::{Branch, Node};
 
 /// Cells of at least so many elements are worth a task of their own: a kernel takes some 20 µs for
 /// half as many, and a task costs less than one.
@@ -140,11 +140,11 @@ impl State {
         match self {
             Self::Constant(_) => false,
             Self::Tree(branch) => match &*branch.node {
-                Node::Deferred(leaf) => leaf.work == Work::Given,
+                Node::Deferred(leaf) => !leaf.worked,
                 Node::Leaf(_) | Node::Cut(_) => false,
             },
-            Self::List(list) => list.work() == Work::Given,
-            Self::Bins(bins) => bins.work() == Work::Given,
+            Self::List(list) => !list.is_worked(),
+            Self::Bins(bins) => !bins.is_worked(),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{FaceId, SourceFace};
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Deferred, Group, Node, Part, PartElement, Work};
+use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
 use crate::tree::pieces::pieces;
 
 /// The part of one element that stays with one orientation.
@@ -114,11 +114,12 @@ impl Kept {
     }
 }
 
-/// Joins the pieces of each face again and lists them, as the work of a kernel.
+/// Joins the pieces of each face again and lists them, as the work of a kernel; `touching` says whether
+/// they may touch each other anywhere.
 pub fn assemble(
     mut kept: Vec<Kept>,
     corner: i32,
-    work: Work,
+    touching: bool,
     cell: &Cell,
     sources: &Sources,
 ) -> Node {
@@ -128,7 +129,7 @@ pub fn assemble(
     kept.sort_by_key(|k| (k.face.slot, k.orientation, k.face.id));
     let mut leaf = Deferred {
         corner,
-        work,
+        worked: true,
         ..Deferred::default()
     };
     for run in kept.chunk_by_mut(|a, b| a.face == b.face && a.orientation == b.orientation) {
@@ -140,7 +141,7 @@ pub fn assemble(
             [Kept {
                 what: What::Whole, ..
             }] => {
-                list_whole(&mut leaf.groups, source, face, orientation);
+                list_whole(&mut leaf.groups, source, face, orientation, touching);
                 continue;
             }
             [Kept {
@@ -166,7 +167,7 @@ pub fn assemble(
             let part = Arc::new(Part::new(Arc::clone(source), face, *cell, edges));
             leaf.parts.push(PartElement { part, orientation });
         } else {
-            list_whole(&mut leaf.groups, source, face, orientation);
+            list_whole(&mut leaf.groups, source, face, orientation, touching);
         }
     }
     Node::Deferred(leaf)
@@ -194,12 +195,14 @@ fn list_whole(
     source: &Arc<Source>,
     face: FaceId,
     orientation: Orientation,
+    touching: bool,
 ) {
     match groups.last_mut() {
         Some(g) if Arc::ptr_eq(&g.source, source) && g.orientation == orientation => {
             g.faces.push(face);
         }
         _ => groups.push(Group {
+            touching,
             source: Arc::clone(source),
             orientation,
             faces: vec![face],
@@ -290,7 +293,7 @@ mod tests {
     use crate::mesh::handle::Slot;
 
     fn assembled(scene: &Shared, kept: Vec<Kept>) -> Node {
-        assemble(kept, 1, Work::General, &scene.cell, &scene.sources)
+        assemble(kept, 1, false, &scene.cell, &scene.sources)
     }
 
     #[test]

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::merge::scenes::crossing;
     use crate::mesh::handle::FaceId;
-    use crate::tree::node::{Node, Work};
+    use crate::tree::node::Node;
 
     #[test]
     fn a_part_of_which_all_pieces_stay_is_kept_as_it_is() {
@@ -137,7 +137,7 @@ mod tests {
             let of_part = |i: usize, stays| (i, Owner::Part(0), [stays, Stays::Nothing]);
             let settled = [of_part(0, Stays::All), of_part(1, second)];
             let kept = kept(settled.into_iter(), &parts, |_| Some(polygon.clone()));
-            assemble(kept, 0, Work::General, &scene.cell, &scene.sources)
+            assemble(kept, 0, false, &scene.cell, &scene.sources)
         };
         let shared = |node: &Node| match node {
             Node::Deferred(leaf) => leaf.parts.iter().any(|p| Arc::ptr_eq(&p.part, &part)),

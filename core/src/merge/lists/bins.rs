@@ -20,7 +20,7 @@ use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node, Work};
+use crate::tree::node::{Branch, Deferred, Group, Node};
 
 /// Faces for each cell, at least, on average.
 const DENSITY: usize = 4;
@@ -138,15 +138,15 @@ impl Bins {
             groups: self.groups_in(cell),
             parts: Vec::new(),
             corner: self.corner_of(cell),
-            work: self.leaf().work,
+            worked: self.leaf().worked,
             ..Deferred::default()
         };
         Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
-    /// Return the work that the home went through.
-    pub fn work(&self) -> Work {
-        self.leaf().work
+    /// Return whether a kernel left the home.
+    pub fn is_worked(&self) -> bool {
+        self.leaf().worked
     }
 
     fn leaf(&self) -> &Deferred {
@@ -169,6 +169,7 @@ impl Bins {
             if !own.is_empty() {
                 let face = |e: &u32| group.faces[(e - first) as usize];
                 groups.push(Group {
+                    touching: group.touching,
                     source: Arc::clone(&group.source),
                     orientation: group.orientation.turned_if(self.home.complement),
                     faces: own.iter().map(face).collect(),

@@ -12,7 +12,7 @@ use crate::interrupt::spend;
 use crate::mesh::cached::Cached;
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Branch, Deferred, Group, Node, PartElement, Work};
+use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
 use crate::tree::pieces::{pieces, Piece};
 use crate::tree::table::Table;
 
@@ -68,23 +68,29 @@ pub struct Record {
     run: Run,
 }
 
-/// A slot and an orientation in one word: what the faces of a group have in common.
+/// A slot, an orientation and a mark in one word: the things that the faces of a group have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run(u32);
 
 impl Run {
-    /// The bit of the orientation: there are less than 2³¹ sources.
+    /// The bit of the orientation: there are less than 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
 
-    fn new(slot: Slot, orientation: Orientation) -> Self {
-        match orientation {
-            Orientation::Same => Self(slot.0),
-            Orientation::Opposite => Self(slot.0 | Self::OPPOSITE),
-        }
+    /// The bit of faces that may touch other elements anywhere.
+    const TOUCHING: u32 = 1 << 30;
+
+    fn new(slot: Slot, orientation: Orientation, touching: bool) -> Self {
+        let bit = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+        let opposite = bit(orientation.is_opposite(), Self::OPPOSITE);
+        Self(slot.0 | opposite | bit(touching, Self::TOUCHING))
     }
 
     fn slot(self) -> Slot {
-        Slot(self.0 & !Self::OPPOSITE)
+        Slot(self.0 & !(Self::OPPOSITE | Self::TOUCHING))
+    }
+
+    fn is_touching(self) -> bool {
+        self.0 & Self::TOUCHING != 0
     }
 
     fn orientation(self) -> Orientation {
@@ -131,7 +137,7 @@ pub struct List {
     pub parts: Vec<PartRecord>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
-    work: Work,
+    worked: bool,
 }
 
 /// The sources of an evaluation, in the order of the expression.
@@ -188,11 +194,11 @@ impl List {
             records: Vec::with_capacity(leaf.groups.iter().map(|g| g.faces.len()).sum()),
             parts: Vec::with_capacity(leaf.parts.len()),
             corner: branch.oriented(leaf.corner),
-            work: leaf.work,
+            worked: leaf.worked,
         };
         for group in &leaf.groups {
             let orientation = group.orientation.turned_if(branch.complement);
-            let run = Run::new(sources.slot(&group.source), orientation);
+            let run = Run::new(sources.slot(&group.source), orientation, group.touching);
             let record = |face: &FaceId| frame.record(&group.source, *face, run);
             list.records.extend(group.faces.iter().map(record));
         }
@@ -231,9 +237,14 @@ impl List {
         self.records.len() + self.parts.len()
     }
 
-    /// Return the kernel that the elements went through.
-    pub fn work(&self) -> Work {
-        self.work
+    /// Return whether a kernel left the elements.
+    pub fn is_worked(&self) -> bool {
+        self.worked
+    }
+
+    /// Return whether some faces may touch other elements anywhere.
+    pub fn is_touching(&self) -> bool {
+        self.records.iter().any(|r| r.run.is_touching())
     }
 
     /// Return whether no element is listed.
@@ -254,7 +265,7 @@ impl List {
             records: self.divide_records(cell, cut, sources),
             parts: above(&self.parts, cut.axis, at),
             corner: self.corner + change,
-            work: self.work,
+            worked: self.worked,
         };
         self.parts.retain(|p| p.low[cut.axis] < at);
         (self, plus)
@@ -372,6 +383,7 @@ impl List {
                 open = Some(r.run);
                 let source = Arc::clone(sources.get(r.slot()));
                 groups.push(Group {
+                    touching: r.run.is_touching(),
                     source,
                     orientation: r.orientation().turned_if(complement),
                     faces: Vec::new(),
@@ -387,7 +399,7 @@ impl List {
             groups,
             parts,
             corner,
-            work: self.work,
+            worked: self.worked,
             share: Cached::new(),
         })
     }

@@ -198,6 +198,7 @@ fn shell_of(source: &Arc<Source>, faces: Vec<FaceId>) -> Branch {
     let around = source.box_around(&faces);
     let cell = around.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
     let group = Group {
+        touching: false,
         source: Arc::clone(source),
         orientation: Orientation::Same,
         faces,

@@ -20,7 +20,7 @@ use crate::merge::lists::list::{List, Sources};
 use crate::merge::rule::Rule;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::topology::NONE;
-use crate::tree::node::{Branch, Work};
+use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
 /// The slot of the only source.
@@ -68,7 +68,11 @@ pub fn united_where_it_overlaps(
         let sides = cut.sides(rest.by_ref())?;
         kept.extend(cut.kept(&sides));
     }
-    let node = assemble(kept, 0, Work::Given, &root.cell, sources);
+    let mut node = assemble(kept, 0, false, &root.cell, sources);
+    if let Node::Deferred(leaf) = &mut node {
+        // All of it is one operand's boundary still.
+        leaf.worked = false;
+    }
     Some(join::around(root.cell, Branch::of_node(root.cell, node), 0))
 }
 

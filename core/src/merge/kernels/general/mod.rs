@@ -26,7 +26,7 @@ use smallvec::SmallVec;
 use super::kept::{assemble, Kept};
 use super::problem::{CellProblem, Kernel};
 use crate::merge::rule::Rule;
-use crate::tree::node::{Node, Work};
+use crate::tree::node::Node;
 pub(in crate::merge) use cutting::{cut_up_by_any, Cutter, Cutting, Face};
 use scene::Scene;
 
@@ -74,9 +74,14 @@ impl Kernel for GeneralPosition {
         let found = kept_and_corner(&scene, problem, self.cutters);
         overlapping.extend(scene.overlapping.get().map(|k| operands[*k].number));
         let (kept, corner) = found?;
-        let before = problem.operands.iter().map(|l| l.list.work()).max();
-        let work = before.unwrap_or_default().max(Work::General);
-        Some(assemble(kept, corner, work, problem.cell, problem.sources))
+        let touching = operands.iter().any(|l| l.list.is_touching());
+        Some(assemble(
+            kept,
+            corner,
+            touching,
+            problem.cell,
+            problem.sources,
+        ))
     }
 }
 

@@ -14,7 +14,7 @@ mod pieces;
 use super::kept::{assemble, Kept};
 use super::problem::{CellProblem, Kernel, Listed};
 use crate::merge::expression::Expression;
-use crate::tree::node::{Node, Work};
+use crate::tree::node::Node;
 use extent::Extent;
 use facet::Facets;
 use grid::Grid;
@@ -34,7 +34,7 @@ impl Kernel for Orthogonal {
     fn solve(&self, problem: &CellProblem, _: &mut Vec<u32>) -> Option<Node> {
         let CellProblem { cell, sources, .. } = *problem;
         let (kept, corner) = kept_and_corner(problem)?;
-        Some(assemble(kept, corner, Work::Trees, cell, sources))
+        Some(assemble(kept, corner, true, cell, sources))
     }
 }
 

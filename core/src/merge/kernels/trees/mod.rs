@@ -16,7 +16,7 @@ use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::merge::expression::Expression;
 use crate::merge::rule::Rule;
-use crate::tree::node::{Node, Work};
+use crate::tree::node::Node;
 use local_tree::{LocalTree, Sided};
 pub use operand::LeafTree;
 use operand::Operand;
@@ -43,7 +43,7 @@ impl Kernel for LocalTrees {
         let overlaps = |o: &&Operand| !o.simple;
         overlapping.extend(operands.iter().filter(overlaps).map(|o| o.number));
         let (kept, corner) = keep_all(&operands, problem.expression, problem.rule);
-        Some(assemble(kept, corner, Work::Trees, cell, sources))
+        Some(assemble(kept, corner, true, cell, sources))
     }
 }
 
