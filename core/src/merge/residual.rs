@@ -39,7 +39,7 @@ impl Expression {
         known: impl Fn(u32) -> Option<bool>,
         mut add: impl FnMut(&mut Folding, u32) -> u32,
     ) -> Residual {
-        let mut folding = Folding::default();
+        let mut folding = Folding::of(self.terms.len());
         for term in &self.terms {
             let line = match term {
                 Term::Operand(k) => match known(*k) {
@@ -103,7 +103,7 @@ impl Expression {
                 return *line;
             }
             let line = folding.append(Term::Operand(operand));
-            folding.twins[line as usize] = *firsts.entry(twin.first).or_insert(line);
+            folding.lines[line as usize].twin = *firsts.entry(twin.first).or_insert(line);
             if twin.has_its_faces {
                 same.insert(twin.first, line);
             }
@@ -142,29 +142,46 @@ impl Known {
 }
 
 /// An expression that is being folded.
-#[derive(Default)]
 struct Folding {
     /// The lines so far, folded.
     folded: Vec<Known>,
     /// The new lines.
     terms: Vec<Term>,
-    /// For each new line the first that equals it, as far as that is known.
-    twins: Vec<u32>,
-    /// For each new line whether the list at hand names it, and its complement.
-    named: Vec<[bool; 2]>,
+    /// What is known of each new line.
+    lines: Vec<Line>,
+}
+
+/// A line among its equals.
+#[derive(Clone, Copy)]
+struct Line {
+    /// The first line that equals it, as far as that is known.
+    twin: u32,
+    /// Whether the list at hand names the line, and its complement.
+    is_named: [bool; 2],
 }
 
 impl Folding {
+    /// Nothing yet of so many lines.
+    fn of(count: usize) -> Self {
+        Self {
+            folded: Vec::with_capacity(count),
+            terms: Vec::with_capacity(count),
+            lines: Vec::with_capacity(count),
+        }
+    }
+
     fn append(&mut self, term: Term) -> u32 {
-        let line = as_number(self.terms.len());
+        let twin = as_number(self.terms.len());
         self.terms.push(term);
-        self.twins.push(line);
-        self.named.push([false; 2]);
-        line
+        self.lines.push(Line {
+            twin,
+            is_named: [false; 2],
+        });
+        twin
     }
 
     fn twin(&self, line: u32) -> usize {
-        self.twins[line as usize] as usize
+        self.lines[line as usize].twin as usize
     }
 
     /// Folds a union (`absorbing` is true) or an intersection (`absorbing` is false).
@@ -198,7 +215,7 @@ impl Folding {
                 Known::Value(v) => is_decided |= v == absorbing,
                 Known::Line(line, negate) => {
                     let twin = self.twin(line);
-                    let named = &mut self.named[twin];
+                    let named = &mut self.lines[twin].is_named;
                     is_decided |= named[usize::from(!negate)];
                     if !std::mem::replace(&mut named[usize::from(negate)], true) {
                         open.push((line, negate));
@@ -211,7 +228,7 @@ impl Folding {
         }
         for (line, _) in &open {
             let twin = self.twin(*line);
-            self.named[twin] = [false; 2];
+            self.lines[twin].is_named = [false; 2];
         }
         (!is_decided).then_some(open)
     }

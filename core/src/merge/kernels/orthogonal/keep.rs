@@ -56,11 +56,11 @@ impl Scene<'_> {
         let facet = &all[sheet[0]];
         let plane = (facet.axis, self.extents[sheet[0]].line);
         let runs = sheet.chunk_by(|a, b| all[*a].operand == all[*b].operand);
-        let runs: Vec<&[usize]> = runs.collect();
+        let runs: SmallVec<[&[usize]; 2]> = runs.collect();
         if runs.iter().any(|own| self.overlap(own)) {
             return None;
         }
-        let operands: Vec<usize> = runs.iter().map(|own| all[own[0]].operand).collect();
+        let operands: SmallVec<[usize; 2]> = runs.iter().map(|own| all[own[0]].operand).collect();
         for (own, owned) in runs.iter().zip(self.owned(plane, &operands)) {
             poll();
             settled.extend(own.iter().filter_map(|i| self.settled(*i, &owned)));
@@ -70,14 +70,19 @@ impl Scene<'_> {
 
     /// For each operand with facets in a plane the rectangles that it owns and across which the
     /// expression changes, row by row: those with the inside below, and above.
-    fn owned(&self, plane: Plane, operands: &[usize]) -> Vec<Vec<[u64; 2]>> {
+    fn owned(&self, plane: Plane, operands: &[usize]) -> SmallVec<[Vec<[u64; 2]>; 2]> {
         let (row, _) = ACROSS[plane.0];
         let rows = self.grid.count(row);
-        let mut owned = vec![Vec::with_capacity(rows); operands.len()];
+        let none = |_| Vec::with_capacity(rows);
+        let mut owned: SmallVec<[Vec<[u64; 2]>; 2]> = operands.iter().map(none).collect();
         for row in 0..rows {
             poll();
             let [below, above] = self.sides(self.value, plane, row);
             let changed = below ^ above;
+            if changed == 0 {
+                owned.iter_mut().for_each(|owned| owned.push([0; 2]));
+                continue;
+            }
             let bounds = |k: &usize| self.changes(*k, plane, row) & changed;
             let bounds: SmallVec<[u64; 4]> = operands.iter().map(bounds).collect();
             let contested = contested(&bounds);
