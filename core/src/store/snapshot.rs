@@ -371,27 +371,23 @@ impl WholeFaces {
     fn of(boundary: &Boundary) -> Vec<Self> {
         let mut wholes = Vec::new();
         for (slot, fates) in boundary.fates.by_slot() {
+            let touches = |face: &FaceId| {
+                let face = SourceFace::new(slot, *face);
+                boundary.near.binary_search(&face).is_ok()
+            };
             for orientation in Orientation::BOTH {
                 let like = |(_, f): &(FaceId, &Fate)| **f == Fate::Whole(orientation);
-                let alike = FaceId::all().zip(fates).filter(like);
-                let touches = |face: &FaceId| {
-                    let face = SourceFace::new(slot, *face);
-                    boundary.near.binary_search(&face).is_ok()
+                let alike = FaceId::all().zip(fates).filter(like).map(|(face, _)| face);
+                let (touching, apart): (Vec<_>, Vec<_>) = alike.partition(touches);
+                let of = |(faces, touching)| Self {
+                    slot,
+                    manner: Manner::of(orientation, touching),
+                    faces,
                 };
-                let (touching, apart): (Vec<_>, Vec<_>) =
-                    alike.map(|(face, _)| face).partition(touches);
-                for (faces, touching) in [(apart, false), (touching, true)] {
-                    if !faces.is_empty() {
-                        let manner = Manner::of(orientation, touching);
-                        wholes.push(Self {
-                            slot,
-                            manner,
-                            faces,
-                        });
-                    }
-                }
+                wholes.extend([(apart, false), (touching, true)].map(of));
             }
         }
+        wholes.retain(|w: &Self| !w.faces.is_empty());
         wholes
     }
 
