@@ -3,6 +3,7 @@
 import pickle
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -25,7 +26,7 @@ from .places import (
     normal,
     windings,
 )
-from .scenes import CALLS, PITCH, UNIT, Body, Scene, text_of
+from .scenes import CALLS, PITCH, UNIT, Body, Scene, asked_for, text_of
 
 #: Points nearer to a face than this many units are not looked for in the rounded mesh: far more
 #: than rounding moves its vertices by, at coordinates below 1000.
@@ -71,6 +72,11 @@ class Kernel:
         """Return the reduced boundary."""
         return solid.normalized().to_mesh()
 
+    def arrays(self, solid: "b.Solid") -> tuple[bytes, ...]:
+        """Return the bytes of vertices, faces and their origins."""
+        mesh = solid.to_mesh()
+        return mesh.vertices.tobytes(), mesh.faces.tobytes(), mesh.source.tobytes()
+
     def copy(self, solid: "b.Solid") -> "b.Solid":
         """Return the solid after a way through bytes."""
         found: b.Solid = pickle.loads(pickle.dumps(solid))
@@ -112,6 +118,7 @@ class _Trial:
             mesh = self.kernel.mesh(self.result)
             yield from self._mesh(mesh)
             yield from self._inside_mesh(mesh)
+            yield from self._steps()
             yield from self._rival()
 
     def _points(self, result: "b.Solid", kind: str) -> Any:
@@ -151,6 +158,22 @@ class _Trial:
             yield "sums: the symmetric difference is not union minus intersection"
         if not (~p & ~q).equals(~(p | q)):
             yield "sums: De Morgan does not hold"
+
+    def _steps(self) -> Any:
+        """Compare the bytes of what is evaluated in one go, and step by step.
+
+        Of plain operands: one that overlaps itself is united only where an operation met it.
+        """
+        if not all(body.volume is not None for body in self.scene.bodies):
+            return
+        names = {chr(ord("a") + k): solid for k, solid in enumerate(self.operands)}
+        still = [replace(body, motions=()) for body in self.scene.bodies]
+        arrays = []
+        for steps in (False, True):
+            text = text_of(asked_for(self.scene.expression, steps=steps), still)
+            arrays.append(self.kernel.arrays(self.kernel.evaluate(text, names)))
+        if arrays[0] != arrays[1]:
+            yield "steps: what was asked for on the way changes the bytes of the mesh"
 
     def _copies(self) -> Any:
         copy = self.kernel.copy(self.result)

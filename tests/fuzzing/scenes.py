@@ -215,6 +215,17 @@ def text_of(expression: Expression, bodies: Sequence[Body]) -> str:
     return f"({found[0]} {operator} {found[1]})"
 
 
+def asked_for(expression: Expression, *, steps: bool) -> Expression:
+    """Return an expression in which the result of each operation is asked for, or of none."""
+    if isinstance(expression, int):
+        return expression
+    operator, *arguments = expression
+    inner = [asked_for(argument, steps=steps) for argument in arguments]
+    if operator == "asked":
+        return inner[0]
+    return ("asked", (operator, *inner)) if steps else (operator, *inner)
+
+
 def copied(solid: "b.Solid") -> "b.Solid":
     """Return the solid after a way through bytes."""
     found: b.Solid = pickle.loads(pickle.dumps(solid))

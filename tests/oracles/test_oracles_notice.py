@@ -351,6 +351,12 @@ class Faulty(Kernel):
         change = changes.get(self._fault)
         return mesh if change is None or len(mesh.faces) == 0 else change(mesh)
 
+    def arrays(self, solid: b.Solid) -> tuple[bytes, ...]:
+        found, last = super().arrays(solid), solid.last_operation
+        if self._fault == "steps seen" and last is not None:
+            return (*found, bytes(len(last.program)))
+        return found
+
     def copy(self, solid: b.Solid) -> b.Solid:
         copy = super().copy(solid)
         return ~copy if self._fault == "copy turned" else copy
@@ -369,6 +375,7 @@ class Faulty(Kernel):
         ("triangle turned", "mesh"),
         ("vertex moved", "mesh"),
         ("copy turned", "copy"),
+        ("steps seen", "steps"),
     ],
 )
 def test_the_judge_of_scenes_notices(fault: str, kind: str) -> None:

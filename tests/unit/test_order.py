@@ -130,3 +130,14 @@ def test_the_order_follows_from_places_alone() -> None:
     made = mesh.vertices[8:].tolist()
     assert made == sorted(made)
     assert len(made) == 6
+
+
+def test_a_corner_that_is_cut_off_names_no_vertex_of_another_solid() -> None:
+    corners = [[6, 4, 2], [6, 3, 5], [1, 0, 2], [2, 5, 3]]
+    spike = b.Solid(corners, [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
+    assert spike.volume > 0
+    # The cube has a corner where that of the spike was, and keeps all of its own together.
+    cube = b.cube(1).translate(5, 3, 4)
+    vertices = ((spike & b.box(2, 1, 1).translate(3, 2, 3)) | cube).to_mesh().vertices.tolist()
+    first = vertices.index([6, 4, 5]) - 7
+    assert vertices[first : first + 8] == cube.to_mesh().vertices.tolist()

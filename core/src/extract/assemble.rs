@@ -144,7 +144,6 @@ impl Assembly<'_> {
         for e in &frontier {
             edges.extend(self.frontier_edge(*e, fates));
         }
-        self.name_cut_corners(fates);
         let touching = self.touching(&mut groups, &edges);
         let line = |i: usize| {
             if i >= offset {
@@ -154,6 +153,7 @@ impl Assembly<'_> {
             groups[group].lines()[i - starts[group]]
         };
         let inner = subdivisions(&edges, line, &touching, &self.table);
+        self.name_corners(&groups, &edges, &inner);
         let split = split_faces(&frontier, offset, &inner, fates);
         self.identify_corners(&split, fates);
         self.emit_whole(fates, rims);
@@ -228,17 +228,33 @@ impl Assembly<'_> {
         Some(Edge { from, to })
     }
 
-    /// Remembers which source vertices the corners of cut faces are, for their original doubles.
-    fn name_cut_corners(&mut self, fates: &Fates) {
-        for (slot, fates) in fates.by_slot() {
-            let Some(mesh) = self.sources.get(slot).mesh() else {
-                continue;
-            };
-            for (face, _) in fates.iter().enumerate().filter(|(_, f)| **f == Fate::Cut) {
+    /// Remembers which source vertices the corners of groups are, for their original doubles.
+    ///
+    /// A corner that was cut off a face names nothing, though a vertex of another face may lie there.
+    fn name_corners(&mut self, groups: &[PlaneGroup], edges: &[Edge], inner: &InnerPoints) {
+        let sources = self.sources;
+        let mut group_of = vec![usize::MAX; self.table.len()];
+        let mut first = 0;
+        for (number, group) in groups.iter().enumerate() {
+            let last = first + group.edges().len();
+            for (edge, i) in edges[first..last].iter().zip(first..) {
                 poll();
-                for vertex in mesh.faces[face] {
-                    let place = mesh.vertices[vertex.place()];
-                    if let Some(point) = self.table.find(&Vertex::lattice(place)) {
+                group_of[edge.from as usize] = number;
+                for point in inner.get(&i).into_iter().flatten() {
+                    group_of[*point as usize] = number;
+                }
+            }
+            first = last;
+            for face in &group.faces {
+                poll();
+                let slot = face.slot();
+                let Some(mesh) = sources.get(slot).mesh() else {
+                    continue;
+                };
+                for vertex in mesh.vertices_of(face.id()) {
+                    let place = Vertex::lattice(mesh.vertices[vertex.place()]);
+                    let found = self.table.find(&place);
+                    if let Some(point) = found.filter(|p| group_of[*p as usize] == number) {
                         self.name(point, (slot, vertex));
                     }
                 }
