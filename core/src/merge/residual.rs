@@ -147,7 +147,7 @@ struct Folding {
     folded: Vec<Known>,
     /// The new lines.
     terms: Vec<Term>,
-    /// What is known of each new line.
+    /// The new lines among their equals.
     lines: Vec<Line>,
 }
 
@@ -156,7 +156,7 @@ struct Folding {
 struct Line {
     /// The first line that equals it, as far as that is known.
     twin: u32,
-    /// Whether the list at hand names the line, and its complement.
+    /// True if the list at hand names the line, and its complement.
     is_named: [bool; 2],
 }
 
