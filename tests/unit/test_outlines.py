@@ -1,6 +1,5 @@
 """Outlines as triangles: of many corners, and of those that touch and cross."""
 
-import time
 from collections import Counter
 from collections.abc import Callable
 from functools import partial
@@ -10,6 +9,7 @@ import pytest
 
 from bspcsg._types import FloatArray, IndexArray
 from bspcsg.geometry.polygon import contours_of, directed_edges, signed_area, triangulate
+from support.timing import seconds
 
 
 def ring(count: int, radius: float, x: float = 0.0, y: float = 0.0) -> FloatArray:
@@ -68,15 +68,7 @@ def test_outlines_of_many_corners_that_touch_or_cross_keep_their_edges() -> None
 
 
 def test_many_corners_cost_each_alike() -> None:
-    def time_of(work: Callable[[], object]) -> float:
-        times = []
-        for _ in range(3):
-            began = time.perf_counter()
-            work()
-            times.append(time.perf_counter() - began)
-        return min(times)
-
     for few, many in ((plate(25), plate(50)), (comb(2000), comb(8000))):
-        least, most = (time_of(partial(triangulate, one)) for one in (few, many))
+        least, most = (seconds(partial(triangulate, one), 3) for one in (few, many))
         assert most < 10 * least
-    assert time_of(lambda: contours_of(plate(50))) < 2
+    assert seconds(lambda: contours_of(plate(50)), 3) < 2

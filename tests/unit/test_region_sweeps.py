@@ -1,7 +1,5 @@
 """Regions without trees: what sweeps over boundaries, bounds and boxes answer."""
 
-import time
-from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -11,6 +9,7 @@ import shapely
 from bspcsg import Region
 from bspcsg._types import FloatArray
 from bspcsg.bsp import ObjectTree
+from support.timing import seconds
 
 RANDOM = np.random.default_rng(16)
 
@@ -101,17 +100,6 @@ def test_unbounded_regions_that_grew_move() -> None:
     assert moved.classify(images).tolist() == region.classify(points).tolist()
 
 
-def seconds(work: Callable[[], object]) -> float:
-    """Return the least CPU time of three tries."""
-
-    def once() -> float:
-        start = time.process_time()
-        work()
-        return time.process_time() - start
-
-    return min(once() for _ in range(3))
-
-
 def test_shapely_shapes_come_in_and_go_out_in_linear_time() -> None:
     def there_and_back(count: int) -> float:
         squares = [
@@ -119,7 +107,7 @@ def test_shapely_shapes_come_in_and_go_out_in_linear_time() -> None:
         ]
         shape = shapely.MultiPolygon(squares)
         assert Region(shape).to_shapely().area == 20 * count
-        return seconds(lambda: Region(shape).to_shapely())
+        return seconds(lambda: Region(shape).to_shapely(), 3)
 
     # Four times as many cost four times as much, or sixteen times where something is quadratic.
     assert there_and_back(80) < 10 * there_and_back(20)
@@ -127,4 +115,4 @@ def test_shapely_shapes_come_in_and_go_out_in_linear_time() -> None:
 
 def test_many_circles_unite_at_once_in_linear_time() -> None:
     few, many = circles(100), circles(400)
-    assert seconds(lambda: Region.compose(many)) < 10 * seconds(lambda: Region.compose(few))
+    assert seconds(lambda: Region.compose(many), 3) < 10 * seconds(lambda: Region.compose(few), 3)
