@@ -3,3 +3,4 @@
 pub mod sealed;
 pub mod snapshot;
 mod sound;
+mod wholes;

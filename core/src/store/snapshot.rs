@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::sealed::{seal, unseal, Kind};
 use super::sound::is_sound;
+use super::wholes::WholeFaces;
 use crate::arith::bounds::{self, is_coordinate, COORDINATE_BITS};
 use crate::arith::{Int, Sign};
 use crate::error::{Error, ErrorKind, Result};
-use crate::extract::boundary::collect::{collect, Boundary, CutFace};
-use crate::extract::boundary::leaves::Fate;
+use crate::extract::boundary::collect::{collect, CutFace};
 use crate::extract::rounding::snapping::{
     crosses_once_snapped, crossing_faces, look_at_contacts, moved_doubles,
 };
@@ -28,7 +28,7 @@ use crate::merge::evaluate::normalize;
 use crate::merge::lists::list::Sources;
 use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
-use crate::mesh::handle::{FaceId, Slot, SourceFace, VertexId};
+use crate::mesh::handle::{FaceId, Slot, VertexId};
 use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::triangles::TriangleMesh;
@@ -71,42 +71,6 @@ enum SourceData {
     HalfSpace(PlaneData),
     /// A mesh and its close pairs, where they are known: images of it need no look of their own.
     Searched(TriangleMesh, Vec<[u32; 2]>),
-}
-
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct WholeFaces {
-    slot: Slot,
-    manner: Manner,
-    faces: Vec<FaceId>,
-}
-
-/// The orientation of whole faces, and whether they may touch others anywhere. The first two stand where
-/// version 2 has `false` and `true`.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-enum Manner {
-    Same,
-    Opposite,
-    TouchingSame,
-    TouchingOpposite,
-}
-
-impl Manner {
-    fn of(orientation: Orientation, touching: bool) -> Self {
-        match (orientation, touching) {
-            (Orientation::Same, false) => Self::Same,
-            (Orientation::Opposite, false) => Self::Opposite,
-            (Orientation::Same, true) => Self::TouchingSame,
-            (Orientation::Opposite, true) => Self::TouchingOpposite,
-        }
-    }
-
-    fn orientation(self) -> Orientation {
-        Orientation::turned_around(matches!(self, Self::Opposite | Self::TouchingOpposite))
-    }
-
-    fn is_touching(self) -> bool {
-        matches!(self, Self::TouchingSame | Self::TouchingOpposite)
-    }
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -364,40 +328,6 @@ impl Snapshot {
 fn is_full_plane(cut: &CutFace) -> bool {
     let mut edges = cut.outline.edges().iter();
     edges.all(|e| e.carrier.is_border())
-}
-
-impl WholeFaces {
-    /// The whole faces of a boundary, by source and manner.
-    fn of(boundary: &Boundary) -> Vec<Self> {
-        let mut wholes = Vec::new();
-        for (slot, fates) in boundary.fates.by_slot() {
-            let touches = |face: &FaceId| {
-                let face = SourceFace::new(slot, *face);
-                boundary.near.binary_search(&face).is_ok()
-            };
-            for orientation in Orientation::BOTH {
-                let like = |(_, f): &(FaceId, &Fate)| **f == Fate::Whole(orientation);
-                let alike = FaceId::all().zip(fates).filter(like).map(|(face, _)| face);
-                let (touching, apart): (Vec<_>, Vec<_>) = alike.partition(touches);
-                let of = |(faces, touching)| Self {
-                    slot,
-                    manner: Manner::of(orientation, touching),
-                    faces,
-                };
-                wholes.extend([(apart, false), (touching, true)].map(of));
-            }
-        }
-        wholes.retain(|w: &Self| !w.faces.is_empty());
-        wholes
-    }
-
-    fn plane(cut: &CutFace) -> Self {
-        Self {
-            slot: cut.face.slot(),
-            manner: Manner::of(cut.face.orientation, false),
-            faces: vec![cut.face.id()],
-        }
-    }
 }
 
 impl SourceData {
