@@ -45,6 +45,9 @@ _NAME = "instructions"
 #: Cargo's options and folder of the build that is measured, and of the one that tests leave.
 BUILDS = {"release": (["--release"], "release"), "dev": ([], "debug")}
 
+#: Settings of scripts/check, so that its build serves.
+_AS_CHECKED = {"CARGO_PROFILE_DEV_DEBUG": "line-tables-only", "CARGO_INCREMENTAL": "0"}
+
 #: By how much two counts of the same program may differ; more is a change.
 _NOISE = 0.001
 
@@ -62,8 +65,7 @@ def built(build: str) -> Path:
     subprocess.run(
         [*command, "--message-format=short"],
         cwd=REPOSITORY / "core",
-        # As scripts/check has it, so that its build serves.
-        env={"CARGO_PROFILE_DEV_DEBUG": "line-tables-only", **os.environ},
+        env=_AS_CHECKED | os.environ,
         check=True,
     )
     target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "core" / "target"))
