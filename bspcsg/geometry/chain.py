@@ -81,9 +81,11 @@ class FactorChain:
         """Return the chain without so many outermost factors, the same one as the last time."""
         if count == 0:
             return self
-        if self._shorter is None or self._shorter[0] != count:
-            self._shorter = (count, self._without(count))
-        return self._shorter[1]
+        # Read once: another thread may ask for another one meanwhile.
+        shorter = self._shorter
+        if shorter is None or shorter[0] != count:
+            shorter = self._shorter = (count, self._without(count))
+        return shorter[1]
 
     def _without(self, count: int) -> "FactorChain":
         head, rest = self._head, self._rest

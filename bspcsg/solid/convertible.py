@@ -103,6 +103,10 @@ class Convertible(Measured):
         UnboundedError
             If the solid reaches to infinity.
 
+        Notes
+        -----
+        It is the shadow of the mesh: corners that are no lattice points are rounded to them first.
+
         Examples
         --------
         >>> import bspcsg as b

@@ -14,6 +14,7 @@ from weakref import WeakKeyDictionary
 from .._types import ProgramLine
 from ..errors import internal
 from ..geometry.chain import UNMOVED, FactorChain
+from ..once import Once
 from .leaf import ExpressionLeaf, Record, TreeLeaf, run
 from .program import Operator
 
@@ -31,6 +32,7 @@ class Pending:
 
     operator: Operator
     operands: tuple[Placed, ...]
+    result: Once[ExpressionLeaf] = field(default_factory=Once, init=False, repr=False)
 
 
 class ExpressionNode:
@@ -44,7 +46,7 @@ class ExpressionNode:
 
     def __init__(self, content: Pending | ExpressionLeaf) -> None:
         self.content = content
-        self._moved: WeakKeyDictionary[FactorChain, ExpressionLeaf] | None = None
+        self._moved: Once[WeakKeyDictionary[FactorChain, ExpressionLeaf]] = Once()
 
     def placed(self, factors: FactorChain) -> ExpressionLeaf:
         """Return the evaluated leaf under a transform, the same one while anybody has that one.
@@ -54,10 +56,9 @@ class ExpressionNode:
         leaf = _evaluated(self.content)
         if not factors:
             return leaf
-        if self._moved is None:
-            self._moved = WeakKeyDictionary()
-        moved = self._moved.get(factors)
-        return self._moved.setdefault(factors, leaf.placed(factors)) if moved is None else moved
+        known = self._moved.of(WeakKeyDictionary)
+        moved = known.get(factors)
+        return known.setdefault(factors, leaf.placed(factors)) if moved is None else moved
 
 
 def complement(placed: Placed) -> Placed:
@@ -100,7 +101,7 @@ def evaluate(root: ExpressionNode) -> ExpressionLeaf:
         if not isinstance(content, Pending):
             continue
         if plan is not None:
-            node.content = plan.execute()
+            node.content = content.result.of(plan.execute)
             continue
         plan = make_plan(node)
         waiting.append((node, plan))

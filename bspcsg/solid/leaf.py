@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property, lru_cache
-from typing import Any, Generic, TypeAlias, TypeVar
+from typing import Any, TypeAlias
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -22,13 +22,11 @@ from ..errors import LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
+from ..once import Last, Once
 from ..parameters import MOST_PITCH
 from .moving import SaidMesh
 from .program import COMPLEMENT, Algebra
 from .sewing import sewn
-
-_Key = TypeVar("_Key")
-_Value = TypeVar("_Value")
 
 
 def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
@@ -36,25 +34,10 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
         return tree.moving_crosses(list(motion.axes), list(motion.shift))
 
 
-class Last(Generic[_Key, _Value]):
-    """The value that was made last, and its key."""
-
-    def __init__(self) -> None:
-        self._last: tuple[_Key, _Value] | None = None
-
-    def get(self, key: _Key) -> _Value | None:
-        """Return what was made for this key, if it was the last."""
-        last = self._last
-        return last[1] if last is not None and last[0] == key else None
-
-    def keep(self, key: _Key, value: _Value) -> _Value:
-        """Remember a value in place of the last; return it."""
-        self._last = (key, value)
-        return value
-
-
 class Pitches(Last[int, Tree]):
     """A tree as it was last put on a finer lattice: so it is one mesh to all that want it there."""
+
+    __slots__ = ()
 
     def of(self, tree: Tree, pitch: int) -> Tree:
         """Return the same solid on the lattice of this pitch, which must not be coarser."""
@@ -98,16 +81,13 @@ class MeshLeaf:
         winding: WindingRule = "positive",
         attributes: Attributes | None = None,
     ) -> None:
-        self._arrays: tuple[FloatArray, IndexArray] | None = (vertices, faces)
+        self._content: _Settled | _Moved = _Settled((vertices, faces), attributes)
         self._chosen_pitch = pitch
         self._trusted = trusted
         self._winding = winding
-        self._attributes = attributes
-        self._tree: Tree | None = None
-        self._before: FloatArray | None = None
+        self._tree: Once[Tree] = Once()
         self._rounded: str | None = None
         self._given_pitch = pitch
-        self._is_mended = False
         self._pitches = Pitches()
         self.last_moved: Last[FactorChain, ExpressionLeaf] = Last()
 
@@ -124,26 +104,24 @@ class MeshLeaf:
     @property
     def sayings(self) -> "Sayings":
         """The attributes of the mesh."""
-        self._mend()
-        return () if self._attributes is None else (self._attributes,)
+        said = self._settled().attributes
+        return () if said is None else (said,)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
         """Return vertices and faces as they were given, or moved."""
-        self._mend()
-        return self.grown().given_arrays() if self._arrays is None else self._arrays
+        arrays = self._settled().arrays
+        return self.grown().given_arrays() if arrays is None else arrays
 
     def let_go(self) -> None:
         """Let go of the given arrays: the tree holds them, or else they are copied."""
-        if self._arrays is not None:
-            vertices, faces = self._arrays
-            held = self.grown().holds_given
-            self._arrays = None if held else (vertices.copy(), faces.copy())
+        vertices, faces = self.arrays()
+        held = self.grown().holds_given
+        arrays = None if held else (vertices.copy(), faces.copy())
+        self._content = replace(self._settled(), arrays=arrays)
 
     def grown(self) -> Tree:
         """Return the tree on the leaf's own lattice, made on first use."""
-        if self._tree is None:
-            self._tree = self._grow()
-        return self._tree
+        return self._tree.of(self._grow)
 
     def tree(self, pitch: int) -> Tree:
         """Return the tree on the lattice of this pitch."""
@@ -162,8 +140,8 @@ class MeshLeaf:
         is_exact = np.array_equal(np.round(vertices, -pitch), vertices)
         if not is_exact and np.ptp(vertices, axis=0).max() < _FEWEST_STEPS * 10.0**pitch:
             return None
-        leaf = MeshLeaf(vertices, faces, pitch, False, self._winding, self._attributes)
-        leaf._is_mended = self._is_mended
+        leaf = MeshLeaf(vertices, faces, pitch, False, self._winding)
+        leaf._content = replace(self._settled(), arrays=(vertices, faces))
         if not is_exact:
             leaf._rounded = (
                 f"an operand was rounded to steps of 10^{pitch}, as another reaches beyond the"
@@ -174,7 +152,7 @@ class MeshLeaf:
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
         # Rounding moves vertices, so the word given for the original no longer counts.
-        said = SaidMesh(*self.arrays(), self._attributes)
+        said = SaidMesh(*self.arrays(), self._settled().attributes)
         found = None if self._trusted else sewn(said, self.grown())
         mesh = said if found is None else found.mesh
         return MeshLeaf.moved(mesh, factors, self._given_pitch, self._winding)
@@ -184,7 +162,7 @@ class MeshLeaf:
 
         Then its coordinates have to be moved and mended, not its tree.
         """
-        return self._is_mended or _crosses_there(self.grown(), motion)
+        return self._settled().is_mended or _crosses_there(self.grown(), motion)
 
     @classmethod
     def moved(
@@ -198,7 +176,8 @@ class MeshLeaf:
         moved = mesh.moved(factors)
         leaf = cls(moved.vertices, moved.faces, pitch, False, winding, moved.attributes)
         leaf._chosen_pitch = moved.suited_pitch() if pitch is None else pitch
-        leaf._before = mesh.vertices
+        if leaf._chosen_pitch is not None:
+            leaf._content = _Moved(moved, mesh.vertices, leaf._chosen_pitch)
         return leaf
 
     @cached_property
@@ -206,23 +185,65 @@ class MeshLeaf:
         """The tree as it is made into a mesh."""
         return patched(self.grown(), self.sayings)
 
-    def _mend(self) -> None:
-        """Mend what moving the vertices has made cross."""
-        if self._before is None or self._arrays is None or self._chosen_pitch is None:
-            return
-        moved = SaidMesh(*self._arrays, self._attributes)
-        found = moved.mended(self._before, self._chosen_pitch)
-        mesh = moved if found is None else found.mesh
-        self._arrays, self._attributes = (mesh.vertices, mesh.faces), mesh.attributes
-        self._before, self._is_mended = None, found is not None
+    def _settled(self) -> "_Settled":
+        """Return the content; what moving the vertices has made cross is mended on first use."""
+        content = self._content
+        if isinstance(content, _Moved):
+            content = self._content = content.mended()
+        return content
 
     def _grow(self) -> Tree:
         with core_errors():
             tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted, self._rounded)
             # What crossed in doubles touches itself, and may cross on the lattice.
-            if self._is_mended or self._winding != "positive":
+            if self._settled().is_mended or self._winding != "positive":
                 tree = tree.normalized(self._winding)
         return tree
+
+
+@dataclass(frozen=True, eq=False)
+class _Settled:
+    """The content of a leaf of which nothing is to be mended any more.
+
+    Parameters
+    ----------
+    arrays : (n, 3) float64 and (m, 3) int64, or None
+        None if the tree holds them.
+    attributes : Attributes or None
+    is_mended : bool
+        True if moving the vertices had made it cross itself.
+    """
+
+    arrays: tuple[FloatArray, IndexArray] | None
+    attributes: Attributes | None
+    is_mended: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class _Moved:
+    """A mesh that was moved, and is to be mended where that made it cross itself.
+
+    Parameters
+    ----------
+    mesh : SaidMesh
+    before : (n, 3) float64
+        The vertices before they were moved.
+    pitch : int
+    """
+
+    mesh: SaidMesh
+    before: FloatArray
+    pitch: int
+    _result: Once[_Settled] = field(default_factory=Once, init=False, repr=False)
+
+    def mended(self) -> _Settled:
+        """Return the mended mesh."""
+        return self._result.of(self._mend)
+
+    def _mend(self) -> _Settled:
+        found = self.mesh.mended(self.before, self.pitch)
+        mesh = self.mesh if found is None else found.mesh
+        return _Settled((mesh.vertices, mesh.faces), mesh.attributes, found is not None)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,6 +13,7 @@ import pytest
 import bspcsg as b
 from bspcsg import Region, csg
 from bspcsg.formats.registry import FORMATS
+from support.interleaving import interleaved
 
 THREADS = 8
 TIMES = 3
@@ -54,8 +55,7 @@ JOBS: dict[str, Callable[[], object]] = {
     **{suffix: partial(through_file, suffix) for suffix in FORMATS},
     **{suffix: partial(through_drawing, suffix) for suffix in (".svg", ".dxf")},
     "a shared solid": lambda: (mesh_of(SHARED), SHARED.volume_exact, SHARED.findings),
-    # Its mesh depends on whether the shared solid has been evaluated by then, its set does not.
-    "a cut of a shared solid": lambda: (SHARED - b.cube(1)).volume_exact,
+    "a cut of a shared solid": lambda: mesh_of(SHARED - b.cube(1)),
     "text": lambda: mesh_of(b.extrude(b.text("bsp"), 1)),
     "script": lambda: mesh_of(csg.loads("difference() { sphere(2, $fn = 12); cube(1); }")),
     "hull": lambda: mesh_of(b.hull(b.cube(1), b.cube(2).translate(3, 1, 0))),
@@ -75,3 +75,41 @@ def test_threads_get_the_same_answers() -> None:
         found = list(pool.map(lambda name: JOBS[name](), names))
     expected = {name: job() for name, job in JOBS.items()}
     assert [name for name, one in zip(names, found, strict=True) if one != expected[name]] == []
+
+
+def turned() -> b.Solid:
+    return b.box((1, 2, 3)).rotate((10, 20, 30))
+
+
+#: Solids of which everything is still to be made.
+PENDING: dict[str, Callable[[], b.Solid]] = {
+    "turned": turned,
+    "turned and moved": lambda: turned().translate(1, 2, 3).rotate(90, "z"),
+    "union": lambda: turned() | b.cube(1),
+    "turned union": lambda: (b.cube(1) | b.cube(1).translate(1, 1, 1)).rotate(30, "z"),
+    "refined": lambda: b.cube(1).refine(2).rotate(10, "x"),
+    "half-space": lambda: b.half_space((1, 2, 3), 0.5).rotate(10, "x") & b.cube(1),
+    "tagged": lambda: turned().tagged(layer=1) - b.cube(1).tagged(layer=2),
+}
+
+
+def seen(solid: b.Solid) -> tuple[object, list[int]]:
+    """Return the mesh, and of which meshes it is made."""
+    return mesh_of(solid), solid.tree.sources
+
+
+@pytest.mark.parametrize("name", PENDING)
+def test_a_thread_may_come_between_any_two_lines(name: str) -> None:
+    expected = mesh_of(PENDING[name]())
+    for ours, theirs in interleaved(PENDING[name], seen, seen):
+        assert ours == theirs
+        assert ours[0] == expected
+
+
+def test_a_chain_is_shortened_by_several_threads_at_once() -> None:
+    factors = [b.cube(1).translate(x, 0, 0)._factors for x in (1, 2, 3)]
+    chain = factors[0].around(factors[1].around(factors[2]))
+    for ours, _ in interleaved(
+        lambda: type(chain).of(tuple(chain)), lambda c: c.without(1), lambda c: c.without(2)
+    ):
+        assert tuple(ours) == tuple(chain)[1:]

@@ -1,0 +1,49 @@
+"""Values that are kept once made, the same ones for all threads.
+
+Nothing is locked while a value is made: in a process that is forked meanwhile the lock would stay
+taken for ever. Threads may make a value at the same time; all get the one that was ready first.
+"""
+
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+_Key = TypeVar("_Key")
+_Value = TypeVar("_Value")
+
+
+class Once(Generic[_Value]):
+    """A value that is made on first use."""
+
+    __slots__ = ("_made",)
+
+    def __init__(self) -> None:
+        self._made: list[_Value] = []
+
+    def of(self, make: Callable[[], _Value]) -> _Value:
+        """Return the value; `make` is called if there is none yet."""
+        if not self._made:
+            # Threads append one after the other, and the first stays the first.
+            self._made.append(make())
+            del self._made[1:]
+        return self._made[0]
+
+
+class Last(Generic[_Key, _Value]):
+    """The value that was made last, and its key."""
+
+    __slots__ = ("_kept",)
+
+    def __init__(self) -> None:
+        self._kept: dict[_Key, _Value] = {}
+
+    def get(self, key: _Key) -> _Value | None:
+        """Return what was made for this key, if it was the last."""
+        return self._kept.get(key)
+
+    def keep(self, key: _Key, value: _Value) -> _Value:
+        """Return what is kept for this key: the value, but for one that another thread has made."""
+        kept = self._kept.setdefault(key, value)
+        for other in list(self._kept):
+            if other != key:
+                self._kept.pop(other, None)
+        return kept
