@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from .._types import BoolArray, FloatArray, IndexArray
 from ..errors import InvalidMeshError
+from ..geometry.arrays import is_masked
 from .material import Material
 
 #: Values of any type, one or an array of them for each element.
@@ -261,6 +262,8 @@ def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]
 
 def array_of(values: Any, name: str) -> Values:
     """Return the values of an attribute as an array of their own."""
+    if is_masked(values):
+        raise _refused(f"“{name}” has values that are masked out.")
     try:
         return np.array(values, order="C")
     except ValueError as error:

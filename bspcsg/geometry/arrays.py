@@ -1,11 +1,15 @@
 """Arrays of doubles out of whatever callers hand in."""
 
+import sys
 from typing import Any
 
 import numpy as np
 
 from .._types import FloatArray
 from ..errors import BspcsgError
+
+#: The kinds of arrays that hold numbers: signed and unsigned integers, floats, objects.
+_NUMBERS = "iufO"
 
 
 def axes_of(values: Any) -> int | None:
@@ -25,7 +29,31 @@ def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
     refusal : BspcsgError
         The error to raise if they are no numbers.
     """
+    array = doubles_or_none(values)
+    if array is None:
+        raise refusal
+    return array
+
+
+def doubles_or_none(values: Any) -> FloatArray | None:
+    """Return values as an array of doubles, of any shape; None if they are no numbers.
+
+    Complex numbers, dates, truth values and texts are none, though numpy would make doubles of
+    them, and so are arrays with entries that are masked out.
+    """
+    if is_masked(values):
+        return None
     try:
-        return np.asarray(values, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise refusal from error
+        array = np.asarray(values)
+        return array.astype(np.float64, copy=False) if array.dtype.kind in _NUMBERS else None
+    except (TypeError, ValueError, OverflowError):
+        return None
+
+
+def is_masked(values: Any) -> bool:
+    """Say whether an array has entries that are masked out, which numpy would show again."""
+    # Whoever has such an array has imported this.
+    masks: Any = sys.modules.get("numpy.ma")
+    if masks is None or not isinstance(values, masks.MaskedArray):
+        return False
+    return bool(masks.is_masked(values))

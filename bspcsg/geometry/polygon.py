@@ -176,7 +176,8 @@ def _bare_contours(polygon: Any) -> list[FloatArray]:
         single = bool(points) and np.ndim(points[0][0]) == 0
     except (TypeError, IndexError) as error:
         raise invalid_parameter("A polygon is a list of points, or of contours.") from error
-    return _oriented([_cleaned(contour) for contour in ([points] if single else points)])
+    whole = polygon if isinstance(polygon, np.ndarray) else points
+    return _oriented([_cleaned(contour) for contour in ([whole] if single else points)])
 
 
 def _cleaned(contour: Any) -> FloatArray:

@@ -20,7 +20,7 @@ import numpy as np
 from .._types import FloatArray, Scalar, Vector
 from ..errors import invalid_parameter
 from ..parameters import number, shown
-from .arrays import doubles
+from .arrays import doubles, doubles_or_none
 
 #: Largest number of lattice steps from the origin.
 LATTICE_REACH = 2**53
@@ -395,10 +395,10 @@ def vector3(value: Any, name: str, *, spread: bool = False) -> FloatArray:
     spread : bool
         True if one number stands for three equal ones.
     """
-    try:
-        vector = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter(f"The {name} must be three numbers, not {shown(value)}.") from error
+    given = doubles_or_none(value)
+    if given is None:
+        raise invalid_parameter(f"The {name} must be three numbers, not {shown(value)}.")
+    vector = given.copy()
     if spread and vector.ndim == 0:
         vector = np.full(3, vector)
     if vector.shape != (3,) or not np.isfinite(vector).all():

@@ -11,6 +11,7 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 from ..errors import InvalidMeshError, invalid_parameter
+from ..geometry.arrays import doubles_or_none, is_masked
 from ..geometry.polygon import triangulate_face
 from .mesh import Mesh
 
@@ -82,7 +83,7 @@ def mesh_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
     InvalidMeshError
         If the shapes are others, or the indices are no whole numbers.
     """
-    points = points_array(vertices)
+    points = points_array(vertices, "Vertices")
     return points, face_array(faces, points)
 
 
@@ -92,21 +93,22 @@ def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
     return _own(points, vertices), _own(triangles, faces)
 
 
-def points_array(points: Any) -> FloatArray:
+def points_array(points: Any, name: str = "Points") -> FloatArray:
     """Return (n, 3) float64 in C order; a copy only if it has to be one."""
-    try:
-        array = np.ascontiguousarray(points, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidMeshError("Vertices must be numbers, three for each.", "shape") from error
+    array = doubles_or_none(points)
+    if array is None:
+        raise InvalidMeshError(f"{name} must be numbers, three for each.", "shape")
     if array.size == 0:
         return np.zeros((0, 3))
     if array.ndim != 2 or array.shape[1] != 3:
-        raise InvalidMeshError(f"Vertices must have shape (n, 3), not {array.shape}.", "shape")
-    return array
+        raise InvalidMeshError(f"{name} must have shape (n, 3), not {array.shape}.", "shape")
+    return np.ascontiguousarray(array)
 
 
 def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
     """Return (m, 3) int64 in C order; faces of more corners are triangulated."""
+    if is_masked(faces):
+        raise InvalidMeshError("Faces must not be masked out.", "shape")
     try:
         array = np.asarray(faces)
     except ValueError:  # faces of different lengths
@@ -224,7 +226,7 @@ def _shapes_on(workplane: Any) -> list[Any]:
 
 def _joined(parts: list[AnyArrays]) -> AnyArrays:
     """Return several meshes as one; where they overlap, winding numbers unite them."""
-    points = [points_array(vertices) for vertices, _ in parts]
+    points = [points_array(vertices, "Vertices") for vertices, _ in parts]
     starts = np.cumsum([0, *map(len, points)])
     faces = [
         face_array(given, corners) + start

@@ -8,6 +8,7 @@ from typing import Any, TypeVar, overload
 from .._core import CoreError, Tree
 from .._types import FloatArray, IndexArray, SetOp
 from ..errors import LimitError, core_errors, invalid_parameter
+from ..geometry.arrays import is_masked
 from ..mesh import interop
 from ..solid.counting import counted
 from ..solid.leaf import Pitches
@@ -176,6 +177,8 @@ OPERATIONS: dict[str, Callable[..., Solid]] = {
 
 
 def _tree(vertices: Any, faces: Any) -> Tree:
+    if is_masked(vertices) or is_masked(faces):
+        return _converted_tree(vertices, faces)
     try:
         return Tree.from_mesh(vertices, faces)
     except (TypeError, CoreError):
@@ -184,7 +187,7 @@ def _tree(vertices: Any, faces: Any) -> Tree:
 
 
 def _converted_tree(vertices: Any, faces: Any) -> Tree:
-    points = interop.points_array(vertices)
+    points = interop.points_array(vertices, "Vertices")
     triangles = interop.face_array(faces, points)
     with core_errors():
         return Tree.from_mesh(points, triangles)

@@ -1,5 +1,6 @@
 """Parameters mean the same wherever they are taken."""
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -190,3 +191,64 @@ def test_what_is_not_finite_is_said_once(call: Callable[[], object]) -> None:
     error = refusal(call)
     assert error.code == "non_finite"
     assert error.message.count("finite") == 1
+
+
+#: Arrays of what is no number, though numpy would make doubles of it.
+NO_NUMBERS: dict[str, Callable[[Any], Any]] = {
+    "complex": lambda array: np.asarray(array, dtype=np.complex128) + 1j,
+    "dates": lambda array: np.asarray(array).astype(int).astype("M8[s]"),
+    "truth values": lambda array: np.asarray(array).astype(bool),
+    "texts": lambda array: np.asarray(array).astype(str),
+    "masked": lambda array: np.ma.array(array, mask=np.asarray(array) > 0),
+}
+
+#: Whatever takes coordinates.
+COORDINATES: dict[str, tuple[Any, Callable[[Any], object]]] = {
+    "Solid": (MESH.vertices, lambda array: b.Solid(array, MESH.faces)),
+    "boolean": (
+        MESH.vertices,
+        lambda array: b.boolean(array, MESH.faces, MESH.vertices, MESH.faces, "union"),
+    ),
+    "hull": (MESH.vertices, b.hull),
+    "classify": (MESH.vertices, b.cube(1).classify),
+    "translate": ([1, 2, 3], b.cube(1).translate),
+    "scale": ([1, 2, 3], b.cube(1).scale),
+    "box": ([1, 2, 3], b.box),
+    "warp": (MESH.vertices, lambda array: b.cube(2).warp(lambda _: array)),
+    "level_set": (
+        [(-1, -1, -1), (1, 1, 1)],
+        lambda array: b.level_set(lambda p: p[:, 0], array, 0.5),
+    ),
+    "Region": (SQUARE, bsp.Region),
+    "extrude": (SQUARE, lambda array: b.extrude(array, 1)),
+    "Region.from_segments": (EDGES, bsp.Region.from_segments),
+    "PartitionTree": (EDGES, bsp.PartitionTree),
+    "RayCaster": (EDGES, bsp.RayCaster),
+    "first_hit": (ORIGIN, lambda array: CASTER.first_hit(array, ALONG)),
+    "max_t": ([3.0], lambda array: CASTER.occluded([ORIGIN], directions=[ALONG], max_t=array)),
+    "project": (SQUARE, bsp.Region(SQUARE).project),
+    "visibility_polygon": (
+        EDGES,
+        lambda array: bsp.visibility_polygon(array, (5, 5), (-9, -9), (9, 9)),
+    ),
+    "visible_sky": (EDGES, lambda array: bsp.visible_sky(array, (5, 5))),
+}
+
+
+@pytest.mark.parametrize("kind", NO_NUMBERS)
+@pytest.mark.parametrize("name", COORDINATES)
+def test_coordinates_are_numbers(name: str, kind: str) -> None:
+    array, call = COORDINATES[name]
+    call(np.asarray(array, dtype=np.float32))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert isinstance(refusal(lambda: call(NO_NUMBERS[kind](array))), b.BspcsgError)
+
+
+def test_masked_faces_and_values_are_refused() -> None:
+    masked = np.ma.array(MESH.faces, mask=MESH.faces > 3)
+    assert isinstance(refusal(lambda: b.Solid(MESH.vertices, masked)), b.InvalidMeshError)
+    layers = np.ma.array(np.arange(12), mask=np.arange(12) > 3)
+    with pytest.raises(b.InvalidMeshError, match="masked"):
+        b.Solid(*MESH, face_attributes={"layer": layers})
+    assert b.Solid(*MESH, face_attributes={"layer": layers[:4].repeat(3)}).volume == 8

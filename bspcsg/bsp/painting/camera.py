@@ -196,7 +196,8 @@ class Camera:
         depth : (n,) float64
             Along the direction of view: from the eye, or from the target of a parallel projection.
         """
-        placed = self.place(np.asarray(points, dtype=np.float64).reshape(-1, 3))
+        given = doubles(points, invalid_parameter("Points must be an (n, 3) array."))
+        placed = self.place(given.reshape(-1, 3))
         depth = placed[:, 2]
         return self.flatten(placed), depth
 

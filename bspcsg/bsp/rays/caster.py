@@ -10,6 +10,7 @@ import numpy as np
 from ..._core import RayScene
 from ..._types import FloatArray, IndexArray, SideArray, WindingRule
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...geometry.arrays import doubles
 from ...parameters import pitch_exponent, thread_count, winding_rule
 from .targets import RayTargets, facets_from, ray_arrays
 
@@ -486,10 +487,7 @@ def _taken(rows: Any, index: IndexArray) -> Any:
 
 
 def _limits(given: Any) -> FloatArray:
-    try:
-        limits = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter("max_t must be a number or one for each ray.") from error
+    limits = doubles(given, invalid_parameter("max_t must be a number or one for each ray."))
     if limits.ndim > 1 or np.isnan(limits).any():
         raise invalid_parameter("max_t must be a number, not NaN, or one for each ray.")
     return limits

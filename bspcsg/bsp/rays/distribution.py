@@ -12,6 +12,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...errors import InvalidMeshError, invalid_parameter
+from ...geometry.arrays import doubles
 from .adaptive import StaticTree
 from .targets import RayTargets, facets_from, ray_arrays
 
@@ -111,8 +112,10 @@ def _weights(
     if weights is not None and density is not None:
         raise invalid_parameter("Give either weights or a density.")
     if density is not None:
-        weights = np.asarray(density(origins, directions), dtype=np.float64) / max(count, 1)
-    omega = np.full(count, 1 / max(count, 1)) if weights is None else np.asarray(weights, float)
+        refusal = invalid_parameter("A density must return numbers.")
+        weights = doubles(density(origins, directions), refusal) / max(count, 1)
+    refusal = invalid_parameter("Weights must be numbers.")
+    omega = np.full(count, 1 / max(count, 1)) if weights is None else doubles(weights, refusal)
     if omega.shape != (count,) or not (np.isfinite(omega) & (omega >= 0)).all():
         raise invalid_parameter(f"Weights must be {count} finite numbers of at least 0.")
     return omega

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...errors import InvalidMeshError
+from ...geometry.arrays import doubles
 from ...mesh import interop
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
@@ -109,10 +110,8 @@ def _boundary_of(solid: Solid) -> RayTargets:
 
 
 def _corner_array(given: Any) -> FloatArray:
-    try:
-        array = np.array(given, dtype=np.float64, order="C")
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidMeshError("RayTargets must be an array of numbers.", "shape") from error
+    refusal = InvalidMeshError("Facets must be an array of numbers.", "shape")
+    array = np.array(doubles(given, refusal), order="C")
     if array.ndim == 1:
         return array.reshape(-1, 1, 1)
     if array.ndim == 3 and array.shape[1:] in ((1, 1), (2, 2), (3, 3)):
@@ -130,10 +129,7 @@ def vectors(given: Any, dimension: int, name: str) -> FloatArray:
     InvalidMeshError
         If the shape is another.
     """
-    try:
-        array = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidMeshError(f"{name} must be an array of numbers.", "shape") from error
+    array = doubles(given, InvalidMeshError(f"{name} must be an array of numbers.", "shape"))
     if dimension == 1 and array.ndim == 1:
         array = array[:, None]
     array = np.atleast_2d(array)

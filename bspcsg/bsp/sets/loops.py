@@ -66,7 +66,8 @@ def closed_loops(outlines: Any) -> list[FloatArray]:
         single = bool(items) and axes_of(items[0][0]) == 0
     except (TypeError, LookupError) as error:
         raise invalid_parameter("A region is made of outlines, lists of points.") from error
-    return [_loop(item, k) for k, item in enumerate([items] if single else items)]
+    whole = outlines if isinstance(outlines, np.ndarray) else items
+    return [_loop(item, k) for k, item in enumerate([whole] if single else items)]
 
 
 def loop_segments(loops: list[FloatArray]) -> FloatArray:

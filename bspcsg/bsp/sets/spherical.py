@@ -16,6 +16,7 @@ import numpy as np
 
 from ..._types import FloatArray, SideArray
 from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
 from .objects import ObjectTree
@@ -254,7 +255,7 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
     >>> bsp.visible_sky(wall, [0, 0]).share
     0.75
     """
-    shapes = np.asarray(facets, dtype=np.float64)
+    shapes = doubles(facets, invalid_parameter("Facets must be an array of numbers."))
     if shapes.ndim != 3 or shapes.shape[1:] not in ((2, 2), (3, 3)):
         raise invalid_parameter(f"Facets must be segments or triangles, not {shapes.shape}.")
     place = [exact_number(x) for x in np.asarray(eye, dtype=object).tolist()]

@@ -13,6 +13,7 @@ import numpy as np
 
 from ..._types import Scalar
 from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number
 from ...shapes.primitives import box as box_solid
 from ...shapes.primitives import half_space
@@ -122,7 +123,7 @@ def visibility_volume(
 
 
 def _exact(facets: Any, eye: Any, dimension: int) -> tuple[list[list[_Point]], _Point]:
-    shapes = np.asarray(facets, dtype=np.float64)
+    shapes = doubles(facets, invalid_parameter("Facets must be an array of numbers."))
     if shapes.ndim != 3 or shapes.shape[1:] != (dimension, dimension):
         expected = f"(n, {dimension}, {dimension})"
         raise invalid_parameter(f"The facets must have shape {expected}, not {shapes.shape}.")

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..._types import Scalar
 from ...errors import InvalidMeshError, invalid_parameter
+from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
 from ...parameters import pitch_exponent
@@ -212,7 +213,8 @@ class AttributeTree(Generic[Label]):
             self._links[parent][side] = len(self._rows) - 1
 
     def _corners(self, facet: Any) -> list[Corner]:
-        array = np.asarray(facet, dtype=np.float64)
+        refusal = InvalidMeshError("A facet must be an array of numbers.", "shape")
+        array = doubles(facet, refusal)
         rows, _ = corners_of(array.reshape(1) if self.dimension == 1 else array[None])
         if rows.shape[1] != self.dimension:
             message = f"The facet has dimension {rows.shape[1]}, the tree {self.dimension}."

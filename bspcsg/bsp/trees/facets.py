@@ -8,7 +8,7 @@ import numpy as np
 from ..._core import suited_pitch
 from ..._types import FloatArray, IndexArray
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
-from ...geometry.arrays import doubles
+from ...geometry.arrays import doubles, doubles_or_none
 from ...mesh import interop
 from ...parameters import pitch_exponent
 from ...solid.solid import Solid
@@ -30,10 +30,9 @@ def corners_of(facets: Any) -> Corners:
     if isinstance(facets, Sequence) and not len(facets):
         message = "An empty list has no dimension; use an empty array of one of the shapes."
         raise InvalidMeshError(message, "shape")
-    try:
-        array = np.asarray(facets, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        return _polygons(facets, error)
+    array = doubles_or_none(facets)
+    if array is None:
+        return _polygons(facets)
     if array.ndim == 1:
         return array.reshape(-1, 1), np.arange(len(array) + 1)
     is_segments = array.ndim == 3 and array.shape[1:] == (2, 2)
@@ -45,11 +44,12 @@ def corners_of(facets: Any) -> Corners:
     return flat, np.arange(count + 1) * corners
 
 
-def _polygons(facets: Any, cause: Exception) -> Corners:
+def _polygons(facets: Any) -> Corners:
+    refusal = InvalidMeshError(f"Facets must be {_FORMS}.", "shape")
     try:
-        polygons = [np.asarray(polygon, dtype=np.float64) for polygon in facets]
-    except (TypeError, ValueError):
-        raise InvalidMeshError(f"Facets must be {_FORMS}.", "shape") from cause
+        polygons = [doubles(polygon, refusal) for polygon in facets]
+    except TypeError:  # nothing that has facets
+        raise refusal from None
     for number, polygon in enumerate(polygons):
         if polygon.ndim != 2 or polygon.shape[1] != 3:
             message = f"Polygon {number} must have shape (k, 3), not {polygon.shape}."

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, MeshArrays, Scalar
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
+from ...geometry.arrays import doubles
 from ...mesh.weld import welded
 from ...parameters import number, positive, shown
 from ...shapes.primitives import box
@@ -88,10 +89,8 @@ def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0
 
 
 def _box(bounds: Any) -> tuple[FloatArray, FloatArray]:
-    try:
-        array = np.array(bounds, dtype=np.float64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter(f"bounds must be two corners, not {shown(bounds)}.") from error
+    refusal = invalid_parameter(f"bounds must be two corners, not {shown(bounds)}.")
+    array = doubles(bounds, refusal).copy()
     if array.shape != (2, 3) or not np.isfinite(array).all() or not (array[0] < array[1]).all():
         raise invalid_parameter(
             "bounds must be two corners of three finite numbers each, the second above the first"
@@ -198,10 +197,8 @@ def _beside(corner: IndexArray, axis: int, step: IndexArray) -> IndexArray:
 
 
 def _asked(f: Field, points: FloatArray) -> FloatArray:
-    try:
-        found = np.asarray(f(points), dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise invalid_parameter("f must return a number for each of the points.") from error
+    refusal = invalid_parameter("f must return a number for each of the points.")
+    found = doubles(f(points), refusal)
     if found.shape != (len(points),):
         raise invalid_parameter(
             f"f must return an array of shape ({len(points)},), not {found.shape}."

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import invalid_parameter
+from ...geometry.arrays import doubles
 from ...geometry.polygon import contours_of, directed_edges, triangulate
 from ...geometry.transform import cos_sin
 from ...parameters import (
@@ -162,11 +163,12 @@ def _along(given: Along, start: float, spine: Spine, name: str) -> FloatArray:
     shares = np.append(spine.shares, 1.0) if spine.closed else spine.shares
     if not callable(given):
         return start + (number(given, name) - start) * shares
+    message = f"The function {name} must return as many numbers as it is given."
+    refusal = invalid_parameter(message)
     try:
-        values = np.broadcast_to(np.asarray(given(shares.copy()), dtype=np.float64), shares.shape)
-    except (TypeError, ValueError) as error:
-        message = f"The function {name} must return as many numbers as it is given."
-        raise invalid_parameter(message) from error
+        values = np.broadcast_to(doubles(given(shares.copy()), refusal), shares.shape)
+    except ValueError as error:  # another shape
+        raise refusal from error
     if not np.isfinite(values).all():
         raise invalid_parameter(f"The function {name} must return finite numbers.")
     return np.array(values)
