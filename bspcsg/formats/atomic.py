@@ -11,6 +11,10 @@ from typing import BinaryIO, TypeAlias, cast
 from ..errors import FormatError
 from ..parameters import file_path
 
+#: Letters of a file's name that the unfinished file has, too: names end at 255 bytes, and a letter
+#: has four at most.
+_KEPT = 60
+
 #: Takes the file that was written, and raises an error if it is not what it should be.
 Proof: TypeAlias = Callable[[BinaryIO], None]
 
@@ -44,7 +48,7 @@ def write_file(
     target = Path(os.path.realpath(name))
     try:
         _check_target(target)
-        part = target.with_name(f".{target.name}.{os.urandom(4).hex()}.part")
+        part = target.with_name(f".{target.name[:_KEPT]}.{os.urandom(4).hex()}.part")
         _write_new(part, target, chunks, prove)
     except OSError as error:
         reason = error.strerror or type(error).__name__

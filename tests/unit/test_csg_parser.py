@@ -198,6 +198,12 @@ def test_json_holds_numbers_that_json_has_not() -> None:
             ' [{"node": "a", "arguments": [{"value": {"x": 1}}]}]}',
             "arguments[0].value must be",
         ),
+        # Half of a character, which no text can hold.
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes":'
+            ' [{"node": "text", "arguments": [{"value": "\\ud800"}]}]}',
+            "arguments[0].value must be",
+        ),
     ],
 )
 def test_wrong_json_is_refused_with_its_place(text: str, says: str) -> None:

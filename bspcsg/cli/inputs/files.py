@@ -73,6 +73,7 @@ class Inputs:
     def refuse_early(self, paths: Sequence[Path]) -> None:
         """Refuse what can be known to fail before anything is read."""
         from ...formats.files import format_of
+        from ...formats.registry import FORMATS
 
         if sum(str(path) == STREAM for path in paths) > 1:
             raise click.UsageError("standard input can be read only once; name “-” once.")
@@ -84,7 +85,7 @@ class Inputs:
             if not path.suffix and path.is_dir():
                 message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
                 raise FormatError(message, "unreadable")
-            if self.suffix_of(path) != self.suffix and not self.is_script(path):
+            if self.suffix_of(path) not in FORMATS and not self.is_script(path):
                 format_of(path)
 
     def _refuse_programs(self, path: Path) -> None:

@@ -37,6 +37,7 @@ def write_page(path: Path, text: str) -> int:
     """Write a page, and return how many bytes it has."""
     from ...formats.atomic import write_file
 
-    data = text.encode("utf-8")
+    # Names of files need not be text.
+    data = text.encode("utf-8", "replace")
     write_file(path, [data])
     return len(data)

@@ -92,7 +92,8 @@ class _Reporting:
         self._refuse_early()
         results = merged(self._files)
         text = self._text(results)
-        self._put(text.encode("utf-8"))
+        # Names of cases need not be text.
+        self._put(text.encode("utf-8", "replace"))
         if self._is_stream:
             return output.DONE
         failures = sum(map(is_failure, results.cases.values()))

@@ -341,7 +341,8 @@ class _Validation:
         for name, writer in (("junit", junit_text), ("markdown", markdown_text)):
             path = self._settings[name]
             if path is not None:
-                write_file(path, [writer(records, [header]).encode()])
+                # Names of cases need not be text.
+                write_file(path, [writer(records, [header]).encode("utf-8", "replace")])
 
     def _tell(self, records: "Sequence[CaseRecord]") -> None:
         from ...campaign.summary import summary_of

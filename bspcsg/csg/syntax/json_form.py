@@ -10,7 +10,7 @@ arrays, undef is null. JSON has no infinite numbers: they are ``{"number": "inf"
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard
 
 from ...errors import FormatError
 from .parser import DEEPEST_VECTOR
@@ -125,11 +125,19 @@ def _value(data: Any, where: str, name: str, depth: int) -> Value:
         )
     if isinstance(data, dict) and data.get("number") in _ODD:
         return _ODD[data["number"]]
-    if isinstance(data, (bool, str)) or data is None:
+    if isinstance(data, bool) or data is None or _is_text(data):
         return data
     if isinstance(data, (int, float)) and math.isfinite(number := _double(data)):
         return number
     raise _wrong(name, where, "a number, text, true, false, null or array")
+
+
+def _is_text(data: Any) -> TypeGuard[str]:
+    """Say whether it is text that can be written: JSON may hold one half of a character."""
+    try:
+        return isinstance(data, str) and data.encode() is not None
+    except UnicodeEncodeError:
+        return False
 
 
 def _double(number: int | float) -> float:

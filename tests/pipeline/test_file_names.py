@@ -1,0 +1,89 @@
+"""Names of files that are legal, and unusual."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+import bspcsg as b
+from support.cli import Capture, finished, put, ran
+from support.shapes import cube
+
+#: What a file name may be on Linux: all bytes but two, up to 255 of them.
+STEMS = {
+    "no text": os.fsdecode(b"w\xfcrfel \xff"),
+    "two lines": "new\nline",
+    "markup": "<b>&amp;[red]x",
+    "wildcards": "a[1]*?",
+    "percent": "per%cent%",
+    "turned round": "\u202etext",
+    "long": "x" * 251,
+    "long in four bytes": "\U0001f980" * 62,
+}
+
+#: What is done with a file `x` of that name; outputs are called alike.
+LINES = {
+    "info": ["info", "x.stl", "--json"],
+    "check": ["check", "x.stl", "--html", "page.html"],
+    "compare": ["compare", "x.stl", "x.stl", "--html", "page.html"],
+    "view": ["view", "x.stl", "-o", "x.htm", "--no-open"],
+    "union": ["union", "x.stl", "x.stl", "-o", "x.3mf"],
+    "convert": ["convert", "x.stl", "-o", "x.glb"],
+    "slice": ["slice", "x.stl", "--z", "0.5", "-o", "x.svg"],
+    "render": ["render", "x.stl", "-o", "x.png"],
+    "validate": [
+        *("validate", "x.stl", "x.stl", "--op", "union"),
+        *("--junit", "x.xml", "--markdown", "x.md", "--results", "x.jso"),
+    ],
+}
+
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="other systems allow fewer names, or normalise them"
+)
+
+
+def told(*arguments: str) -> tuple[int, str]:
+    """Run a command as a process; return its code and what it says besides its result."""
+    code, _, err = finished(*map(os.fsencode, arguments))
+    return code, os.fsdecode(err)
+
+
+@pytest.mark.parametrize("stem", STEMS)
+@pytest.mark.parametrize("verb", LINES)
+def test_files_may_have_any_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture, stem: str, verb: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = STEMS[stem]
+    put(f"{name}.stl", cube())
+    arguments = [word.replace("x.", f"{name}.") for word in LINES[verb]]
+    # Only a process has streams that can hold what is no text.
+    code, err = told(*arguments) if stem == "no text" else ran(capsys, *arguments)[::2]
+    assert (code, "error" in err) == (0, False), err
+
+
+def test_pages_show_what_is_no_text_as_terminals_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    name = os.fsdecode(b"w\xfcrfel.stl")
+    put(name, cube())
+    assert told("view", name, "-o", "x.html", "--no-open") == (0, "")
+    assert "<title>w?rfel.stl</title>" in Path("x.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb", ".stl"])
+def test_files_without_a_suffix_are_refused_before_they_are_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture, suffix: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, _, err = ran(capsys, "union", "first", "second", "-o", f"out{suffix}")
+    assert code == 3 and "first: the name needs a suffix that says the format" in err
+
+
+def test_names_too_long_for_any_file_are_an_error(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError) as caught:
+        b.save(b.cube(1), tmp_path / f"{'x' * 252}.stl")
+    assert caught.value.code == "unwritable"
+    assert list(tmp_path.iterdir()) == []
