@@ -30,6 +30,9 @@ MOST_SEGMENTS = 1 << 16
 #: Corners of one body. While its solid is made each takes some 600 bytes, all of them 2.4 GB.
 MOST_CORNERS = 4_000_000
 
+#: Trees divide lines, planes and spaces.
+_MOST_DIMENSIONS = 3
+
 #: Messages do not spell out larger numbers.
 _COUNTABLE = 10**15
 
@@ -83,6 +86,14 @@ def at_least(least: int, value: Any, name: str) -> int:
         raise invalid_parameter(
             f"{name} must be a whole number from {least} on, not {shown(value)}."
         )
+    return result
+
+
+def dimension_number(value: Any) -> int:
+    """Return 1, 2 or 3."""
+    result = at_least(1, value, "dimension")
+    if result > _MOST_DIMENSIONS:
+        raise invalid_parameter(f"dimension must be 1, 2 or 3, not {shown(value)}.")
     return result
 
 

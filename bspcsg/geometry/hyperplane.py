@@ -23,8 +23,9 @@ from typing import Any, Self
 import numpy as np
 
 from .._core import normal_bits
-from ..errors import InvalidMeshError
-from ..parameters import MOST_PITCH
+from ..errors import InvalidMeshError, invalid_parameter
+from ..parameters import MOST_PITCH, shown
+from .arrays import is_masked
 
 #: Exponent of the lattice step for sets that any lattice can hold.
 DEFAULT_PITCH = -9
@@ -190,6 +191,29 @@ def exact_number(value: Any) -> Fraction:
         return Fraction(int(value.numerator), int(value.denominator))
     double = float(value)
     return Fraction(int(double)) if double.is_integer() else Fraction(repr(double))
+
+
+def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
+    """Return the coordinates of a point exactly; on the line one number is a point.
+
+    Parameters
+    ----------
+    values : (dimension,) array_like of float
+    dimension : int
+    name : str
+        Of the parameter, for the error.
+    """
+    try:
+        if is_masked(values):
+            raise TypeError("masked")
+        entries = np.atleast_1d(np.asarray(values, dtype=object)).tolist()
+        found = [exact_number(entry) for entry in entries]
+        if len(found) != dimension:
+            raise ValueError("of another dimension")
+    except (TypeError, ValueError, OverflowError) as error:
+        count = "a finite number" if dimension == 1 else f"{dimension} finite numbers"
+        raise invalid_parameter(f"{name} must be {count}, not {shown(values)}.") from error
+    return found
 
 
 def _nearest(value: Fraction, coordinate: Fraction) -> int:

@@ -128,7 +128,7 @@ def test_refused_parallel_projections(change: dict[str, Any], text: str) -> None
 @pytest.mark.parametrize(
     ("change", "text"),
     [
-        ({"view": "above"}, "view is one of"),
+        ({"view": "above"}, "view must be one of"),
         ({"points": [(0, 0)]}, "points to fit"),
         ({"points": [(0, 0, float("nan"))]}, "points to fit"),
         ({"points": "box"}, "points to fit"),

@@ -453,7 +453,7 @@ class TestMerging:
         assert again.result == trace.result
 
     def test_an_unknown_operation_is_refused(self) -> None:
-        with pytest.raises(InvalidParameterError, match="operation"):
+        with pytest.raises(InvalidParameterError, match="op must be"):
             polygons(1).trace_merge(polygons(2), "sum")  # type: ignore[arg-type]
 
 

@@ -5,20 +5,17 @@ that is missing here fails the test of completeness.
 """
 
 import inspect
-import math
-import time
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import pytest
 
 import bspcsg as b
 from bspcsg import Region, Solid
-
-Row: TypeAlias = tuple[Callable[..., Any], dict[str, Any]]
+from support.refusals import Row, assert_refused_at_once, methods_of, missing_parameters
 
 SQUARE = [(0, 0), (2, 0), (2, 2), (0, 2)]
 UNIT = b.cube(1).to_mesh()
@@ -212,44 +209,8 @@ ROWS: dict[str, Row] = {
 #: Functions tested elsewhere: a script takes a process of its own, options are those of others.
 ELSEWHERE = {"run_script", "Solid.check", "Solid.validate"}
 
-#: Whatever is wrong for every parameter but those of `TAKEN`.
-NEVER: dict[str, Any] = {
-    "not a number": math.nan,
-    "an object": object(),
-    "a complex number": 1j,
-    "rows of different lengths": [[1, 2], [3]],
-    "not numbers": [math.nan] * 3,
-    "infinite points": [[math.inf, 0, 0]] * 4,
-    "objects": np.array([object()] * 3),
-}
-
-#: Values that make sense for some parameters.
-AT_TIMES: dict[str, Any] = {
-    "infinity": math.inf,
-    "a word": "no such word",
-    "bytes": b"x",
-    "below zero": -1,
-    "zero": 0,
-    "thousands of digits": 10**5000,
-    "a huge number": 1e300,
-    "a huge count": 2**40,
-    "nothing": None,
-    "truth": True,
-    "two numbers": [math.nan, math.nan],
-    "four numbers": [1, 2, 3, 4],
-    "lists in lists": [[[[]]]],
-    "an empty list": [],
-    "a dictionary": {},
-    "a function": lambda *_: math.nan,
-    "a solid": S,
-    "a region": R,
-}
-
 #: Parameters that take numbers which are none: what is said of faces may be anything.
-TAKEN = {("Solid.tagged", "name")}
-
-#: Processor time that a refusal may take, in seconds.
-SOON = 1.0
+TAKEN = {("Solid.tagged", "name"): True}
 
 
 @pytest.fixture(autouse=True)
@@ -265,14 +226,6 @@ def _elsewhere(
     b.set_threads(0)
 
 
-def calls(name: str) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield the parameter, the bad value's name and all arguments."""
-    _, good = ROWS[name]
-    for parameter in good:
-        for what, bad in {**NEVER, **AT_TIMES}.items():
-            yield parameter, what, {**good, parameter: bad}
-
-
 @pytest.mark.parametrize("name", ROWS)
 def test_good_arguments_are_taken(name: str) -> None:
     call, good = ROWS[name]
@@ -281,50 +234,18 @@ def test_good_arguments_are_taken(name: str) -> None:
 
 @pytest.mark.parametrize("name", ROWS)
 def test_bad_arguments_are_refused_at_once(name: str) -> None:
-    call = ROWS[name][0]
-    for parameter, what, arguments in calls(name):
-        begun = time.process_time()
-        try:
-            call(**arguments)
-        except b.BspcsgError as error:
-            assert error.code.isidentifier() and error.code != "internal", (parameter, what)
-            assert error.message[-1] in ".)" and len(error.message) < 500, (parameter, what)
-        else:
-            taken = what in AT_TIMES or (name, parameter) in TAKEN
-            assert taken, f"{name}({parameter}={what}) was taken"
-        assert time.process_time() - begun < SOON, (parameter, what)
-
-
-def parameters_of(value: Any) -> list[str]:
-    """Return the names of what a function or a method takes."""
-    return [name for name in inspect.signature(value).parameters if name != "self"]
+    assert_refused_at_once(name, ROWS[name], TAKEN)
 
 
 def test_no_public_function_is_missing() -> None:
     functions = {name for name in b.__all__ if inspect.isfunction(getattr(b, name))}
     assert len(functions) > 35
-    methods = {
-        f"{kind.__name__}.{name}"
-        for kind in (Solid, Region, b.EdgeSelection, b.Assembly)
-        for name in dir(kind)
-        if not name.startswith("_")
-        and callable(getattr(kind, name))
-        and parameters_of(getattr(kind, name))
-    }
+    methods = methods_of(Solid, Region, b.EdgeSelection, b.Assembly)
     assert len(methods) > 60
     told = {name.split()[0] for name in ROWS}
     assert functions | methods <= told | ELSEWHERE
 
 
 def test_no_parameter_is_missing() -> None:
-    given: dict[str, set[str]] = {}
-    for name, (_, good) in ROWS.items():
-        given.setdefault(name.split()[0], set()).update(good)
-    for name, arguments in given.items():
-        owner: Any = b
-        for part in name.split("."):
-            owner = getattr(owner, part)
-        kinds = inspect.signature(owner).parameters.values()
-        named = {one.name for one in kinds if one.kind is not one.VAR_POSITIONAL}
-        wanted = named - {"self", "options", "values", "texture", "format"}
-        assert wanted <= arguments, name
+    apart = {"self", "options", "values", "texture", "format"}
+    assert missing_parameters(ROWS, b, apart) == []

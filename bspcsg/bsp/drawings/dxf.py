@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..._types import FloatArray, Scalar, WindingRule
-from ...errors import FormatError, format_errors, words_of
+from ...errors import FormatError, format_errors, invalid_parameter, words_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
 from ...mesh.interop import optional
-from ...parameters import file_path, positive
+from ...parameters import file_path, of_kind, positive, shown
 from ..sets.region import Region
 from .dxf_curves import chains_of
 
@@ -51,10 +51,20 @@ def load_dxf(
     """
     chord = positive(tolerance, "tolerance")
     document = read_document(path)
-    wanted = None if layers is None else set(layers)
+    wanted = None if layers is None else _names(layers)
     with format_errors(os.fspath(path), "DXF"):
         chains = list(chains_of(document.modelspace(), wanted, chord))
     return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
+
+
+def _names(layers: Any) -> set[str]:
+    try:
+        names = set(layers)
+    except TypeError as error:
+        raise invalid_parameter(f"layers must be names, not {shown(layers)}.") from error
+    if isinstance(layers, (str, bytes)) or not all(isinstance(name, str) for name in names):
+        raise invalid_parameter(f"layers must be a list of names, not {shown(layers)}.")
+    return names
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
@@ -75,7 +85,7 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
 def dxf_data(region: Region) -> bytes:
     """Return what `save_dxf` writes."""
     ezdxf = optional("ezdxf", "ezdxf")
-    outlines = region.to_polygons()
+    outlines = of_kind(Region, region, "region").to_polygons()
     text = io.StringIO()
     with _without_time(ezdxf.options):
         document = ezdxf.new("R2010")

@@ -6,15 +6,16 @@ from collections.abc import Callable, Iterator
 from typing import Any
 from xml.etree import ElementTree
 from xml.parsers import expat
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from ..._types import FloatArray, Scalar, WindingRule
-from ...errors import FormatError, format_errors, words_of
+from ...errors import FormatError, format_errors, invalid_parameter, words_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
 from ...mesh.interop import optional
-from ...parameters import file_path, positive
+from ...parameters import file_path, number, of_kind, positive, shown, winding_rule
 from ..sets.region import Region
 from ..trees.facets import chosen_pitch
 from .svg_tree import make_plain, name_of
@@ -52,16 +53,17 @@ def load_svg(
         If the file cannot be read, is no well-formed SVG, or declares an entity.
     """
     chord = positive(tolerance, "tolerance")
+    rule = None if winding is None else winding_rule(winding)
     found: list[tuple[list[FloatArray], WindingRule]] = []
     for shape in shown_shapes(path, make_plain):
         if _is_filled(shape):
             with format_errors(os.fspath(path), "SVG"):
                 outlines = outlines_of(shape, _within(shape, chord))
                 loops = [corners for corners, _ in outlines if len(corners) >= 3]
-            found.append((loops, winding or _rule(shape)))
+            found.append((loops, rule or _rule(shape)))
     points = [np.zeros((0, 2)), *(corners for loops, _ in found for corners in loops)]
     common = chosen_pitch(pitch, np.concatenate(points))
-    shapes = (Region(loops, winding=rule, pitch=common) for loops, rule in found)
+    shapes = (Region(loops, winding=kind, pitch=common) for loops, kind in found)
     return Region.compose([Region(pitch=common), *shapes])
 
 
@@ -128,16 +130,18 @@ def save_svg(
 
 def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
     """Return what `save_svg` writes."""
-    bounds = region.bounds
+    bounds = of_kind(Region, region, "region").bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
-    space = float((high - low).max()) * float(margin)
+    space = float((high - low).max()) * number(margin, "margin")
+    if not isinstance(fill, str):
+        raise invalid_parameter(f"fill must be a colour, not {shown(fill)}.")
     width, height = (high - low + 2 * space).tolist()
     x, y = float(low[0]) - space, -float(high[1]) - space
     outlines = " ".join(_path_of(points) for points in region.to_polygons())
     return (
         '<svg xmlns="http://www.w3.org/2000/svg"'
         f' viewBox="{x!r} {y!r} {width!r} {height!r}">\n'
-        f'<path fill-rule="nonzero" fill="{fill}" stroke="black"'
+        f'<path fill-rule="nonzero" fill={quoteattr(fill)} stroke="black"'
         f' stroke-width="{max(width, height) / 400!r}" d="{outlines}"/>\n</svg>\n'
     ).encode()
 

@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from ..._types import FloatArray
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import number, positive, shown
+from ...parameters import number, positive, shown, word
+from ..trees.facets import vector_rows
 
 #: Views by name; z is up. "front" looks along +y, with x to the right; "iso" looks from the right
 #: front top.
@@ -130,9 +131,7 @@ class Camera:
         margin : float
             Share of the picture that stays empty on each side.
         """
-        if view not in _DIRECTIONS:
-            raise invalid_parameter(f"The view is one of {get_args(View)}, not {view!r}.")
-        camera = cls.orthographic(_DIRECTIONS[view])
+        camera = cls.orthographic(_DIRECTIONS[word(_DIRECTIONS, view, "view")])
         if field_of_view is not None:
             camera = replace(camera, is_perspective=True, half_height=_tangent(field_of_view))
         return camera.fitted(points, aspect, margin)
@@ -196,8 +195,10 @@ class Camera:
         depth : (n,) float64
             Along the direction of view: from the eye, or from the target of a parallel projection.
         """
-        given = doubles(points, invalid_parameter("Points must be an (n, 3) array."))
-        placed = self.place(given.reshape(-1, 3))
+        given = vector_rows(points, 3, "Points")
+        if not np.isfinite(given).all():
+            raise invalid_parameter("Points must be finite.")
+        placed = self.place(given)
         depth = placed[:, 2]
         return self.flatten(placed), depth
 

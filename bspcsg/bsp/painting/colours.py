@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from ..._types import FloatArray
 from ...errors import invalid_parameter
-from ...geometry.arrays import doubles
+from ...geometry.arrays import axes_of, doubles
 from ...parameters import shown
 
 #: Red, green, blue (and cover) from 0 to 255.
@@ -37,17 +37,18 @@ def colour(value: Any, name: str = "colour") -> ColourArray:
             )
             raise invalid_parameter(message) from error
     single: ColourArray = colours(
-        np.asarray(value)[None] if np.ndim(value) == 1 else value, 1, name
+        np.asarray(value)[None] if axes_of(value) == 1 else value, 1, name
     )[0]
     return single
 
 
 def colours(values: Any, count: int, name: str = "colours") -> ColourArray:
     """Return (count, 3) uint8 of one colour for all, or of (count, 3) numbers from 0 to 1."""
-    if isinstance(values, str) or (np.shape(values) == (3,) and not isinstance(values[0], str)):
-        return np.tile(colour(values, name), (count, 1))
-    if np.ndim(values) == 1 and len(values) and isinstance(values[0], str):
+    is_row = axes_of(values) == 1 and len(values) > 0
+    if is_row and isinstance(values[0], str):
         return _each(values, count, name)
+    if isinstance(values, str) or (is_row and len(values) == 3):
+        return np.tile(colour(values, name), (count, 1))
     given = doubles(values, invalid_parameter(f"The {name} must be numbers from 0 to 1."))
     if given.shape != (count, 3):
         raise invalid_parameter(f"The {name} must have shape ({count}, 3), not {given.shape}.")

@@ -10,7 +10,8 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray
 from ...errors import FormatError, InvalidMeshError, LimitError, invalid_parameter
-from ...parameters import at_least, number, positive
+from ...formats.atomic import write_file
+from ...parameters import at_least, file_path, number, positive, shown, truth_value, word
 from ..trees.facets import mesh_triangles
 from ..trees.tree import PartitionTree
 from .camera import Camera, View
@@ -70,16 +71,15 @@ class Picture:
         Raises
         ------
         FormatError
-            If the ending is another.
+            If the ending is another, or the file cannot be written.
         BspcsgError
             If a PNG is asked for and Pillow is not installed.
         """
-        target = Path(path)
-        ending = target.suffix.lower()
+        ending = Path(file_path(path)).suffix.lower()
         if ending not in (".svg", ".png"):
             message = f"Pictures are saved as .svg or .png, not {ending or 'without an ending'!r}."
             raise FormatError(message, "unknown_format")
-        target.write_bytes(self.svg.encode() if ending == ".svg" else self.png)
+        write_file(path, [self.svg.encode() if ending == ".svg" else self.png])
 
     # Notebooks ask for all forms at once; one is enough.
 
@@ -171,15 +171,15 @@ def picture(
     Fuchs, Kedem, Naylor 1980, "On visible surface generation by a priori tree structures".
     """
     frame = checked_size(size)
-    _checked("style", style, Style)
-    _checked("edges", edges, Edges)
+    word(get_args(Style), style, "style")
+    word(get_args(Edges), edges, "edges")
     facets, tree = _facets_of(scene)
     camera = _camera(camera, view, facets, frame)
     base = colours(DEFAULT if colors is None else colors, len(facets), "colors")
     front = facing(facets, camera)
     drawn = _drawn(facets, front, style, edges, number(crease, "crease"))
     looks = Scene(facets, base, drawn)
-    culled = _is_culled(facets, camera, style) if cull is None else cull
+    culled = _is_culled(facets, camera, style) if cull is None else truth_value(cull, "cull")
     hidden = ~front if culled else None
     if tree is None and hidden is not None:
         looks, hidden = looks.take(np.flatnonzero(front)), None
@@ -197,7 +197,7 @@ def _camera(camera: Camera | None, view: View, facets: Facets, frame: tuple[int,
     if camera is None:
         return Camera.named(view, facets.corners, frame[0] / frame[1])
     if not isinstance(camera, Camera):
-        raise invalid_parameter(f"The camera must be a bsp.Camera, not {camera!r}.")
+        raise invalid_parameter(f"The camera must be a bsp.Camera, not {shown(camera)}.")
     return camera
 
 
@@ -252,11 +252,6 @@ def _is_culled(facets: Facets, camera: Camera, style: Style) -> bool:
         return True
     low, high = facets.corners.min(axis=0), facets.corners.max(axis=0)
     return bool(((eye < low) | (eye > high)).any())
-
-
-def _checked(name: str, value: Any, allowed: Any) -> None:
-    if value not in get_args(allowed):
-        raise invalid_parameter(f"The {name} must be one of {get_args(allowed)}, not {value!r}.")
 
 
 def checked_size(size: Any) -> tuple[int, int]:

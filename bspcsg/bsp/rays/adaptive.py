@@ -300,8 +300,12 @@ class StaticTree(StabTree):
                 self._facets.corners.ravel(),
                 step,
                 hits=hits.tolist(),
-                limit=at_least(1, max_nodes, "max_nodes"),
+                limit=min(at_least(1, max_nodes, "max_nodes"), _UNLIMITED),
             )
+
+
+#: More nodes than memory holds.
+_UNLIMITED = 2**62
 
 
 def _pivots(nodes: StabNodes) -> Iterator[int]:

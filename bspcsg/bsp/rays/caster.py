@@ -11,7 +11,7 @@ from ..._core import RayScene
 from ..._types import FloatArray, IndexArray, SideArray, WindingRule
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles
-from ...parameters import pitch_exponent, thread_count, winding_rule
+from ...parameters import pitch_exponent, thread_count, truth_value, winding_rule
 from .targets import RayTargets, facets_from, ray_arrays
 
 #: Values of `Hits.kind`.
@@ -224,7 +224,8 @@ class RayCaster:
 
     def __init__(self, facets: Any, *, pitch: int | None = None, deferred: bool = True) -> None:
         found = facets_from(facets)
-        self._set(found, found.pitch if pitch is None else pitch_exponent(pitch), deferred)
+        step = found.pitch if pitch is None else pitch_exponent(pitch)
+        self._set(found, step, truth_value(deferred, "deferred"))
 
     def _set(self, facets: RayTargets, pitch: int | None, deferred: bool) -> None:
         self._facets = facets
@@ -360,9 +361,9 @@ class RayCaster:
             crosses says `intervals`.
         """
         first, second = ray_arrays(origins, directions, self.dimension)
-        count = thread_count(threads)
+        count, merges = thread_count(threads), truth_value(merge, "merge")
         with core_errors():
-            found = self._scene.all(first.ravel(), second.ravel(), bool(merge), count)
+            found = self._scene.all(first.ravel(), second.ravel(), merges, count)
         offsets, columns = found
         return HitLists(offsets, self._hits(*columns))
 
@@ -445,7 +446,7 @@ class RayCaster:
             with core_errors():
                 return self._scene.hidden(first.ravel(), second.ravel(), thread_count(threads))
         first, second = ray_arrays(origins, directions, self.dimension)
-        limits = np.ascontiguousarray(np.broadcast_to(_limits(max_t), len(first)))
+        limits = _limits(max_t, len(first))
         with core_errors():
             return self._scene.blocked(first.ravel(), second.ravel(), limits, thread_count(threads))
 
@@ -486,8 +487,10 @@ def _taken(rows: Any, index: IndexArray) -> Any:
     return rows[index] if len(rows) else np.zeros((len(index), *rows.shape[1:]), rows.dtype)
 
 
-def _limits(given: Any) -> FloatArray:
+def _limits(given: Any, count: int) -> FloatArray:
     limits = doubles(given, invalid_parameter("max_t must be a number or one for each ray."))
     if limits.ndim > 1 or np.isnan(limits).any():
         raise invalid_parameter("max_t must be a number, not NaN, or one for each ray.")
-    return limits
+    if limits.shape not in ((), (1,), (count,)):
+        raise invalid_parameter(f"There are {count} rays and {len(limits)} of max_t.")
+    return np.ascontiguousarray(np.broadcast_to(limits, count))

@@ -13,6 +13,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry.arrays import doubles
+from ...parameters import function_of
 from .adaptive import StaticTree
 from .targets import RayTargets, facets_from, ray_arrays
 
@@ -113,7 +114,8 @@ def _weights(
         raise invalid_parameter("Give either weights or a density.")
     if density is not None:
         refusal = invalid_parameter("A density must return numbers.")
-        weights = doubles(density(origins, directions), refusal) / max(count, 1)
+        given = function_of(density, "density")(origins, directions)
+        weights = doubles(given, refusal) / max(count, 1)
     refusal = invalid_parameter("Weights must be numbers.")
     omega = np.full(count, 1 / max(count, 1)) if weights is None else doubles(weights, refusal)
     if omega.shape != (count,) or not (np.isfinite(omega) & (omega >= 0)).all():

@@ -5,6 +5,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...errors import invalid_parameter
 from ...geometry.polytope import Polytope
+from ...parameters import at_least, shown
 from ..trees.node import RegionShape
 from .trace import StabNodes
 
@@ -34,8 +35,8 @@ def region_of(
 
 def _way(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
     """Return the nodes above, from the root down, with the side of each that leads on."""
-    if not 0 <= node < len(nodes):
-        raise invalid_parameter(f"There are {len(nodes)} nodes, none is number {node}.")
+    if at_least(0, node, "node") >= len(nodes):
+        raise invalid_parameter(f"There are {len(nodes)} nodes, none is number {shown(node)}.")
     parents = {}
     for side, children in ((-1, nodes.minus), (1, nodes.plus)):
         for parent in np.flatnonzero(children >= 0):

@@ -8,13 +8,23 @@ Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
 
 from collections.abc import Sequence
-from typing import Any, Self, TypeVar
+from typing import Any, Self, TypeVar, get_args
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
 from ...errors import core_errors, invalid_parameter
 from ...mesh import interop
-from ...parameters import SET_OPS, at_least, pitch_exponent, seed_number, winding_rule
+from ...parameters import (
+    SET_OPS,
+    dimension_number,
+    of_kind,
+    pitch_exponent,
+    seed_number,
+    truth_value,
+    winding_rule,
+    word,
+)
+from ..trees.asking import pairs_of
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
 from .pieces import BuildPolicy, NormalAndOffset, SplitCase
@@ -80,6 +90,7 @@ class ObjectTree(TreeQueries):
     ) -> None:
         dimension, rows, faces = boundary_arrays(facets)
         rule, order = winding_rule(winding), seed_number(seed)
+        order_of_facets = word(get_args(BuildPolicy), policy, "policy")
         chosen = chosen_pitch(pitch, rows[:, :dimension])
         with core_errors():
             self._tree = CoreTree.build(
@@ -88,7 +99,7 @@ class ObjectTree(TreeQueries):
                 chosen,
                 faces=faces,
                 winding=rule,
-                policy=policy,
+                policy=order_of_facets,
                 seed=order,
                 cuts=hyperplane_rows(cuts, dimension, chosen),
             )
@@ -145,9 +156,9 @@ class ObjectTree(TreeQueries):
     @classmethod
     def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
         """Return the empty set, or everything, in 1, 2 or 3 dimensions."""
-        count, step = at_least(1, dimension, "dimension"), pitch_exponent(pitch)
+        count, step = dimension_number(dimension), pitch_exponent(pitch)
         with core_errors():
-            return cls._of(CoreTree.uniform(count, full, step))
+            return cls._of(CoreTree.uniform(count, truth_value(full, "full"), step))
 
     # Set operations
 
@@ -193,9 +204,8 @@ class ObjectTree(TreeQueries):
         operands on one lattice. Results of set operations on regions have a tree of their boundary;
         ``trace.result`` is what merging leaves.
         """
-        if op not in SET_OPS:
-            raise invalid_parameter(f"There is no operation {op!r}.")
-        a, b = self._aligned(other)
+        word(SET_OPS, op, "op")
+        a, b = self._aligned(set_of(other))
         with core_errors():
             result, rows = a.merge_steps(b, op)
         return merge_trace(self._of(a), self._of(b), self._of(result), op, rows)
@@ -298,12 +308,14 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
     combine as by their operators, which may sweep over boundaries instead; for them
     ``merge(a.tree, b.tree, op)`` merges.
     """
-    return a._merged(b, op)
+    word(SET_OPS, op, "op")
+    set_of(a, "a")
+    return a._merged(set_of(b, "b"), op)
 
 
 def partition_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> ObjectTree:
     """Return the same set with this hyperplane in the root (see `ObjectTree.partitioned`)."""
-    return tree.partitioned(*hyperplane)
+    return of_kind(ObjectTree, tree, "tree").partitioned(*pairs_of([hyperplane])[0])
 
 
 def split_tree(tree: Set, hyperplane: NormalAndOffset) -> tuple[Set, Set]:
@@ -312,7 +324,8 @@ def split_tree(tree: Set, hyperplane: NormalAndOffset) -> tuple[Set, Set]:
     The paper's third argument, the part of the hyperplane inside the root's region, follows from
     the other two and is computed.
     """
-    return tree.split(*hyperplane)
+    set_of(tree, "tree")
+    return tree.split(*pairs_of([hyperplane])[0])
 
 
 def _restored(kind: type[ObjectTree], data: bytes) -> ObjectTree:

@@ -7,6 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from ..._types import FloatArray
+from ...parameters import of_kind
 from .region import Region
 
 #: A corner, exactly.
@@ -75,7 +76,7 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
     >>> path.points.tolist(), path.start.tolist(), path.end.tolist()
     ([[0.0, 0.0]], [0.0, -1.0], [1.0, 0.0])
     """
-    if region.is_bounded:
+    if of_kind(Region, region, "region").is_bounded:
         return tuple(BoundaryPath(outline.points) for outline in region.outlines)
     side = float(_FARTHEST * Fraction(10) ** region.pitch)
     corners = [(-side, -side), (side, -side), (side, side), (-side, side)]

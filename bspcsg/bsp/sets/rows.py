@@ -9,6 +9,7 @@ from ..._types import FloatArray, Scalar
 from ...errors import invalid_parameter
 from ...geometry import hyperplane as exact
 from ...geometry.arrays import doubles
+from ..trees.asking import pairs_of
 from .pieces import NormalAndOffset
 
 
@@ -32,7 +33,7 @@ def hyperplane_row(normal: Any, offset: Scalar, dimension: int, pitch: int) -> l
 
 def hyperplane_rows(cuts: Sequence[NormalAndOffset], dimension: int, pitch: int) -> list[list[int]]:
     """Return a row for each hyperplane."""
-    return [hyperplane_row(normal, offset, dimension, pitch) for normal, offset in cuts]
+    return [hyperplane_row(*pair, dimension, pitch) for pair in pairs_of(cuts)]
 
 
 def point_rows(points: Any, dimension: int) -> FloatArray:

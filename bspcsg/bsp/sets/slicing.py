@@ -10,7 +10,7 @@ from ...errors import core_errors
 from ...geometry.arrays import axes_of
 from ...geometry.hyperplane import Hyperplane, exact_number
 from ...geometry.transform import along, vector3
-from ...parameters import number
+from ...parameters import number, of_kind
 from ...solid.solid import Solid
 from .region import Region
 
@@ -43,6 +43,7 @@ def slice_solid(
     origin: Vector | None = None,
 ) -> Region | list[Region]:
     """Return sections of a solid by planes, in coordinates of the planes (see `Solid.slice`)."""
+    of_kind(Solid, solid, "solid")
     if axes_of(offset) == 1:
         return _sections(solid, list(offset), normal, None)
     return _sections(solid, [offset], normal, origin)[0]

@@ -17,8 +17,9 @@ import numpy as np
 from ..._types import FloatArray, SideArray
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
-from ...geometry.hyperplane import exact_number
+from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
+from ...parameters import shown
 from .objects import ObjectTree
 
 #: The lattice of cones: directions are whole numbers.
@@ -82,7 +83,7 @@ class SphericalRegion:
         InvalidParameterError
             If the polygon is not convex, or runs clockwise.
         """
-        whole = [_whole(corner) for corner in corners]
+        whole = [_whole(corner) for corner in _listed(corners)]
         if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
             raise invalid_parameter("A polygon has at least three corners in space.")
         sides = [_cross(a, b) for a, b in pairwise([*whole, whole[0]])]
@@ -184,6 +185,8 @@ class SphericalRegion:
 
         def side(direction: Any) -> int:
             place = tuple(map(Fraction, _whole(direction)))
+            if len(place) != self.dimension:
+                raise invalid_parameter(f"A direction here has {self.dimension} numbers.")
             seen, pending = set(), [start]
             while pending:
                 row = pending.pop()
@@ -195,7 +198,7 @@ class SphericalRegion:
                 pending += [int(nodes.plus[row])] * (value >= 0)
             return 0 if len(seen) == 2 else (1 if nodes.IN in seen else -1)
 
-        return np.array([side(direction) for direction in directions], dtype=np.int8)
+        return np.array([side(direction) for direction in _listed(directions)], dtype=np.int8)
 
     def pieces(self) -> list[FloatArray]:
         """Return the region in convex pieces: the corners of each as unit vectors, (k, d).
@@ -258,9 +261,7 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
     shapes = doubles(facets, invalid_parameter("Facets must be an array of numbers."))
     if shapes.ndim != 3 or shapes.shape[1:] not in ((2, 2), (3, 3)):
         raise invalid_parameter(f"Facets must be segments or triangles, not {shapes.shape}.")
-    place = [exact_number(x) for x in np.asarray(eye, dtype=object).tolist()]
-    if len(place) != shapes.shape[2]:
-        raise invalid_parameter(f"The eye must have {shapes.shape[2]} coordinates.")
+    place = exact_point(eye, shapes.shape[2], "eye")
     hidden = [SphericalRegion.empty(len(place))]
     for shape in shapes.tolist():
         arms = [[exact_number(x) - y for x, y in zip(p, place, strict=True)] for p in shape]
@@ -289,6 +290,15 @@ def _cone_of(arms: list[list[Fraction]]) -> SphericalRegion | None:
     if not volume:
         return None
     return SphericalRegion.polygon(whole if volume > 0 else whole[::-1])
+
+
+def _listed(directions: Any) -> list[Any]:
+    try:
+        return list(directions)
+    except TypeError as error:
+        given = shown(directions)
+        message = f"Directions must be a list of two or three numbers each, not {given}."
+        raise invalid_parameter(message) from error
 
 
 def _whole(direction: Any) -> list[int]:

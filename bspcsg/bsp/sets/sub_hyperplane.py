@@ -9,14 +9,15 @@ from typing import Any, Self, TypeAlias
 import numpy as np
 
 from ..._types import FloatArray, Scalar
-from ...errors import UnboundedError, invalid_parameter
+from ...errors import LimitError, UnboundedError, invalid_parameter
 from ...geometry.arrays import doubles
+from ...parameters import shown
 from .interval import Intervals
 from .objects import ObjectTree
 from .region import Region
 from .rows import hyperplane, hyperplane_row, point_rows
 from .slicing import plane_frame
-from .tree_set import TreeSet
+from .tree_set import TreeSet, set_of
 
 #: A set in a hyperplane.
 InnerSet: TypeAlias = Intervals | Region
@@ -69,10 +70,13 @@ class SubHyperplane:
         length = float(np.linalg.norm(self._normal))
         self._normal /= length
         self._normal.flags.writeable = False
-        self._offset = float(wanted.offset) / length
+        try:
+            self._offset = float(wanted.offset) / length
+        except OverflowError as error:
+            raise LimitError("The hyperplane lies beyond all doubles.", "too_large") from error
         inner = self.dimension - 1
         whole: InnerSet = Intervals.full() if inner == 1 else Region.full()
-        self._part = whole if part is None else part
+        self._part = whole if part is None else _inner(part)
         if self._part.dimension != inner:
             raise invalid_parameter(f"What lies in this hyperplane has dimension {inner}.")
 
@@ -338,8 +342,14 @@ def _frame(normal: FloatArray) -> FloatArray:
     return np.array(plane_frame(normal))
 
 
+def _inner(part: Any) -> InnerSet:
+    if isinstance(part, (Intervals, Region)):
+        return part
+    raise invalid_parameter(f"part must be Intervals or a Region, not {shown(part)}.")
+
+
 def _tree(points: TreeSet) -> ObjectTree:
-    if points.dimension == 1:
+    if set_of(points, "points").dimension == 1:
         raise invalid_parameter("A sub-hyperplane lies in the plane or in space.")
     return points.tree
 

@@ -126,8 +126,9 @@ class TreeSet(PointSet):
         return self._tree.is_bounded
 
 
-def set_of(other: object) -> TreeSet:
+def set_of(value: object, name: str = "other") -> TreeSet:
     """Return what has to be a set of points."""
-    if isinstance(other, TreeSet):
-        return other
-    raise invalid_parameter(f"other must be a set as this one, not {shown(other)}.")
+    if isinstance(value, TreeSet):
+        return value
+    message = f"{name} must be a Region, Intervals or an ObjectTree, not {shown(value)}."
+    raise invalid_parameter(message)

@@ -14,7 +14,7 @@ import numpy as np
 from ..._types import Scalar
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
-from ...geometry.hyperplane import exact_number
+from ...geometry.hyperplane import exact_number, exact_point
 from ...shapes.primitives import box as box_solid
 from ...shapes.primitives import half_space
 from ...solid.solid import Solid
@@ -53,12 +53,12 @@ def visibility_polygon(
     13.0
     """
     walls, place = _exact(segments, eye, 2)
-    points = [*walls, [place, list(map(exact_number, low)), list(map(exact_number, high))]]
+    least, most = exact_point(low, 2, "low"), exact_point(high, 2, "high")
+    points = [*walls, [place, least, most]]
     pitch = chosen_pitch(None, np.array([[float(x) for x in p] for ps in points for p in ps]))
     place = _snapped(place, pitch)
     walls = [[_snapped(corner, pitch) for corner in wall] for wall in walls]
-    ends = [[float(low[0]), float(low[1])], [float(high[0]), float(high[1])]]
-    (x, y), (u, v) = ends
+    (x, y), (u, v) = map(float, least), map(float, most)
     shadows = []
     for a, b in walls:
         turn = _turn(place, a, b)
@@ -105,8 +105,10 @@ def visibility_volume(
     54.666666666666664
     """
     walls, place = _exact(triangles, eye, 3)
-    sizes = [float(end) - float(start) for start, end in zip(low, high, strict=True)]
-    seen = box_solid(sizes).translate([float(x) for x in low])
+    least = [float(x) for x in exact_point(low, 3, "low")]
+    most = [float(x) for x in exact_point(high, 3, "high")]
+    sizes = [end - start for start, end in zip(least, most, strict=True)]
+    seen = box_solid(sizes).translate(least)
     for corners in walls:
         normal = _normal(*corners)
         depth = _offset(normal, corners[0]) - _offset(normal, place)
@@ -127,9 +129,7 @@ def _exact(facets: Any, eye: Any, dimension: int) -> tuple[list[list[_Point]], _
     if shapes.ndim != 3 or shapes.shape[1:] != (dimension, dimension):
         expected = f"(n, {dimension}, {dimension})"
         raise invalid_parameter(f"The facets must have shape {expected}, not {shapes.shape}.")
-    place = [exact_number(x) for x in np.asarray(eye, dtype=object).tolist()]
-    if len(place) != dimension:
-        raise invalid_parameter(f"The eye must have {dimension} coordinates.")
+    place = exact_point(eye, dimension, "eye")
     walls = [[[exact_number(x) for x in corner] for corner in shape] for shape in shapes.tolist()]
     return walls, place
 

@@ -10,6 +10,7 @@ from ..._core import FragmentTree
 from ..._types import IndexArray
 from ...errors import invalid_parameter
 from ...geometry.hyperplane import Hyperplane
+from ...parameters import shown
 from .facets import Corners
 
 
@@ -48,7 +49,16 @@ Chooser: TypeAlias = Callable[[Choice], Any]
 
 def lattice_rows(cuts: Sequence[tuple[Any, Any]], dimension: int, pitch: int) -> list[list[int]]:
     """Return hyperplanes (normal, offset) as rows of whole numbers, in lattice steps."""
-    return [_row(normal, offset, dimension, pitch) for normal, offset in cuts]
+    return [_row(normal, offset, dimension, pitch) for normal, offset in pairs_of(cuts)]
+
+
+def pairs_of(cuts: Any) -> list[tuple[Any, Any]]:
+    """Return hyperplanes, each as its normal and its offset."""
+    try:
+        return [(normal, offset) for normal, offset in cuts]
+    except (TypeError, ValueError) as error:
+        message = f"A hyperplane is a pair of a normal and an offset; these are {shown(cuts)}."
+        raise invalid_parameter(message) from error
 
 
 def _row(normal: Any, offset: Any, dimension: int, pitch: int) -> list[int]:

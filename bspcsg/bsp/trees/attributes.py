@@ -11,14 +11,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Generic, Literal, Self, TypeAlias, TypeVar
 
-import numpy as np
-
 from ..._types import Scalar
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry.arrays import doubles
-from ...geometry.hyperplane import exact_number
+from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
-from ...parameters import pitch_exponent
+from ...parameters import dimension_number, function_of, pitch_exponent, shown
 from .asking import lattice_rows
 from .facets import corners_of
 from .node import RegionShape
@@ -96,9 +94,7 @@ class AttributeTree(Generic[Label]):
     """
 
     def __init__(self, dimension: int, label: Label, *, pitch: int = -9) -> None:
-        if dimension not in (1, 2, 3):
-            raise invalid_parameter(f"The dimension is 1, 2 or 3, not {dimension!r}.")
-        self.dimension = dimension
+        self.dimension = dimension_number(dimension)
         self.pitch = pitch_exponent(pitch)
         self._rows: list[tuple[int, ...]] = []
         #: Links to inner nodes, or -1 - k for label k.
@@ -146,6 +142,7 @@ class AttributeTree(Generic[Label]):
         InvalidMeshError
             If the facet has no extent on the lattice, or its corners are not in one plane.
         """
+        checked = _checked_rule(rule)
         corners = self._corners(facet)
         row = _supporting(corners)
         if any(height(corner, row) for corner in corners):
@@ -155,7 +152,7 @@ class AttributeTree(Generic[Label]):
         while pending:
             part, link, parent, side = pending.pop()
             if link < 0:
-                grown._divide(link, parent, side, row, rule)
+                grown._divide(link, parent, side, row, checked)
                 continue
             for half in (0, 1):
                 piece = cut_polygon(part, self._rows[link], 2 * half - 1)
@@ -174,6 +171,7 @@ class AttributeTree(Generic[Label]):
             As for `ObjectTree.half_space`: the minus side has smaller products.
         rule : "inherit" or (minus, plus)
         """
+        checked = _checked_rule(rule)
         row = tuple(lattice_rows([(normal, offset)], self.dimension, self.pitch)[0])
         grown = self._copy()
         box = Polytope.box([-_REACH] * self.dimension, [_REACH] * self.dimension)
@@ -183,7 +181,7 @@ class AttributeTree(Generic[Label]):
             if not (region.clipped(row, -1) and region.clipped(row, 1)):
                 continue
             if link < 0:
-                grown._divide(link, parent, side, row, rule)
+                grown._divide(link, parent, side, row, checked)
                 continue
             for half in (0, 1):
                 part = region.clipped(self._rows[link], 2 * half - 1)
@@ -201,10 +199,10 @@ class AttributeTree(Generic[Label]):
         parent: int | None,
         side: int,
         row: tuple[int, ...],
-        rule: "CutRule[Label]",
+        rule: tuple[Label, Label] | None,
     ) -> None:
         old = self._labels[-1 - leaf]
-        minus, plus = (old, old) if rule == "inherit" else rule
+        minus, plus = (old, old) if rule is None else rule
         self._labels[-1 - leaf] = minus
         self._labels.append(plus)
         self._rows.append(row)
@@ -231,11 +229,8 @@ class AttributeTree(Generic[Label]):
         point : (d,) array_like of float
             In model units; the numbers count as the decimals they are written as.
         """
-        entries = np.atleast_1d(np.asarray(point, dtype=object)).tolist()
-        if len(entries) != self.dimension:
-            raise invalid_parameter(f"The point must have {self.dimension} coordinates.")
         scale = exact_number(10) ** -self.pitch
-        place = tuple(exact_number(entry) * scale for entry in entries)
+        place = tuple(x * scale for x in exact_point(point, self.dimension, "point"))
         found, pending = [], [self._root]
         while pending:
             link = pending.pop()
@@ -267,8 +262,22 @@ class AttributeTree(Generic[Label]):
     def mapped(self, function: Callable[[Label], Any]) -> "AttributeTree[Any]":
         """Return the tree with each label replaced by what a function makes of it."""
         made: AttributeTree[Any] = self._copy()
-        made._labels = [function(label) for label in self._labels]
+        made._labels = list(map(function_of(function, "function"), self._labels))
         return made
+
+
+def _checked_rule(rule: "CutRule[Label]") -> tuple[Label, Label] | None:
+    """Return the labels of both sides, or None where they inherit."""
+    if isinstance(rule, str) and rule == "inherit":
+        return None
+    try:
+        if isinstance(rule, (str, bytes)):
+            raise TypeError("a text is no pair")
+        minus, plus = rule
+    except (TypeError, ValueError) as error:
+        message = f"rule must be 'inherit' or two labels, not {shown(rule)}."
+        raise invalid_parameter(message) from error
+    return minus, plus
 
 
 def _steps(values: Any, pitch: int) -> list[int]:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
-from ...errors import core_errors, invalid_parameter
-from ...parameters import not_negative
+from ...errors import core_errors
+from ...parameters import not_negative, word
 
 if TYPE_CHECKING:
     from .tree import PartitionTree
@@ -52,12 +52,11 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
     Naylor 1993, "Constructing good partitioning trees". That a line meets a convex body inside
     another with the ratio of their surfaces is Crofton's formula.
     """
-    if query not in ("point", "ray"):
-        raise invalid_parameter(f"The query is 'point' or 'ray', not {query!r}.")
+    wanted = word(("point", "ray"), query, "query")
     reach = tree.margin if margin is None else not_negative(margin, "margin")
     with core_errors():
         volume, surface, volumes, surfaces = tree.core.measures(reach)
-    if query == "point":
+    if wanted == "point":
         return math.fsum(volumes) / volume
     return math.fsum(surfaces) / surface
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray
-from ...errors import BspcsgError, FormatError, core_errors, invalid_parameter
+from ...errors import BspcsgError, FormatError, LimitError, core_errors, invalid_parameter
+from ...parameters import at_least, shown
 
 if TYPE_CHECKING:
     from .tree import PartitionTree
@@ -124,13 +125,20 @@ def to_dot(tree: "PartitionTree") -> str:
     return "\n".join([*lines, "}", ""])
 
 
+#: Pixels of the widest picture: coordinates have three digits after the point in doubles.
+_WIDEST = 1 << 20
+
+
 def to_svg(tree: "PartitionTree", size: int = 480) -> str:
     """Return a picture of a tree in the plane, `size` pixels wide."""
     if tree.dimension != 2:
         raise invalid_parameter("Only trees in the plane are drawn as SVG.")
+    width = at_least(1, size, "size")
+    if width > _WIDEST:
+        raise LimitError(f"size must be {_WIDEST} at most, not {shown(size)}.", "too_large")
     outline = np.asarray(tree.region())
     low, high = outline.min(axis=0), outline.max(axis=0)
-    scale = size / float(high[0] - low[0])
+    scale = width / float(high[0] - low[0])
     height = scale * float(high[1] - low[1])
 
     def line(ends: FloatArray, style: str) -> str:
@@ -144,8 +152,8 @@ def to_svg(tree: "PartitionTree", size: int = 480) -> str:
     cuts = [line(span, 'stroke="#bbb"') for span in spans if len(span)]
     pieces = [line(piece, 'stroke="#000" stroke-width="2"') for piece in tree.fragments]
     head = (
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{size}" height="{height:.0f}"'
-        f' viewBox="0 0 {size} {height:.3f}">'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height:.0f}"'
+        f' viewBox="0 0 {width} {height:.3f}">'
     )
-    frame = f'<rect width="{size}" height="{height:.3f}" fill="#fff" stroke="#bbb"/>'
+    frame = f'<rect width="{width}" height="{height:.3f}" fill="#fff" stroke="#bbb"/>'
     return "\n".join([head, frame, *cuts, *pieces, "</svg>", ""])

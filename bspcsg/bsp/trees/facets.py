@@ -50,6 +50,8 @@ def _polygons(facets: Any) -> Corners:
         polygons = [doubles(polygon, refusal) for polygon in facets]
     except TypeError:  # nothing that has facets
         raise refusal from None
+    if not polygons:
+        raise refusal
     for number, polygon in enumerate(polygons):
         if polygon.ndim != 2 or polygon.shape[1] != 3:
             message = f"Polygon {number} must have shape (k, 3), not {polygon.shape}."

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from fractions import Fraction
+from operator import index
 from typing import Any
 
 import numpy as np
@@ -49,9 +50,12 @@ def moved_core(
 
 def _rotation(axes: Sequence[int] | None, dimension: int) -> IndexArray:
     """Return the matrix of a signed permutation of the axes that is no mirror image."""
-    given = list(range(1, dimension + 1)) if axes is None else list(axes)
-    if sorted(abs(axis) for axis in given) != list(range(1, dimension + 1)):
-        message = f"The axes must be those from 1 to {dimension}, each once, with a sign."
+    message = f"The axes must be those from 1 to {dimension}, each once, with a sign."
+    try:
+        given = list(range(1, dimension + 1)) if axes is None else list(map(index, axes))
+    except TypeError as error:
+        raise invalid_parameter(message) from error
+    if sorted(map(abs, given)) != list(range(1, dimension + 1)):
         raise invalid_parameter(message)
     matrix = np.zeros((dimension, dimension), dtype=np.int64)
     for row, axis in enumerate(given):

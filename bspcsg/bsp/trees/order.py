@@ -10,6 +10,7 @@ from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray, SideArray
 from ...errors import core_errors, invalid_parameter
 from ...geometry.arrays import doubles
+from ...parameters import shown, word
 from .fragments import Fragments, ranges
 from .node import Leaf, Node, Visitor
 
@@ -105,9 +106,8 @@ class Ordered(ABC):
 
     def walk(self, order: Literal["pre", "in", "post"] = "pre") -> Iterator[Node | Leaf]:
         """Yield all nodes and leaves, minus before plus, a node before, between or after them."""
-        if order not in ("pre", "in", "post"):
-            raise invalid_parameter(f"The order is 'pre', 'in' or 'post', not {order!r}.")
-        place = ("pre", "in", "post").index(order)
+        orders = ("pre", "in", "post")
+        place = orders.index(word(orders, order, "order"))
 
         def arranged(node: Node) -> Sequence[Node | Leaf]:
             steps: list[Node | Leaf] = list(node.children)
@@ -130,6 +130,8 @@ class Ordered(ABC):
 
     def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
         """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
+        if not (hasattr(visitor, "node") and hasattr(visitor, "leaf")):
+            raise invalid_parameter(f"visitor must have node() and leaf(), not {shown(visitor)}.")
         for place in self.walk(order):
             if isinstance(place, Leaf):
                 visitor.leaf(place)

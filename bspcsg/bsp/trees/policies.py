@@ -5,8 +5,10 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from ...errors import invalid_parameter
+from ...parameters import shown
 from .cost import cost, stats
-from .policy import POLICIES, Policy
+from .policy import POLICIES, Policy, checked_policy
 from .tree import PartitionTree
 
 
@@ -65,7 +67,12 @@ def compare_policies(
     list of PolicyRow
         In the order of `policies`; as a string it is a table.
     """
-    return Comparison(_row(facets, policy, options) for policy in policies)
+    try:
+        names = list(policies)
+    except TypeError as error:
+        message = f"policies must be a list of policies, not {shown(policies)}."
+        raise invalid_parameter(message) from error
+    return Comparison(_row(facets, checked_policy(name), options) for name in names)
 
 
 def _row(facets: Any, policy: Policy, options: dict[str, Any]) -> PolicyRow:

@@ -33,7 +33,7 @@ neither side gets more than three quarters of the facets (general partition).
 from typing import Any, Literal, TypeAlias, get_args
 
 from ...errors import invalid_parameter
-from ...parameters import at_least, number, optional_pitch, seed_number
+from ...parameters import at_least, number, optional_pitch, seed_number, shown
 
 #: The names of the pivot policies.
 Policy: TypeAlias = Literal[
@@ -44,13 +44,19 @@ Policy: TypeAlias = Literal[
 POLICIES: tuple[Policy, ...] = get_args(Policy)[:-1]
 
 
+#: More facets than there are.
+_ALL = 2**31
+
+
 def checked_policy(policy: Any) -> Policy:
     """Return the policy, or raise an error that lists the names."""
-    if policy not in get_args(Policy):
-        names = ", ".join(get_args(Policy))
-        raise invalid_parameter(f"Unknown policy {policy!r}; there are {names}, or a callable.")
-    result: Policy = policy
-    return result
+    for name in get_args(Policy):
+        if isinstance(policy, str) and policy == name:
+            known: Policy = name
+            return known
+    names = ", ".join(get_args(Policy))
+    message = f"Unknown policy {shown(policy)}; there are {names}, or a callable."
+    raise invalid_parameter(message)
 
 
 def core_options(seed: Any, sample: Any, alpha: Any, top: Any, pitch: Any) -> dict[str, Any]:
@@ -66,8 +72,8 @@ def core_options(seed: Any, sample: Any, alpha: Any, top: Any, pitch: Any) -> di
         raise invalid_parameter(f"alpha must be from 0 to 1, not {alpha}.")
     return {
         "seed": seed_number(seed),
-        "sample": at_least(1, sample, "sample"),
+        "sample": min(at_least(1, sample, "sample"), _ALL),
         "alpha": weight,
-        "top": at_least(0, top, "top"),
+        "top": min(at_least(0, top, "top"), _ALL),
         "pitch": optional_pitch(pitch),
     }

@@ -11,8 +11,11 @@ import numpy as np
 from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray
 from ...errors import core_errors, invalid_parameter
+from ...formats.atomic import write_file
+from ...formats.source import limited_content
+from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
-from ...parameters import at_least, not_negative
+from ...parameters import at_least, file_path, not_negative, shown, word
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
@@ -112,12 +115,11 @@ class PartitionTree(Ordered):
         margin: float | None = None,
     ) -> None:
         options = core_options(seed, sample, alpha, top, pitch)
-        if non_planar not in ("error", "triangulate"):
-            raise invalid_parameter(f"non_planar is 'error' or 'triangulate', not {non_planar!r}.")
-        if degenerate not in ("error", "drop"):
-            raise invalid_parameter(f"degenerate is 'error' or 'drop', not {degenerate!r}.")
+        lenience = (
+            word(("error", "triangulate"), non_planar, "non_planar") == "triangulate",
+            word(("error", "drop"), degenerate, "degenerate") == "drop",
+        )
         corners, offsets = corners_of(facets)
-        lenience = non_planar == "triangulate", degenerate == "drop"
         step = chosen_pitch(pitch, corners)
         own = lattice_rows(cuts, corners.shape[1], step)
         with core_errors():
@@ -202,7 +204,7 @@ class PartitionTree(Ordered):
         FormatError
             If there are too many or too few, or a facet is not in the region that it is to cut.
         """
-        rows = np.ascontiguousarray(np.asarray(cuts, dtype=np.int64).reshape(-1, 2))
+        rows = _cut_rows(cuts)
         corners, offsets = self.core.lattice()
         own = [list(row) for row in self.own_hyperplanes]
         with core_errors():
@@ -318,9 +320,11 @@ class PartitionTree(Ordered):
         point : (d,) array_like of float
             In model units. It is not snapped: sides are decided for these doubles.
         """
-        place = vector_rows(point, self.dimension, "The point")[0]
+        place = vector_rows(point, self.dimension, "The point")
+        if len(place) != 1 or not np.isfinite(place).all():
+            raise invalid_parameter(f"The point must be one, and finite, not {shown(point)}.")
         with core_errors():
-            return point_trace(self, self.core.path(_filled(place)))
+            return point_trace(self, self.core.path(_filled(place[0])))
 
     def locate(self, point: Any) -> Node | Leaf:
         """Return the leaf in which a point lies, or the node in whose hyperplane it lies."""
@@ -464,15 +468,19 @@ class PartitionTree(Ordered):
         return cls.from_core(*parsed(text))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write `to_json` to a file."""
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(self.to_json())
+        """Write `to_json` to a file.
+
+        Raises
+        ------
+        FormatError
+            If the file cannot be written.
+        """
+        write_file(path, [self.to_json().encode()])
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "PartitionTree":
         """Read what `save` wrote; raises as `from_json` does."""
-        with open(path, encoding="utf-8") as file:
-            return cls.from_json(file.read())
+        return cls.from_json(limited_content(file_path(path)).decode("utf-8", "replace"))
 
     def to_dot(self) -> str:
         """Return the tree in the language of Graphviz; leaves are drawn as dots."""
@@ -526,11 +534,23 @@ def _restored(kind: type[PartitionTree], parts: Any, margin: float | None) -> Pa
         return kind.from_core(FragmentTree.rebuild(*parts), parts[4], margin)
 
 
+def _cut_rows(cuts: Any) -> IndexArray:
+    message = "Cuts are rows of two whole numbers, one for each node."
+    rows = doubles(cuts, invalid_parameter(message))
+    if rows.size % 2 or not (np.isfinite(rows) & (rows == np.trunc(rows))).all():
+        raise invalid_parameter(message)
+    if (np.abs(rows) >= 2.0**63).any():
+        raise invalid_parameter(message)
+    return np.ascontiguousarray(rows.reshape(-1, 2), dtype=np.int64)
+
+
 def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
     if of is None:
         return None, 0
     if isinstance(of, Node):
         return of.index, 0
+    if not isinstance(of, Leaf):
+        raise invalid_parameter(f"A region is that of a node or a leaf, not of {shown(of)}.")
     sides: dict[Side, int] = {"minus": -1, "plus": 1}
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
 
