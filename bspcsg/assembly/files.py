@@ -18,7 +18,7 @@ from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
 from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
-from ..formats.source import Source, content_of
+from ..formats.source import Source, whole_content
 from ..formats.threemf import scene as threemf
 from ..formats.threemf.properties import kept
 from ..formats.threemf.write import called
@@ -61,13 +61,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
 
 
 def _scene(path: str | os.PathLike[str], suffix: str) -> SceneNode:
-    name = os.fspath(path)
-    try:
-        data = content_of(Path(path))
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
-    return _decoded(name, data, suffix)
+    return _decoded(os.fspath(path), whole_content(path), suffix)
 
 
 def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:

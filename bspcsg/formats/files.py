@@ -18,7 +18,7 @@ from .proof import prove, prove_with_attributes
 from .raw import RawMesh, empty_set
 from .registry import FORMATS, Form, Format
 from .said import left_out, said_of, saying
-from .source import Source, content_of
+from .source import Source, whole_content
 
 _BREP = (
     "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
@@ -119,12 +119,7 @@ def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
     name = os.fspath(path)
     if suffix.lower() not in FORMATS:
         format_of(name)
-    try:
-        data = content_of(Path(path))
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
-    return decoded(name, data, suffix)
+    return decoded(name, whole_content(path), suffix)
 
 
 def decoded(

@@ -4,6 +4,7 @@ import errno
 import os
 import stat
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -130,14 +131,34 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
         If it cannot be read or is larger than 256 MiB.
     """
     name = file_path(path)
-    try:
+    with _readable(name):
         data = content_of(Path(name)) if Path(name).stat().st_size <= _LARGEST_TEXT else None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or type(error).__name__
-        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
     if data is None or len(data) > _LARGEST_TEXT:
         raise FormatError(f"{name}: the file is larger than {_LARGEST_TEXT:,} bytes.", "too_large")
     return data
+
+
+def whole_content(path: str | os.PathLike[str]) -> bytes:
+    """Return the bytes of a file of any size.
+
+    Raises
+    ------
+    FormatError
+        If it cannot be read.
+    """
+    name = file_path(path)
+    with _readable(name):
+        return content_of(Path(name))
+
+
+@contextmanager
+def _readable(name: str) -> Iterator[None]:
+    """Raise a `FormatError` where the block cannot read a file."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or type(error).__name__
+        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
 
 
 def quoted(words: bytes) -> str:

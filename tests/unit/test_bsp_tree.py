@@ -307,6 +307,10 @@ class TestDumps:
         tree = bsp.PartitionTree(CROSS)
         tree.save(tmp_path / "tree.json")
         assert bsp.PartitionTree.load(tmp_path / "tree.json") == tree
+        with pytest.raises(b.FormatError, match="No such file"):
+            bsp.PartitionTree.load(tmp_path / "none.json")
+        with pytest.raises(b.FormatError, match="no folder"):
+            tree.save(tmp_path / "none" / "tree.json")
         assert tree != bsp.PartitionTree(CROSS[:1])
         assert tree != "tree"
 

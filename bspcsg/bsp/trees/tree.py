@@ -12,10 +12,10 @@ from ..._core import FragmentTree
 from ..._types import FloatArray, IndexArray
 from ...errors import core_errors, invalid_parameter
 from ...formats.atomic import write_file
-from ...formats.source import limited_content
+from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
-from ...parameters import at_least, file_path, not_negative, shown, word
+from ...parameters import at_least, not_negative, shown, word
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
 from .dump import parsed, to_dot, to_json, to_svg
@@ -479,8 +479,14 @@ class PartitionTree(Ordered):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "PartitionTree":
-        """Read what `save` wrote; raises as `from_json` does."""
-        return cls.from_json(limited_content(file_path(path)).decode("utf-8", "replace"))
+        """Read what `save` wrote.
+
+        Raises
+        ------
+        FormatError
+            If the file cannot be read, and as for `from_json`.
+        """
+        return cls.from_json(whole_content(path).decode("utf-8", "replace"))
 
     def to_dot(self) -> str:
         """Return the tree in the language of Graphviz; leaves are drawn as dots."""
