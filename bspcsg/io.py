@@ -22,7 +22,7 @@ from .formats.files import (
 from .formats.raw import RawMesh
 from .formats.registry import FORMATS
 from .formats.solids import solid_of
-from .parameters import file_path, of_kind, truth_value
+from .parameters import file_path, of_kind, shown, text_value, truth_value
 from .solid.counting import counted
 from .solid.solid import Solid
 
@@ -98,12 +98,14 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
     FormatError
         If the format is not said (code "unknown_format"), or as for `load`.
     """
-    named = f".{(suffix or '').lower().removeprefix('.')}"
+    named = f".{text_value('' if suffix is None else suffix, 'suffix').lower().removeprefix('.')}"
     if named not in FORMATS:
         known = ", ".join(name[1:] for name in sorted(FORMATS))
-        message = f"To read bytes, say their format: one of {known}, not {suffix!r}."
+        message = f"To read bytes, say their format: one of {known}, not {shown(suffix)}."
         raise FormatError(message, "unknown_format")
-    content = data.read() if hasattr(data, "read") else bytes(data)
+    content = data.read() if hasattr(data, "read") else data
+    if isinstance(content, (bytearray, memoryview)):
+        content = bytes(content)
     if not isinstance(content, bytes):
         raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
     name = getattr(data, "name", None)

@@ -156,6 +156,13 @@ def file_path(value: Any, name: str = "path") -> str:
     raise invalid_parameter(f"{name} must be a text or a path, not {shown(value)}.")
 
 
+def text_value(value: Any, name: str) -> str:
+    """Return a text."""
+    if isinstance(value, str):
+        return str(value)
+    raise invalid_parameter(f"{name} must be a text, not {shown(value)}.")
+
+
 def word(known: Iterable[str], value: Any, name: str) -> str:
     """Return one of the words that are known."""
     words = tuple(known)

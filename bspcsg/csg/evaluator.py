@@ -4,9 +4,11 @@ import os
 from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, get_args
 
 from ..bsp import Region
-from ..errors import BspcsgError, FormatError
+from ..errors import BspcsgError, FormatError, invalid_parameter
+from ..parameters import file_path, function_of, of_kind, shown, truth_value, word
 from ..solid.counting import counted
 from ..solid.solid import Solid
 from .making.apart import COMBINING, moved_apart
@@ -88,25 +90,36 @@ def evaluate(
         For what is left out as OpenSCAD leaves it out: files that are not there, numbers that are
         not finite, points that are missing, children of the other dimension.
     """
-    allowed = tuple(Path(path).resolve() for path in allow_paths)
+    word(get_args(OnInvalid), on_invalid, "on_invalid")
+    polishes, skips = truth_value(polish, "polish"), truth_value(lenient, "lenient")
+    if on_polish is not None:
+        function_of(on_polish, "on_polish")
+    allowed = _folders(allow_paths)
+    of_kind(CsgTree, tree, "tree")
     name = tree.name if tree.intermediate is None else tree.intermediate.name
-    invalid = "warn" if lenient and on_invalid == "error" else on_invalid
+    invalid: OnInvalid = "warn" if skips and on_invalid == "error" else on_invalid
     run = Evaluation(
         name,
         tree.folder,
         allowed,
-        polish,
+        polishes,
         on_invalid=invalid,
-        lenient=lenient,
+        lenient=skips,
         explained=lambda message: tree.explained(FormatError(message)).message,
     )
     try:
         result, done = _polished(tree, run)
     except BspcsgError as error:
         raise tree.explained(error) from error
-    if polish and on_polish is not None:
+    if polishes and on_polish is not None:
         on_polish(done)
     return result
+
+
+def _folders(given: Any) -> tuple[Path, ...]:
+    if not isinstance(given, (str, bytes)) and isinstance(given, Iterable):
+        return tuple(Path(file_path(path, "allow_paths")).resolve() for path in given)
+    raise invalid_parameter(f"allow_paths must be a list of folders, not {shown(given)}.")
 
 
 def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:

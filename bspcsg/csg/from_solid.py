@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import UnboundedError
 from ..geometry.chain import UNMOVED, FactorChain
 from ..geometry.transform import Factor
-from ..parameters import truth_value
+from ..parameters import of_kind, truth_value
 from ..solid import expression
 from ..solid.counting import uncounted
 from ..solid.expression import Pending, Placed, Plan, make_plan
@@ -69,6 +69,7 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
     half-spaces have none, and where repeated parts, which are written out each time, would make it
     larger than two million corners and triangles. Symmetric differences repeat both their operands.
     """
+    of_kind(Solid, solid, "solid")
     body = (
         _polyhedron(solid) if truth_value(flat, "flat") else _Reading().body(*expression_of(solid))
     )

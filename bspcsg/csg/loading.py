@@ -9,7 +9,7 @@ from ..bsp import Region
 from ..errors import BspcsgError, FormatError
 from ..formats.atomic import write_file
 from ..formats.source import limited_content
-from ..parameters import file_path
+from ..parameters import file_path, word
 from ..solid.counting import counted
 from ..solid.solid import Solid
 from .evaluator import evaluate
@@ -100,7 +100,8 @@ def loads(
     >>> csg.loads("difference() { cube(size = 2); cube(size = 1); }").volume
     7.0
     """
-    tree = from_json(text, name, folder) if form == "json" else parse(text, name, folder)
+    read = {"csg": parse, "json": from_json}[word(("csg", "json"), form, "form")]
+    tree = read(text, name, folder)
     body = evaluate(
         tree,
         polish=polish,

@@ -10,8 +10,9 @@ from typing import BinaryIO
 
 import numpy as np
 
-from ..errors import Finding, FormatError, format_errors
+from ..errors import Finding, FormatError, format_errors, invalid_parameter
 from ..mesh.mesh import Mesh
+from ..parameters import file_path, of_kind, shown, text_value, truth_value
 from . import single
 from .atomic import write_file
 from .proof import prove, prove_with_attributes
@@ -62,14 +63,15 @@ def format_of(path: str | os.PathLike[str]) -> Format:
 
 
 def _format_of(path: str | os.PathLike[str], refusals: Mapping[str, str]) -> Format:
-    suffix = Path(path).suffix.lower()
+    name = file_path(path)
+    suffix = Path(name).suffix.lower()
     if suffix in FORMATS:
         return FORMATS[suffix]
     known = ", ".join(sorted(FORMATS))
     message = f"“{suffix}” is no known mesh format; known are {known}."
     if not suffix:
         message = f"the name needs a suffix that says the format: {known}."
-    raise FormatError(f"{os.fspath(path)}: {refusals.get(suffix, message)}", "unknown_format")
+    raise FormatError(f"{name}: {refusals.get(suffix, message)}", "unknown_format")
 
 
 def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
@@ -81,7 +83,7 @@ def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
         If the format is unknown or has no form as text; code ``"unknown_format"``.
     """
     chosen = _format_of(path, _UNWRITTEN)
-    form = chosen.text if text else chosen.binary or chosen.text
+    form = chosen.text if truth_value(text, "text") else chosen.binary or chosen.text
     if form is None:
         textual = ", ".join(sorted(suffix for suffix, one in FORMATS.items() if one.text))
         message = f"{os.fspath(path)}: this format is never text; text can be {textual}."
@@ -111,13 +113,13 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
     MissingPartError
         If the format needs a library that is not installed.
     """
-    return read_as(path, Path(path).suffix)
+    return read_as(path, Path(file_path(path)).suffix)
 
 
 def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
     """Read a mesh file as what a suffix names, whatever its own suffix; else as `read`."""
-    name = os.fspath(path)
-    if suffix.lower() not in FORMATS:
+    name = file_path(path)
+    if text_value(suffix, "suffix").lower() not in FORMATS:
         format_of(name)
     return decoded(name, whole_content(path), suffix)
 
@@ -141,9 +143,13 @@ def decoded(
     FormatError
         As for `read`.
     """
+    text_value(name, "name")
+    of_kind(bytes, data, "data")
+    if not (files is None or isinstance(files, Mapping)):
+        raise invalid_parameter(f"files must be a dictionary of bytes, not {shown(files)}.")
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
-    chosen = FORMATS[suffix.lower()]
+    chosen = format_of(f"data{text_value(suffix, 'suffix')}")
     if any(form is not None and data == _nothing(form) for form in (chosen.text, chosen.binary)):
         return replace(empty_set(), name=Path(name).stem, unit=chosen.unit)
     with format_errors(name, suffix.removeprefix(".").upper()):
@@ -168,8 +174,7 @@ def write(
 
     Parameters
     ----------
-    mesh : object
-        With ``vertices`` (n, 3) float64 and ``faces`` (m, 3) int64.
+    mesh : Mesh or RawMesh
     path : str or path
         Ending in one of `FORMATS`.
     text : bool
@@ -183,7 +188,7 @@ def write(
     MissingPartError
         If the format needs a library that is not installed.
     """
-    made = encoded(mesh, path, Path(path).suffix, text)
+    made = encoded(mesh, path, Path(file_path(path)).suffix, text)
     write_file(path, made.chunks, made.prove)
     write_beside(path, made.files)
     return made.findings
@@ -220,8 +225,10 @@ def encoded(
     mesh: Mesh | RawMesh, path: str | os.PathLike[str], suffix: str, text: bool = False
 ) -> Encoded:
     """Return the bytes of a file, what the format cannot keep, and the proof, as for `write`."""
-    name = os.fspath(path)
-    form = form_of(f"mesh{suffix}", text)
+    name = file_path(path)
+    form = form_of(f"mesh{text_value(suffix, 'suffix')}", text)
+    if not isinstance(mesh, (Mesh, RawMesh)):
+        raise invalid_parameter(f"mesh must be a Mesh or a RawMesh, not {shown(mesh)}.")
     _refuse_unwritable(name, mesh, form)
     try:
         findings = form.losses(mesh) if form.losses is not None else ()

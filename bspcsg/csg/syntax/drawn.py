@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from ...parameters import of_kind
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 from .writer import value_text
@@ -36,7 +37,7 @@ class _Place(NamedTuple):
 
 def outline(tree: CsgTree) -> str:
     """Return a line for each node, indented by its depth; long values are cut short."""
-    lines = [tree.name]
+    lines = [of_kind(CsgTree, tree, "tree").name]
     for place in _walk(tree):
         indent = "".join("   " if last else "│  " for last in place.ended)
         branch = "└─ " if place.is_last else "├─ "
@@ -49,7 +50,7 @@ def graph(tree: CsgTree) -> str:
     """Return the tree in Graphviz's language; ``dot -Tsvg`` draws it."""
     lines = ["digraph csg {", "  node [shape=box, fontname=monospace];"]
     path: list[int] = []
-    for number, place in enumerate(_walk(tree)):
+    for number, place in enumerate(_walk(of_kind(CsgTree, tree, "tree"))):
         del path[place.depth - 1 :]
         lines.append(f"  n{number} [label={quoted(_label(place.node))}];")
         if path:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from ...errors import FormatError
+from ...parameters import at_least, file_path, of_kind, text_value
 from .parser import DEEPEST_VECTOR
 from .tokens import WORD
 from .tree import Argument, CsgTree, Node, Value
@@ -28,6 +29,10 @@ DEEPEST_NODE = 200
 _ODD = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
 
 
+#: Blanks before a line for each level; more of them, and files are nothing else.
+_DEEPEST_INDENT = 64
+
+
 def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
     """Return a tree as a JSON document.
 
@@ -36,9 +41,10 @@ def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
     FormatError
         If nodes nest deeper than 200, which readers of JSON do not all take; code "too_deep".
     """
-    nodes = [_node_data(node, 1, tree.name) for node in tree.nodes]
+    steps = None if indent is None else min(at_least(0, indent, "indent"), _DEEPEST_INDENT)
+    nodes = [_node_data(node, 1, tree.name) for node in of_kind(CsgTree, tree, "tree").nodes]
     document = {"format": FORMAT, "version": VERSION, "nodes": nodes}
-    return json.dumps(document, indent=indent, ensure_ascii=False, allow_nan=False)
+    return json.dumps(document, indent=steps, ensure_ascii=False, allow_nan=False)
 
 
 def from_json(text: str, name: str = "<json>", folder: str | Path | None = None) -> CsgTree:
@@ -49,8 +55,10 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
     FormatError
         If the text is no JSON, or no such document; the message says where.
     """
+    place = Path() if folder is None else Path(file_path(folder, "folder"))
+    text_value(name, "name")
     try:
-        data = json.loads(text)
+        data = json.loads(text_value(text, "text"))
     except (ValueError, RecursionError) as error:
         raise FormatError(f"{name}: this is no JSON: {error}.", "syntax") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -59,7 +67,7 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
         message = f"{name}: version {data.get('version')!r} is not known, only {VERSION}."
         raise FormatError(message, "syntax")
     nodes = _nodes(data.get("nodes"), "nodes", name, 1)
-    return CsgTree(nodes, name, Path() if folder is None else Path(folder))
+    return CsgTree(nodes, name, place)
 
 
 def _node_data(node: Node, depth: int, name: str) -> dict[str, Any]:

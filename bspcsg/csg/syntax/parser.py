@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import FormatError
+from ...parameters import file_path, text_value
 from .source import Script
 from .tokens import Token, tokens, unquoted
 from .tree import Argument, CsgTree, Node, Place, Value
@@ -58,7 +59,8 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
     >>> csg.parse("sphere(r = 2);").nodes[0].name
     'sphere'
     """
-    script = Script(text, name, Path() if folder is None else Path(folder))
+    place = Path() if folder is None else Path(file_path(folder, "folder"))
+    script = Script(text_value(text, "text"), text_value(name, "name"), place)
     return CsgTree(_Parser(script).nodes(), name, script.folder)
 
 
@@ -70,7 +72,7 @@ def value_of(text: str) -> Value:
     FormatError
         If it stands for none.
     """
-    return _Parser(Script(text, "<value>")).value()
+    return _Parser(Script(text_value(text, "text"), "<value>")).value()
 
 
 @dataclass

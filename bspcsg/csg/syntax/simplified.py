@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...parameters import of_kind
 from .tree import CsgTree, Node
 
 #: Nodes that only unite their children, unless they have arguments.
@@ -20,7 +21,8 @@ def simplified(tree: CsgTree) -> CsgTree:
     within others, and matrices that move nothing. Other nodes and their arguments stay, those that
     cannot be evaluated as well.
     """
-    return replace(tree, nodes=_with_children(Node("union", (), tree.roots())))
+    roots = of_kind(CsgTree, tree, "tree").roots()
+    return replace(tree, nodes=_with_children(Node("union", (), roots)))
 
 
 def _with_children(root: Node) -> tuple[Node, ...]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 
+from ...parameters import of_kind, truth_value
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 
@@ -27,9 +28,9 @@ def written(tree: CsgTree, *, scad: bool = False) -> str:
     scad : bool
         Write OpenSCAD's own language instead, in which infinity has no name.
     """
-    odd = _IN_SCAD if scad else _IN_CSG
+    odd = _IN_SCAD if truth_value(scad, "scad") else _IN_CSG
     lines: list[str] = []
-    waiting: list[Node | str] = list(reversed(tree.nodes))
+    waiting: list[Node | str] = list(reversed(of_kind(CsgTree, tree, "tree").nodes))
     depth = 0
     while waiting:
         node = waiting.pop()
