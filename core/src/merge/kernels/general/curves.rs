@@ -1,5 +1,6 @@
 //! The curves that segments on an element form: what continues what, and what may cross.
 
+use std::cmp::Ordering;
 use std::sync::Arc;
 
 use smallvec::SmallVec;
@@ -179,12 +180,9 @@ pub(super) fn sort_between<T>(
     if items.len() < 2 {
         return;
     }
-    let (p, q) = (a.approx(), b.approx());
-    let extent = |i: usize| (q[i] - p[i]).abs();
-    let axis = (0..3)
-        .max_by(|i, j| extent(*i).total_cmp(&extent(*j)))
-        .unwrap_or(0);
-    let forward = order_along(a, b, axis);
+    let Some((axis, forward)) = direction([a, b]) else {
+        return;
+    };
     items.sort_by(|x, y| {
         let order = order_along(at(x), at(y), axis);
         if forward.is_lt() {
@@ -193,6 +191,20 @@ pub(super) fn sort_between<T>(
             order.reverse()
         }
     });
+}
+
+/// An axis along which two points differ, and how: the first one that tells, of those along which
+/// doubles see them farthest apart.
+///
+/// Doubles alone do not tell: rounding moves points of a wall apart along the axis that it crosses,
+/// and where lattice and doubles are equally fine, perhaps farther than along the wall.
+fn direction([a, b]: [&Arc<Vertex>; 2]) -> Option<(usize, Ordering)> {
+    let (p, q) = (a.approx(), b.approx());
+    let extent = |i: &usize| (q[*i] - p[*i]).abs();
+    let mut axes = [0, 1, 2];
+    axes.sort_by(|i, j| extent(j).total_cmp(&extent(i)));
+    let mut orders = axes.into_iter().map(|axis| (axis, order_along(a, b, axis)));
+    orders.find(|(_, order)| order.is_ne())
 }
 
 impl Segment {
@@ -298,6 +310,29 @@ mod tests {
         assert_eq!(turns(&corners), Some(true));
         corners.reverse();
         assert_eq!(turns(&corners), Some(false));
+    }
+
+    /// Doubles this far out are as coarse as the lattice: points of a wall seem to lie on both sides
+    /// of it, at times farther apart than they are along it.
+    #[test]
+    fn points_of_a_wall_are_sorted_along_it_however_coarse_doubles_are() {
+        let far = (1 << 53) - 10;
+        let [wall, floor] = [(1, 2 * far + 7), (2, 2 * far + 6)]
+            .map(|(axis, doubled)| Arc::new(Plane::axis_cut(axis, doubled)));
+        let at = |step: i64| {
+            let slant = Plane::through_point([7, 0, 1], &[far, far, far + step]);
+            let slant = Arc::new(slant.expect("a normal"));
+            Arc::new(Vertex::meet(&slant, &wall, &floor).expect("one point"))
+        };
+        let row: Vec<(i64, Arc<Vertex>)> = (3..9).map(|step| (step, at(step))).collect();
+        for (i, j) in (0..6).flat_map(|i| (i + 2..6).map(move |j| (i, j))) {
+            let [first, last] = [&row[i].1, &row[j].1];
+            let mut between: Vec<_> = row[i..=j].iter().rev().collect();
+            sort_between([first, last], &mut between, |point| &point.1);
+            assert!(between.is_sorted_by_key(|point| point.0), "{i} to {j}");
+            sort_between([last, first], &mut between, |point| &point.1);
+            assert!(between.is_sorted_by_key(|point| -point.0), "{j} to {i}");
+        }
     }
 
     #[test]
