@@ -4,6 +4,7 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray, Scalar, Vector
 from ..attributes.attributes import made
+from ..errors import InvalidMeshError
 from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..shapes.primitives import half_space
@@ -119,7 +120,11 @@ class _Shells:
             shell = self._meshes[number]
             self._solids[number] = Solid(shell.vertices, shell.faces, pitch=self._pitch)
         for some in (points[:_FIRST], points[_FIRST:]):
-            sides = self._solids[number].classify(some)
+            try:
+                sides = self._solids[number].classify(some)
+            except InvalidMeshError:
+                # On this lattice nothing is left of the shell.
+                return False
             if sides.any():
                 return bool((sides > 0).any() and not (sides < 0).any())
         return False

@@ -514,6 +514,11 @@ def run(record: Record) -> TreeLeaf:
     return TreeLeaf(result, record, extent, said_of(result, operands))
 
 
+def bounded_on_one_lattice(leaves: Sequence[ExpressionLeaf]) -> list[Tree]:
+    """Return the trees of bounded solids on the finest of their lattices, or as above."""
+    return _on_one_lattice(leaves, True)[1]
+
+
 def _on_one_lattice(
     leaves: Sequence[ExpressionLeaf], extent: Extent
 ) -> tuple[Sequence[ExpressionLeaf], list[Tree]]:

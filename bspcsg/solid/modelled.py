@@ -96,7 +96,8 @@ class Modelled:
         Notes
         -----
         Of several parts each is the solid of its mesh: corners that are no lattice points are
-        rounded to them. In a block (see `bspcsg.block`) none of them counts.
+        rounded to them, or to those of a finer lattice where nothing would be left. A part that is
+        too thin for doubles is left out. In a block (see `bspcsg.block`) none of them counts.
 
         Examples
         --------

@@ -37,6 +37,7 @@ from .leaf import (
     Record,
     Sayings,
     TreeLeaf,
+    bounded_on_one_lattice,
     later_attributes,
     said_of,
     shown_tree,
@@ -554,6 +555,14 @@ def from_leaf(leaf: ExpressionLeaf) -> Solid:
 def expression_of(solid: Solid) -> Placed:
     """Return the node of a solid's expression and the transform on it."""
     return Placed(solid._node, solid._factors)
+
+
+def surfaces_meet(first: Solid, second: Solid) -> bool:
+    """Say whether the surfaces of two bounded solids have a point in common, exactly."""
+    leaves = [solid.normalized()._leaf() for solid in (first, second)]
+    tree, other = bounded_on_one_lattice(leaves)
+    with core_errors():
+        return tree.meets(other)
 
 
 def with_record(last: LastOperation, factors: FactorChain) -> Solid:

@@ -6,31 +6,11 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from support.shapes import Arrays, cuboid, moved, tetrahedron
+from support.shapes import cuboid, moved, tetrahedron
+from support.small import random_set, random_shapes
 
 # Coordinates are below this many steps.
 END = 2**53
-
-
-def random_shape(random: Random) -> Arrays:
-    """Return a box or a tetrahedron with whole coordinates from 0 to 8."""
-    if random.random() < 0.4:
-        low = [random.randrange(8) for _ in range(3)]
-        return cuboid(low, [random.randint(x + 1, 8) for x in low])
-    while True:
-        corners = [[random.randint(0, 8) for _ in range(3)] for _ in range(4)]
-        if abs(np.linalg.det(np.subtract(corners[1:], corners[0]))) > 0.5:
-            return tetrahedron(corners)
-
-
-def random_set(random: Random, solids: list[b.Solid]) -> b.Solid:
-    """Return what random operations make of solids, each of which occurs once or several times."""
-    terms = solids + random.choices(solids, k=3)
-    while len(terms) > 1:
-        at = random.randrange(len(terms) - 1)
-        operation = random.choice(["union", "union", "intersection", "difference", "xor"])
-        terms[at : at + 2] = [getattr(b, operation)(*terms[at : at + 2])]
-    return terms[0]
 
 
 def triangles(solid: b.Solid) -> list[list[list[float]]]:
@@ -54,7 +34,7 @@ def far_corner(random: Random) -> list[int]:
 @pytest.mark.parametrize("seed", range(120))
 def test_sets_of_random_shapes_are_the_same_at_the_end_of_the_lattice(seed: int) -> None:
     random = Random(seed)
-    shapes = [random_shape(random) for _ in range(random.randint(2, 6))]
+    shapes = random_shapes(random)
     offset, state = far_corner(random), random.getstate()
     near = random_set(random, [b.Solid(*shape, pitch=0) for shape in shapes])
     random.setstate(state)

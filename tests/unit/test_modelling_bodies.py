@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from fractions import Fraction
 from importlib import import_module
+from random import Random
 from typing import Any, get_args
 
 import numpy as np
@@ -13,6 +14,7 @@ from bspcsg.above import Convenience
 from bspcsg.conveniences import _HOMES
 from bspcsg.modelling.bodies.sums import is_convex
 from support.checks import assert_sound
+from support.small import random_set, random_shapes
 
 
 def corners(solid: b.Solid) -> set[tuple[float, ...]]:
@@ -147,6 +149,20 @@ def test_parts_of_a_solid_the_largest_first() -> None:
     assert b.Solid.empty().decompose() == []
     one = b.cube(1)
     assert one.decompose() == [one]
+
+
+@pytest.mark.parametrize("seed", range(150))
+def test_no_part_is_lost_on_a_coarse_lattice(seed: int) -> None:
+    """Of parts thinner than a step of it rounding could leave nothing."""
+    random = Random(seed)
+    shapes = random_shapes(random)
+    state = random.getstate()
+    fine = random_set(random, [b.Solid(*shape) for shape in shapes])
+    random.setstate(state)
+    coarse = random_set(random, [b.Solid(*shape, pitch=0) for shape in shapes])
+    parts = coarse.decompose()
+    assert len(parts) == len(fine.decompose())
+    assert not any(part.is_empty for part in parts)
 
 
 @pytest.mark.parametrize(

@@ -4,12 +4,13 @@ import math
 import time
 from fractions import Fraction
 from itertools import combinations
+from random import Random
 
 import numpy as np
 import pytest
 
 import bspcsg as b
-from support.shapes import random_rotation
+from support.shapes import random_rotation, tetrahedron
 
 
 def segment_gap(p: np.ndarray, q: np.ndarray, x: np.ndarray, y: np.ndarray) -> float:
@@ -72,6 +73,36 @@ def test_gaps_are_those_of_all_pairs(seed: int) -> None:
         assert one.min_gap(b.hull(p + 1e-12 * np.eye(4, 3)) | one) == 0
     else:
         assert one.min_gap(other) == 0
+
+
+def random_tetrahedron(random: Random) -> b.Solid:
+    while True:
+        corners = [[random.randint(0, 8) for _ in range(3)] for _ in range(4)]
+        if abs(np.linalg.det(np.subtract(corners[1:], corners[0]))) > 20:
+            return b.Solid(*tetrahedron(corners))
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_pieces_that_share_a_slanted_wall_touch_though_corners_are_rounded(seed: int) -> None:
+    random = Random(seed)
+    body, cut, other = (random_tetrahedron(random) for _ in range(3))
+    rest, piece = body - cut, body & cut & other
+    if (rest | piece).area > rest.area + piece.area - 1e-6:
+        return
+    assert rest.intersects(piece) and piece.intersects(rest)
+    assert rest.isdisjoint(piece) and rest.min_gap(piece) == 0
+    p, q = rest.closest_points(piece)
+    assert (p == q).all()
+
+
+def test_walls_apart_by_less_than_doubles_tell_do_not_touch() -> None:
+    normal = (1000, 999, 998)
+    ball = b.sphere(1000, segments=12)
+    below, rest = ball.split(normal, 12345)
+    for offset, touches in [(12345, True), (12345 + 1e-9, False)]:
+        above = rest.split(normal, offset)[1]
+        assert below.intersects(above) is touches
+        assert below.isdisjoint(above)
 
 
 def test_gaps_of_faces_edges_and_corners_are_exact() -> None:

@@ -10,12 +10,15 @@ from ...errors import invalid_parameter
 from ...geometry.hyperplane import exact_number
 from ...parameters import of_kind
 from ...solid.counting import uncounted
-from ...solid.solid import Solid
+from ...solid.solid import Solid, surfaces_meet
 from .boxes import BoxTree, Nearness, squared_gaps
 from .triangles import least_gaps, nearest_points
 
 #: Relative error of distances in doubles, of the size of the coordinates: some dozens of roundings.
 _NOISE = 1e-14
+
+#: Rounded meshes lie within this of the solids, relative to the size of the coordinates: by far.
+_ROUNDING = 1e-9
 
 #: Most pairs of triangles that are compared in fractions because doubles cannot tell them apart;
 #: each takes about a millisecond.
@@ -51,16 +54,14 @@ def intersects(solid: Solid, other: Solid) -> bool:
     """Say whether two solids have a point in common (see `Solid.intersects`)."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return False
-    if _apart(solid, other):
-        return False
-    found = _nearest(solid, other)
-    return found is None or found[0] == 0
+    return not _apart(solid, other) and (not solid.isdisjoint(other) or surfaces_meet(solid, other))
 
 
 def _apart(solid: Solid, other: Solid) -> bool:
-    """Say whether the boxes around two bounded solids have no point in common."""
+    """Say whether the boxes around two bounded solids are apart, by more than rounding can be."""
     (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
-    return bool((low > high_b).any() or (low_b > high).any())
+    doubt = _ROUNDING * max(float(np.abs(box).max()) for box in (low, high, low_b, high_b))
+    return bool((low > high_b + doubt).any() or (low_b > high + doubt).any())
 
 
 def _box(solid: Solid) -> FloatArray:
@@ -77,6 +78,10 @@ def _nearest(solid: Solid, other: Solid) -> tuple[Fraction, FloatArray, FloatArr
     corners = (_exact(triangles[0][first]), _exact(triangles[1][second]))
     gaps, p, q = nearest_points(*corners)
     best = min(range(len(gaps)), key=lambda k: (gaps[k], k))
+    scale = max(float(np.abs(one).max()) for one in triangles)
+    if 0 < gaps[best] <= _bounded(0.0, scale) and surfaces_meet(solid, other):
+        # They touch in points that are no doubles.
+        return Fraction(0), p[best], p[best]
     return gaps[best], p[best], q[best]
 
 

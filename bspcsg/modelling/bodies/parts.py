@@ -1,10 +1,18 @@
 """Solids cut in two, and taken apart."""
 
+import numpy as np
+
+from ..._core import suited_pitch
 from ..._types import Scalar, Vector
+from ...errors import InvalidMeshError, core_errors
+from ...mesh.mesh import Mesh
 from ...operations.parts import connected_parts, sides_of_plane
 from ...shapes.primitives import half_space
 from ...solid.counting import counted, uncounted
 from ...solid.solid import Solid, solid_of_mesh
+
+#: The least positive double.
+_LEAST = float(np.nextafter(0, 1))
 
 
 @uncounted
@@ -27,4 +35,32 @@ def decompose(solid: Solid) -> list[Solid]:
     meshes = connected_parts(solid)
     if len(meshes) == 1:
         return [solid]
-    return [solid_of_mesh(mesh, pitch=solid.pitch) for mesh in meshes]
+    parts = (_part(mesh, solid.pitch) for mesh in meshes)
+    return [part for part in parts if part is not None]
+
+
+def _part(mesh: Mesh, pitch: int) -> Solid | None:
+    """Return the solid of a part's mesh, on a finer lattice if nothing is left of it on this one.
+
+    None if it is too thin for doubles.
+    """
+    if mesh.volume > mesh.area * 10.0**pitch:
+        # No corner moves by a step, so that something is left.
+        return solid_of_mesh(mesh, pitch=pitch)
+    largest = float(np.abs(mesh.vertices).max())
+    with core_errors():
+        finest = suited_pitch(largest, _LEAST)
+    found = (
+        _solid_on(mesh, exponent) for exponent in sorted({pitch, min(pitch, finest)}, reverse=True)
+    )
+    return next((solid for solid in found if solid is not None), None)
+
+
+def _solid_on(mesh: Mesh, pitch: int) -> Solid | None:
+    try:
+        solid = solid_of_mesh(mesh, pitch=pitch)
+    except InvalidMeshError as error:
+        if error.code != "empty_mesh":
+            raise
+        return None
+    return None if solid.is_empty else solid

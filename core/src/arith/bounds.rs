@@ -92,6 +92,9 @@ pub const ORIENTATION_LIMBS: usize = 18;
 /// Limbs of the cosine and the sine of an angle between three such points, in a projection.
 pub const ANGLE_LIMBS: usize = 24;
 
+/// Limbs of the volume that four such points span.
+pub const SIDE_LIMBS: usize = 36;
+
 /// Limbs of the sine of the sum of two such angles.
 pub const ANGLES_LIMBS: usize = 48;
 
@@ -222,6 +225,11 @@ pub const fn angle(d: u32) -> u32 {
     sum(2 * d, 2 * d)
 }
 
+/// The volume that a point spans with three others, from differences below 2^`d`, up to a factor.
+pub const fn volume(d: u32) -> u32 {
+    det3([d, d, d])
+}
+
 /// The sine of the sum of two such angles, up to a factor.
 pub const fn sum_of_angles(d: u32) -> u32 {
     sum(2 * angle(d), 2 * angle(d))
@@ -249,6 +257,7 @@ const _: () = {
     assert!(limbs_for(point_orientation(P)) <= ORIENTATION_LIMBS);
     assert!(limbs_for(angle(P + 1)) <= NORMAL_LIMBS);
     assert!(limbs_for(angle(numerator_times_weight(P) + 1)) <= ANGLE_LIMBS);
+    assert!(limbs_for(volume(numerator_times_weight(P) + 1)) <= SIDE_LIMBS);
     assert!(limbs_for(sum_of_angles(numerator_times_weight(P) + 1)) <= ANGLES_LIMBS);
     assert!(HALF_SPACE_NORMAL_BITS + P + 2 <= offset(P));
 };

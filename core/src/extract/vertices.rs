@@ -5,8 +5,9 @@ use std::cmp::Ordering;
 use super::angles;
 use super::triangulate::Planar;
 use crate::arith::convert::as_double;
-use crate::arith::{Filtered, Int, Sign};
+use crate::arith::{Filtered, Sign};
 use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::points;
 use crate::geometry::vertex::{Vertex, NEAR};
 use crate::geometry::vertices::VertexTable;
 
@@ -67,7 +68,7 @@ impl Planar for Projection<'_> {
 
     fn orient(&self, a: u32, b: u32, c: u32) -> Sign {
         self.rough_orient([a, b, c])
-            .or_exact(|| self.exact_orient([a, b, c]))
+            .or_exact(|| points::turn([a, b, c].map(|p| &**self.table.point(p)), [self.u, self.v]))
     }
 
     fn opposite_angles(&self, [a, b]: [u32; 2], [c, d]: [u32; 2]) -> Ordering {
@@ -107,30 +108,6 @@ impl Projection<'_> {
         let cross = bu * cv - bv * cu;
         Filtered::when(cross.abs() > bound, Sign::of(cross))
     }
-
-    /// Sign of the turn a → b → c in the view.
-    fn exact_orient(&self, points: [u32; 3]) -> Sign {
-        let points = points.map(|id| &**self.table.point(id));
-        if let [Some(a), Some(b), Some(c)] = points.map(Vertex::as_lattice) {
-            let d = |p: &[i64; 3], q: &[i64; 3], i: usize| i128::from(q[i] - p[i]);
-            let cross = d(a, b, self.u) * d(a, c, self.v) - d(a, b, self.v) * d(a, c, self.u);
-            return Sign::of(cross);
-        }
-        wide_orient(&points, self.u, self.v)
-    }
-}
-
-fn wide_orient(points: &[&Vertex; 3], u: usize, v: usize) -> Sign {
-    let [a, b, c] = points.map(Vertex::coordinates);
-    let minor = |p: &Int<6>, q: &Int<6>, r: &Int<6>, s: &Int<6>| -> Int<12> {
-        let left: Int<12> = p.mul(q);
-        let right: Int<12> = r.mul(s);
-        left - right
-    };
-    let by_x: Int<18> = minor(&b.x[v], &c.w, &c.x[v], &b.w).mul(&a.x[u]);
-    let by_y: Int<18> = minor(&b.x[u], &c.w, &c.x[u], &b.w).mul(&a.x[v]);
-    let by_w: Int<18> = minor(&b.x[u], &c.x[v], &c.x[u], &b.x[v]).mul(&a.w);
-    (by_x - by_y + by_w).sign()
 }
 
 /// The signs of the coordinate differences b − a.

@@ -10,6 +10,7 @@ pub mod flux;
 pub mod line;
 pub mod outline;
 pub mod plane;
+pub mod points;
 pub mod polygon;
 mod residue;
 pub mod side;

@@ -32,6 +32,7 @@ use crate::mesh::half_space::{bounding_plane, half_space};
 use crate::mesh::import::import;
 use crate::mesh::triangles::TriangleMesh;
 use crate::query::classify::{classify, Location};
+use crate::query::contact::surfaces_meet;
 use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
 use crate::query::region::section::Sections;
 use crate::store::snapshot::Snapshot;
@@ -473,6 +474,13 @@ impl Tree {
             |[[a, b, c], [d, e, f]]: [[i64; 3]; 2]| [a, b, c, d, e, f].map(|k| pitch.coordinate(k));
         let rows = |edges: Vec<_>| array(py, edges.into_iter().map(row).collect());
         found.into_iter().map(rows).collect()
+    }
+
+    /// Return whether the surface has a point in common with that of another solid on the same lattice.
+    fn meets(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
+        let size = self.size() + other.size();
+        let meet = || surfaces_meet(&self.solid, &other.solid);
+        self.run(py, "meets", 0, size, meet)
     }
 
     #[getter]

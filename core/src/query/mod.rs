@@ -7,6 +7,7 @@
 )]
 
 pub mod classify;
+pub mod contact;
 pub mod exact;
 pub mod measure;
 pub mod path;
