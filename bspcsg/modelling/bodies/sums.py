@@ -7,7 +7,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import ObjectTree, Region
-from ...errors import LimitError, UnboundedError, invalid_parameter
+from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry.hyperplane import Hyperplane
 from ...mesh.mesh import Mesh
 from ...operations import setops
@@ -200,36 +200,71 @@ def _eroded(solid: Solid, tool: Solid) -> Solid:
 def _eroded_by(solid: Solid, corners: FloatArray, part: FloatArray, pitch: int) -> Solid:
     """Return a solid less what a convex tool touches while it moves along the boundary.
 
-    Where the tool touches no boundary, it is inside if one of its points is.
+    Where the tool touches no boundary, it is inside if one of its points is. One in its middle
+    leaves a body that ends deep in what the tool touches, whose corners are rounded.
     """
     rim = setops.union(_sum(triangle, part, pitch) for triangle in corners)
-    return solid.translate(part[0]) - rim
+    middle = [round(x, -pitch) for x in part.mean(axis=0).tolist()]
+    return solid.translate(middle) - rim
 
 
 def _between_planes(solid: Solid, tool: Solid) -> Solid:
-    """Return a convex solid with each face moved in as far as the tool reaches, exactly."""
-    pitch = min(solid.pitch, tool.pitch)
-    faces = solid.normalized().to_mesh().faces
-    a, b, c = (_steps(solid, pitch)[faces[:, k]] for k in range(3))
-    reach = _steps(tool, pitch)
-    planes = {_plane_inside(p, q, r, reach, pitch) for p, q, r in zip(a, b, c, strict=True)}
+    """Return a convex solid with each face moved in as far as the tool reaches.
+
+    The planes are those of the inputs' faces, exactly: corners of what cuts left of them are
+    rounded.
+    """
+    reach = _steps(tool)
+    tree = solid.normalized().tree
+    steps = Fraction(10) ** tree.pitch, Fraction(10) ** tool.pitch
+    with core_errors():
+        rows = _supporting(tree.planes(), _in_steps(solid))
+    planes = {_plane_inside(normal, offset, reach, *steps) for *normal, offset in rows}
     halves = [from_leaf(PlaneLeaf(plane)) for plane in sorted(planes, key=_plane_key)]
     return setops.intersection(halves)
 
 
-def _steps(solid: Solid, pitch: int) -> LongArray:
-    """Return the corners in whole lattice steps, as numbers without limits."""
+def _supporting(rows: list[list[int]], points: FloatArray) -> list[list[int]]:
+    """Return planes, normal and offset, moved outwards to where they hold all points.
+
+    Rounded bodies are convex but for some steps. Faces narrower than that may face anywhere.
+    """
+    planes = np.array(rows, dtype=np.float64)
+    planes /= np.linalg.norm(planes[:, :3], axis=1)[:, None]
+    doubt = max(0.1, 16 * float(np.finfo(np.float64).eps * np.abs(points).max()))
+
+    def supporting(row: list[int], plane: FloatArray) -> list[int]:
+        heights = points @ plane[:3]
+        highest = int(heights.argmax())
+        if heights[highest] <= plane[3] + doubt:
+            return row
+        normal, corner = row[:3], [round(x) for x in points[highest].tolist()]
+        return [*normal, sum(n * x for n, x in zip(normal, corner, strict=True))]
+
+    return [supporting(row, plane) for row, plane in zip(rows, planes, strict=True)]
+
+
+def _in_steps(solid: Solid) -> FloatArray:
+    """Return the corners in lattice steps."""
     vertices = solid.normalized().to_mesh().vertices
-    steps = np.rint(vertices * 10.0**-pitch if pitch < 0 else vertices / 10.0**pitch)
-    whole: LongArray = steps.astype(np.int64).astype(object)
+    steps: FloatArray = (
+        vertices * 10.0**-solid.pitch if solid.pitch < 0 else vertices / 10.0**solid.pitch
+    )
+    return steps
+
+
+def _steps(tool: Solid) -> LongArray:
+    """Return the corners in whole lattice steps, as numbers without limits."""
+    whole: LongArray = np.rint(_in_steps(tool)).astype(np.int64).astype(object)
     return whole
 
 
-def _plane_inside(p: Any, q: Any, r: Any, reach: LongArray, pitch: int) -> Hyperplane:
-    u, v = q - p, r - p
-    normal = [u[k - 2] * v[k - 1] - u[k - 1] * v[k - 2] for k in range(3)]
-    offset = np.dot(normal, p) + np.dot(reach, normal).min()
-    return Hyperplane.of(list(map(Fraction, normal)), offset * Fraction(10) ** pitch)
+def _plane_inside(
+    normal: list[int], offset: int, reach: LongArray, step: Fraction, tool_step: Fraction
+) -> Hyperplane:
+    """Return a plane moved by the least reach of the tool along its normal, each in its steps."""
+    least = np.dot(reach, np.array(normal, dtype=object)).min()
+    return Hyperplane.of(list(map(Fraction, normal)), offset * step + least * tool_step)
 
 
 def _plane_key(plane: Hyperplane) -> Any:

@@ -10,7 +10,7 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 use super::arrays::{array, rows, wide};
 use super::calls::errors::{blamed, to_python};
 use super::calls::run::{here, run, SMALL};
-use super::hyperplanes::{coefficients, Row};
+use super::hyperplanes::{coefficients, row_of, Row};
 use crate::error::panics::caught;
 use crate::error::{Error, ErrorKind, Result};
 use crate::extract::boundary::collect::has_no_boundary;
@@ -20,6 +20,7 @@ use crate::extract::rounding::round;
 use crate::extract::rounding::snapping::crosses_once_snapped;
 use crate::extract::simplify::result::simplified;
 use crate::geometry::plane::Lattice;
+use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::motion::Motion;
 use crate::interrupt::poll;
 use crate::merge::descent::descend::Counters;
@@ -34,6 +35,7 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::query::classify::{classify, Location};
 use crate::query::contact::surfaces_meet;
 use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
+use crate::query::planes::supporting_planes;
 use crate::query::region::section::Sections;
 use crate::store::snapshot::Snapshot;
 use crate::tree::solid::Solid;
@@ -474,6 +476,13 @@ impl Tree {
             |[[a, b, c], [d, e, f]]: [[i64; 3]; 2]| [a, b, c, d, e, f].map(|k| pitch.coordinate(k));
         let rows = |edges: Vec<_>| array(py, edges.into_iter().map(row).collect());
         found.into_iter().map(rows).collect()
+    }
+
+    /// The planes of the surface, each once, the solid on the minus side beside it.
+    fn planes(&self, py: Python<'_>) -> PyResult<Vec<Row>> {
+        let planes = || supporting_planes(&self.solid);
+        let planes = self.run(py, "planes", 0, self.size(), planes)?;
+        Ok(planes.iter().map(row_of::<Dim3>).collect())
     }
 
     /// Return whether the surface has a point in common with that of another solid on the same lattice.

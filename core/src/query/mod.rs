@@ -11,6 +11,7 @@ pub mod contact;
 pub mod exact;
 pub mod measure;
 pub mod path;
+pub mod planes;
 pub mod ray;
 pub mod region;
 mod shares;
