@@ -340,3 +340,14 @@ def test_many_edges_are_refused() -> None:
     ball = b.sphere(10, segments=160)
     with pytest.raises(b.LimitError, match="edges are chosen"):
         ball.chamfer(ball.edges(), 1e-4)
+
+
+@pytest.mark.parametrize(("size", "pitch"), [(8, -15), (8e6, None), (8e9, None)])
+def test_blends_at_the_end_of_the_lattice(size: float, pitch: int | None) -> None:
+    """Cutters reach beyond it."""
+    small, mesh = b.cube(8), b.cube(size)
+    large = b.Solid(mesh.vertices, mesh.faces, pitch=pitch)
+    for blend, radius in [("chamfer", 0.5), ("fillet", 0.25)]:
+        wanted = getattr(small, blend)(small.edges(), radius).volume
+        found = getattr(large, blend)(large.edges(), radius * size / 8).volume
+        assert found / (size / 8) ** 3 == pytest.approx(wanted, rel=1e-9)

@@ -207,7 +207,7 @@ class _Blend:
             np.column_stack([rim, after + count, rim + count]),
         ]
         triangles = np.concatenate([patch[:, ::-1], patch + count, *sides])
-        shell = Solid(np.concatenate([inner, outer]), triangles, pitch=self.pitch)
+        shell = self._body(np.concatenate([inner, outer]), triangles)
         planes = [self.planes.inside(face, sign) for face in faces]
         return _evaluated(intersection(shell, planes))
 
@@ -248,7 +248,14 @@ class _Blend:
         a, b, c = (points[triangles[:, k]] - points[0] for k in range(3))
         if np.einsum("ij,ij->", np.cross(a, b), c) < 0:
             triangles = triangles[:, ::-1]
-        return Solid(points, triangles, pitch=self.pitch)
+        return self._body(points, triangles)
+
+    def _body(self, points: FloatArray, triangles: IndexArray) -> Solid:
+        """Return a solid, on a coarser lattice if it reaches beyond the end of this one."""
+        try:
+            return Solid(points, triangles, pitch=self.pitch)
+        except LimitError:
+            return Solid(points, triangles)
 
     def _station(self, edge: int, place: int) -> FloatArray:
         """Return the new surface across one end of an edge, from the left face to the right one."""
