@@ -15,6 +15,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import LimitError, invalid_parameter
 from ...geometry.polygon import triangulate_face
+from ...geometry.transform import LATTICE_REACH
 from ...operations.setops import intersection, union
 from ...parameters import positive, refuse_many_corners, sides_around
 from ...shapes.primitives import half_space
@@ -351,7 +352,8 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
     ):
         raise invalid_parameter("These are edges of another solid; ask this one for its edges().")
     while len(chosen):
-        blend = _Blend(skeleton, ready(skeleton, chosen), profile, solid.pitch)
+        pitch = _pitch_for(skeleton, solid.pitch)
+        blend = _Blend(skeleton, ready(skeleton, chosen), profile, pitch)
         solid = _once(solid, blend)
         rest = chosen[~np.isin(chosen, list(blend.chosen))]
         if not len(rest):
@@ -362,6 +364,12 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
         chosen = carried(skeleton, rest, after, _new_ends(blend, rest), reach)
         skeleton = after
     return solid
+
+
+def _pitch_for(skeleton: Skeleton, pitch: int) -> int:
+    """Return the pitch of cutters: the solid's, or the next where doubles are as coarse as that."""
+    steps = float(np.abs(skeleton.vertices).max()) / 10.0**pitch
+    return pitch + int(steps > LATTICE_REACH / 10)
 
 
 def _once(solid: Solid, blend: _Blend) -> Solid:
