@@ -222,7 +222,7 @@ class Modelled:
             array of the same shape. It may turn the solid inside out.
         winding : {"positive", "nonzero", "even-odd"}, optional
             The winding numbers inside a result that crosses itself. By default such a result is
-            refused.
+            refused, but where only rounding makes surfaces cross that touched: that is mended.
 
         Raises
         ------

@@ -12,6 +12,7 @@ from ...mesh.certificate import certify
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
 from ...solid.counting import counted
+from ...solid.moving import SaidMesh
 from ...solid.solid import Solid, solid_with
 
 #: A function of all corners at once: (n, 3) float64 to the same shape.
@@ -30,11 +31,26 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return solid
-    vertices = _moved(f, mesh.vertices)
-    if rule is None:
-        refuse_crossings(vertices, mesh.faces, "Where f moves them")
     said = None if mesh.carried is None else mesh.attributes.without(NORMALS)
-    return solid_with(vertices, mesh.faces, said, winding=rule or "nonzero")
+    moved = SaidMesh(_moved(f, mesh.vertices), mesh.faces, said)
+    if rule is None:
+        moved = _uncrossed(moved, mesh.vertices)
+    return solid_with(moved.vertices, moved.faces, moved.attributes, winding=rule or "nonzero")
+
+
+def _uncrossed(moved: SaidMesh, before: FloatArray) -> SaidMesh:
+    """Return a mesh that does not cross itself, given its vertices before they were moved.
+
+    Surfaces that touched are mended where rounding makes them cross; more is refused.
+    """
+    if not certify(moved.vertices, moved.faces).crossings:
+        return moved
+    pitch = moved.suited_pitch()
+    mended = None if pitch is None else moved.mended(before, pitch)
+    if mended is None or len(mended.left):
+        refuse_crossings(moved.vertices, moved.faces, "Where f moves them")
+        return moved
+    return mended.mesh
 
 
 def _moved(f: PointMap, points: FloatArray) -> FloatArray:
