@@ -20,7 +20,7 @@ def connected_parts(solid: Solid) -> list[Mesh]:
     """Return the boundaries of the connected components, the largest volume first.
 
     A cavity's wall goes with the component around it; which one that is, is decided exactly. Parts
-    that touch in a point or an edge only are apart.
+    that touch in a point or an edge only are apart, even where a face goes on between them.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def connected_parts(solid: Solid) -> list[Mesh]:
     UnboundedError
         If the solid reaches to infinity.
     """
-    mesh = solid.normalized().to_mesh()
+    mesh = solid._divided_mesh()
     if len(mesh.faces) == 0:
         return []
     owner = surfaces_of(mesh.faces, len(mesh.vertices))

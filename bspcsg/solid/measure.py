@@ -50,6 +50,10 @@ class Measured(ABC):
         """Return the same set with the reduced boundary as its mesh."""
 
     @abstractmethod
+    def _divided_mesh(self) -> Mesh:
+        """Return the reduced boundary, its faces divided where edges lie in the middle of them."""
+
+    @abstractmethod
     def _outside(self) -> "Measured":
         """Return the complement with its reduced boundary."""
 
@@ -195,13 +199,17 @@ class Measured(ABC):
 
     @property
     def components(self) -> int:
-        """Number of connected surfaces; the wall of a closed cavity is one of its own."""
-        return self.normalized().to_mesh().components
+        """Number of connected surfaces; the wall of a closed cavity is one of its own.
+
+        Surfaces that touch in a point or an edge only are apart, even where the edge lies in the
+        middle of a face that goes on from one to the other, which the mesh does not divide there.
+        """
+        return self._divided_mesh().components
 
     @property
     def genus(self) -> int:
         """Number of handles, summed over all connected surfaces."""
-        return self.normalized().to_mesh().genus
+        return self._divided_mesh().genus
 
     def classify(self, points: Any) -> SideArray:
         """Say of each point whether it is inside, exactly.

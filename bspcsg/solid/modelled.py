@@ -97,9 +97,7 @@ class Modelled:
         -----
         Of several parts each is the solid of its mesh: corners that are no lattice points are
         rounded to them, or to those of a finer lattice where nothing would be left. A part that is
-        too thin for doubles is left out. Parts that touch along an edge in the middle of a plane
-        face, which goes on from one to the other, are one. In a block (see `bspcsg.block`) none of
-        them counts.
+        too thin for doubles is left out. In a block (see `bspcsg.block`) none of them counts.
 
         Examples
         --------

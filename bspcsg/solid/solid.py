@@ -328,10 +328,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return self._mesh
 
     def _made_mesh(self) -> Mesh:
+        return _mesh_of(self.tree, self._sayings)
+
+    def _divided_mesh(self) -> Mesh:
+        reduced = self.normalized()
         with core_errors():
-            tree = self.tree
-            carried = later_attributes(tree, self._sayings)
-            return Mesh(*tree.to_mesh(), tree.origins(), carried).frozen()
+            divided = reduced.tree.divided()
+        return reduced.to_mesh() if divided is None else _mesh_of(divided, reduced._sayings)
 
     def normalized(self) -> "Solid":
         """Return the same set with the reduced boundary as its mesh.
@@ -581,6 +584,12 @@ def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     prefix = common_prefix([solid._factors for solid in solids])
     operands = [Placed(solid._node, solid._factors.without(len(prefix))) for solid in solids]
     return from_node(operation(operator, operands), prefix)
+
+
+def _mesh_of(tree: Tree, sayings: Sayings) -> Mesh:
+    with core_errors():
+        carried = later_attributes(tree, sayings)
+        return Mesh(*tree.to_mesh(), tree.origins(), carried).frozen()
 
 
 def _is_reduced(tree: Tree) -> bool:

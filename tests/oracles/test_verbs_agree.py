@@ -18,7 +18,8 @@ PITCHES = (-15, -13, -11, None)
 AXIS = (1, 2, 3)
 
 #: Of a solid, the size of its unit, and where its origin lies.
-Verb: TypeAlias = Callable[[b.Solid, float, np.ndarray], b.Solid | b.Region]
+Made: TypeAlias = b.Solid | b.Region | list[b.Solid]
+Verb: TypeAlias = Callable[[b.Solid, float, np.ndarray], Made]
 
 
 def along(at: np.ndarray, offset: float, unit: float) -> float:
@@ -33,6 +34,7 @@ def slice_of(solid: b.Solid, unit: float, at: np.ndarray) -> b.Region:
 
 VERBS: dict[str, Verb] = {
     "itself": lambda solid, unit, at: solid,
+    "parts": lambda solid, unit, at: solid.decompose(),
     "refine": lambda solid, unit, at: solid.refine(3),
     "edge length": lambda solid, unit, at: solid.refine(edge_length=unit),
     "rotate": lambda solid, unit, at: solid.rotate(33, AXIS),
@@ -87,11 +89,13 @@ def made(
     return random_set(random, [placed(shape) for shape in random_shapes(random)])
 
 
-def sizes(of: b.Solid | b.Region, unit: float) -> list[float]:
+def sizes(of: Made, unit: float) -> list[float]:
     """Return the volume and the area, or the area, in units.
 
     Rounding leaves slits in shadows, of two lengths and no width.
     """
+    if isinstance(of, list):
+        return [float(len(of)), *(size for solid in of for size in sizes(solid, unit))]
     if isinstance(of, b.Solid):
         return [of.volume / unit**3, of.area / unit**2]
     return [of.area / unit**2]
@@ -105,6 +109,7 @@ def assert_alike(solids: list[tuple[b.Solid, float, Iterable[float]]], doubt: fl
     verbs = [*VERBS.values(), *(SLOW_VERBS.values() if len(first.faces) < 32 else ())]
     for verb in verbs:
         found = [sizes(verb(solid, unit, np.array(list(at))), unit) for solid, unit, at in solids]
+        assert all(np.size(one) == np.size(found[0]) for one in found), found
         assert np.allclose(found, found[0], rtol=doubt, atol=doubt), found
 
 

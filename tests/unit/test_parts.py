@@ -1,6 +1,7 @@
 """Components with their cavities, and the two sides of a plane."""
 
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from bspcsg.operations import parts as parts_module
 from bspcsg.operations.parts import connected_parts, sides_of_plane
 from support.checks import assert_sound
 from support.shapes import cuboid, flipped, joined
+from support.timing import seconds
 
 
 def solid_of(part: b.Mesh) -> b.Solid:
@@ -57,6 +59,68 @@ def test_many_cavities_ask_the_shell_around_them_once(monkeypatch: pytest.Monkey
 
 def test_nothing_has_no_parts() -> None:
     assert connected_parts(b.Solid.empty()) == []
+
+
+def grooved(depth: float, x: float = 4, tags: Any = None) -> b.Solid:
+    """Return a block with a groove from below; one 4 deep touches its top from inside."""
+    groove = b.Region.polygon([(1, -1), (3, -1), (2, depth)]).extrude(6).rotate(90, "x")
+    block = b.box(x, 4, 4)
+    return (block if tags is None else block.tagged(**tags)) - groove.translate(0, 5, 0)
+
+
+def test_a_face_that_goes_on_across_an_edge_joins_no_parts() -> None:
+    pinched, whole = grooved(4), grooved(3.9)
+    assert [part.volume for part in pinched.decompose()] == pytest.approx([pinched.volume / 2] * 2)
+    assert (pinched.components, whole.components) == (2, 1)
+    left, right = pinched.split("x", 2)
+    assert pinched.decompose()[0] in (left, right)
+    # The mesh, which is closed without that, does not divide the top.
+    assert pinched.to_mesh().components == 1
+    for same in (left | right, b.Solid.from_mesh(pinched.to_mesh()), pinched.translate(1, 2, 3)):
+        assert (same.components, len(same.decompose())) == (2, 2)
+
+
+def test_parts_beside_an_edge_keep_what_is_said_of_their_faces() -> None:
+    parts = grooved(4, tags={"colour": 7}).decompose()
+    assert len(parts) == 2
+    for part in parts:
+        mesh = part.to_mesh()
+        top = (mesh.vertices[mesh.faces][:, :, 2] == 4).all(axis=1)
+        assert top.any() and (mesh.face_attributes["colour"][top] == 7).all()
+
+
+def test_a_slit_in_a_face_parts_nothing() -> None:
+    corners = [(1, 2, 4), (3, 2, 4), (2, 1, 3), (2, 3, 3)]
+    slit = b.Solid(corners, [(0, 1, 3), (0, 2, 1), (0, 3, 2), (1, 2, 3)])
+    block = b.box(4, 4, 4) - slit
+    assert block.volume_exact == 64 - slit.volume_exact
+    assert [part.volume_exact for part in block.decompose()] == [block.volume_exact]
+
+
+def test_a_ring_that_touches_both_faces_cuts_out_its_middle() -> None:
+    # Of diamonds around an axis: it touches the plate's faces in two squares from inside.
+    profile = b.Region.polygon([(3, 0), (4, 1), (3, 2), (2, 1)])
+    plate = b.box(12, 12, 2).translate(-6, -6, 0)
+    parts = (plate - profile.revolve(segments=4)).decompose()
+    assert len(parts) == 2
+    assert [part.genus for part in parts] == [1, 0]
+
+
+def plate_with_grooves(count: int) -> b.Solid:
+    """Return a plate that grooves cut into pieces, each touching the next along an edge."""
+    groove = b.Region.polygon([(0.2, -1), (0.8, -1), (0.5, 4)]).extrude(20).rotate(90, "x")
+    grooves = b.union(groove.translate(at, 15, 0) for at in range(count))
+    return (b.box(count, 10, 4) - grooves).normalized()
+
+
+def test_many_edges_in_one_face_cost_each_alike() -> None:
+    times = {}
+    for count in (100, 400):
+        plate = plate_with_grooves(count)
+        plate.to_mesh()
+        assert plate.components == count + 1
+        times[count] = seconds(partial(getattr, plate, "components"), 3)
+    assert times[400] < 10 * times[100]
 
 
 @pytest.mark.parametrize("normal", [(0, 0, 1), (1, 1, 1), (0.3, -2, 0.7)])

@@ -12,8 +12,9 @@ use super::contacts;
 use super::emission::assembly::{Assembly, NONE};
 use super::emission::untouched::{Emitted, Untouched};
 use super::failure::Failure;
+use super::joining::group::PlaneGroup;
 use super::joining::patches::Patches;
-use super::joining::planes::{group, PlaneGroup};
+use super::joining::planes::{group, Joined};
 use super::joining::seams::{find_touching, subdivisions, Edge, InnerPoints, LinePoints};
 use super::mesh::{Corner, ExactMesh};
 use super::order::put_in_order;
@@ -91,13 +92,13 @@ fn attempt(
 ) -> Result<ExactMesh, Failure> {
     let mut boundary = collect(solid, sources);
     let near = std::mem::take(&mut boundary.near);
-    let (mut fates, groups, rims) = group(boundary, sources, patches, join);
-    if groups.iter().any(|g| reaches_infinity(g, sources)) {
+    let joined = group(boundary, sources, patches, join);
+    if joined.groups.iter().any(|g| reaches_infinity(g, sources)) {
         return Err(unbounded().into());
     }
-    let mut assembly = Assembly::new(sources, &fates);
+    let mut assembly = Assembly::new(sources, &joined.fates);
     assembly.verify = join && !solid.is_reduced();
-    assembly.run(&mut fates, groups, &rims, &near)?;
+    assembly.run(joined, &near)?;
     let is_manifold = contacts::is_manifold(&assembly)?;
     let mut mesh = assembly.finish();
     if !is_manifold {
@@ -122,16 +123,16 @@ fn reaches_infinity(group: &PlaneGroup, sources: &Sources) -> bool {
 }
 
 impl Assembly<'_> {
-    fn run(
-        &mut self,
-        fates: &mut Fates,
-        mut groups: Vec<PlaneGroup>,
-        rims: &Rims,
-        near: &[SourceFace],
-    ) -> Result<(), Failure> {
-        self.mark_irregular(fates, rims);
-        self.identify_near(near, fates);
-        let frontier = rims.frontier(fates, self.sources);
+    fn run(&mut self, joined: Joined, near: &[SourceFace]) -> Result<(), Failure> {
+        let Joined {
+            mut fates,
+            mut groups,
+            rims,
+            chords,
+        } = joined;
+        self.mark_irregular(&fates, &rims);
+        self.identify_near(near, &fates);
+        let frontier = rims.frontier(&fates, self.sources);
         let count: usize = groups.iter().map(|g| g.edges().len()).sum();
         let mut edges = Vec::with_capacity(count + frontier.len());
         let mut starts = Vec::with_capacity(groups.len());
@@ -142,9 +143,12 @@ impl Assembly<'_> {
         }
         let offset = edges.len();
         for e in &frontier {
-            edges.extend(self.frontier_edge(*e, fates));
+            edges.extend(self.frontier_edge(*e, &fates));
         }
-        let touching = self.touching(&mut groups, &edges);
+        let mut touching = self.touching(&mut groups, &edges);
+        for line in chords {
+            touching.entry(line).or_default();
+        }
         let line = |i: usize| {
             if i >= offset {
                 return frontier[i - offset].line(self.sources);
@@ -154,9 +158,9 @@ impl Assembly<'_> {
         };
         let inner = subdivisions(&edges, line, &touching, &self.table);
         self.name_corners(&groups, &edges, &inner);
-        let split = split_faces(&frontier, offset, &inner, fates);
-        self.identify_corners(&split, fates);
-        self.emit_whole(fates, rims);
+        let split = split_faces(&frontier, offset, &inner, &fates);
+        self.identify_corners(&split, &mut fates);
+        self.emit_whole(&fates, &rims);
         for split in &split {
             poll();
             self.emit_split(split.face, &split.inner)?;

@@ -263,6 +263,17 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
             change: -1,
         });
     }
+    stretches(&mut events, axis, |sum, low, high| {
+        emit(&run, sum, low, high, kept);
+    });
+}
+
+/// Calls `emit` for each stretch of a line on which the sum of the changes before it is not zero.
+fn stretches<'a>(
+    events: &mut [Event<'a>],
+    axis: usize,
+    mut emit: impl FnMut(i32, &'a Arc<Vertex>, &'a Arc<Vertex>),
+) {
     events.sort_by(|a, b| order_along(a.at, b.at, axis));
     let mut sum = 0;
     let mut start: Option<&Arc<Vertex>> = None;
@@ -270,7 +281,7 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
         let next = sum + group.iter().map(|e| e.change).sum::<i32>();
         if next != sum {
             if let (Some(from), true) = (start, sum != 0) {
-                emit(&run, sum, from, group[0].at, kept);
+                emit(sum, from, group[0].at);
             }
             start = Some(group[0].at);
             sum = next;
@@ -388,6 +399,62 @@ pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
         }
     }
     inside
+}
+
+/// The outlines of what a region has on the minus side of a plane across it, and on the plus side.
+///
+/// Edges in the plane are made anew: they close what is left of the others.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::geometry::outline::{halves, BareEdge};
+/// use bspcsg::geometry::plane::Plane;
+/// use bspcsg::geometry::polygon::Polygon;
+///
+/// let corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0]];
+/// let [a, b, c] = &corners;
+/// let floor = Arc::new(Plane::through(a, b, c).expect("not on a line"));
+/// let triangle = Polygon::triangle(&corners, Arc::clone(&floor));
+/// let cut = Arc::new(Plane::through(&[1, 0, 0], &[1, 1, 0], &[1, 0, 1]).expect("a plane"));
+/// let parts = halves(BareEdge::all_of(&triangle).collect(), &floor, &cut);
+/// assert_eq!(parts.map(|edges| edges.len()), [3, 4]);
+/// ```
+pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [Vec<BareEdge>; 2] {
+    let axis = LineKey::of_planes(support, cut).axis();
+    let (mut minus, mut plus) = divide_edges(edges, support, cut);
+    minus.extend(chords(
+        &minus,
+        &Carrier::Cut(Arc::clone(cut), false),
+        cut,
+        axis,
+    ));
+    plus.extend(chords(
+        &plus,
+        &Carrier::Cut(Arc::clone(cut), true),
+        cut,
+        axis,
+    ));
+    [minus, plus]
+}
+
+/// The edges in a plane that close those that end in it.
+fn chords(edges: &[BareEdge], carrier: &Carrier, cut: &Plane, axis: usize) -> Vec<BareEdge> {
+    let ends = edges.iter().flat_map(|e| [(&e.to, 1), (&e.from, -1)]);
+    let met = ends.filter(|(at, _)| at.side_of(cut) == Side::On);
+    let mut events: Vec<Event> = met.map(|(at, change)| Event { at, change }).collect();
+    let mut chords = Vec::new();
+    stretches(&mut events, axis, |sum, low, high| {
+        let (from, to) = if sum > 0 { (low, high) } else { (high, low) };
+        let chord = BareEdge {
+            from: Arc::clone(from),
+            to: Arc::clone(to),
+            carrier: carrier.clone(),
+        };
+        chords.extend(std::iter::repeat_n(chord, sum.unsigned_abs() as usize));
+    });
+    chords
 }
 
 fn divide_edges(

@@ -51,12 +51,12 @@ pub fn side([a, b, c]: [&Vertex; 3], d: &Vertex) -> Side {
     clear_side([a, b, c, d].map(Vertex::approx)).or_exact(|| exact_side([a, b, c, d]))
 }
 
-/// The side where doubles tell it.
+/// The side where the points' approximations tell it.
 ///
 /// Differences of coordinates below m in magnitude are off by δ = [`NEAR`] m at most, and below s with
 /// that. A product of three is off by 3 s² δ, and there are six of them; rounding adds less than
 /// eight units in the last place of each.
-fn clear_side([a, b, c, d]: [Point; 4]) -> Filtered<Side> {
+pub fn clear_side([a, b, c, d]: [Point; 4]) -> Filtered<Side> {
     let from = |p: &Point| each_axis(|i| p[i] - a[i]);
     let [u, v, w] = [&b, &c, &d].map(from);
     let largest = |points: &[Point]| {

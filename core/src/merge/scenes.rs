@@ -41,6 +41,19 @@ pub fn pyramid(apex: Lattice, base: &[Lattice]) -> Solid {
     solid([base, &[apex]].concat(), sides.chain(bottom).collect())
 }
 
+/// The prism over a polygon that turns left as seen from above, and lies at one height.
+pub fn prism(base: &[Lattice], height: i64) -> Solid {
+    let count = as_number(base.len());
+    let above = base.iter().map(|[x, y, z]| [*x, *y, z + height]);
+    let vertices = base.iter().copied().chain(above).collect();
+    let sides = (0..count).flat_map(|i| {
+        let next = (i + 1) % count;
+        [[i, next, next + count], [i, next + count, i + count]]
+    });
+    let ends = (1..count - 1).flat_map(|i| [[0, i + 1, i], [count, count + i, count + i + 1]]);
+    solid(vertices, sides.chain(ends).collect())
+}
+
 /// The box between two points.
 pub fn cuboid(low: Lattice, high: Lattice) -> Solid {
     cuboids([[low, high]])

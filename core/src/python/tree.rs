@@ -33,7 +33,7 @@ use crate::mesh::half_space::{bounding_plane, half_space};
 use crate::mesh::import::import;
 use crate::mesh::triangles::TriangleMesh;
 use crate::query::classify::{classify, Location};
-use crate::query::contact::surfaces_meet;
+use crate::query::contact::{edge_contacts, surfaces_meet};
 use crate::query::measure::{volume_near, volume_residues, volume_rounded, volume_within};
 use crate::query::planes::supporting_planes;
 use crate::query::region::section::Sections;
@@ -490,6 +490,16 @@ impl Tree {
         let size = self.size() + other.size();
         let meet = || surfaces_meet(&self.solid, &other.solid);
         self.run(py, "meets", 0, size, meet)
+    }
+
+    /// The same solid, whose mesh divides faces in the middle of which edges lie; None if there are none.
+    fn divided(&self, py: Python<'_>) -> PyResult<Option<Self>> {
+        let contacts = || edge_contacts(&self.solid, &self.patches);
+        let contacts = self.run(py, "divided", 0, self.size(), contacts)?;
+        Ok((!contacts.is_empty()).then(|| Self {
+            patches: self.patches.divided(&contacts),
+            ..Self::of(self.solid.clone())
+        }))
     }
 
     #[getter]

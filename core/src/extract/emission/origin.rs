@@ -1,7 +1,7 @@
 //! The origins of new triangles: the source face that each triangle of a joined polygon lies in.
 
 use crate::arith::convert::as_number;
-use crate::extract::joining::planes::PlaneGroup;
+use crate::extract::joining::group::PlaneGroup;
 use crate::extract::triangulate::Planar;
 use crate::extract::vertices::Projection;
 use crate::interrupt::poll;

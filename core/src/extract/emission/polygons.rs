@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::assembly::Assembly;
 use super::origin::Owners;
 use crate::extract::failure::Overlap;
-use crate::extract::joining::planes::PlaneGroup;
+use crate::extract::joining::group::PlaneGroup;
 use crate::extract::joining::seams::{Edge, InnerPoints};
 use crate::extract::triangulate::{triangulate, Planar};
 use crate::extract::vertices::Projection;

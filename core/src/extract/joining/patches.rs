@@ -1,5 +1,6 @@
-//! Patches: the faces of one plane that may become one polygon.
+//! Patches: the faces of one plane that may become one polygon, and where that is divided.
 
+use super::chords::EdgeContact;
 use crate::mesh::handle::SourceFace;
 use crate::mesh::source::Source;
 
@@ -25,7 +26,10 @@ use crate::mesh::source::Source;
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 #[derive(Clone, Debug, Default)]
-pub struct Patches(Vec<Option<Vec<u32>>>);
+pub struct Patches {
+    by_slot: Vec<Option<Vec<u32>>>,
+    contacts: Vec<EdgeContact>,
+}
 
 /// The patch of faces of sources that nothing is said about.
 const COMMON: u32 = u32::MAX;
@@ -33,12 +37,29 @@ const COMMON: u32 = u32::MAX;
 impl Patches {
     /// The patches of the faces of each source; `None` where nothing is said.
     pub fn new(patches: Vec<Option<Vec<u32>>>) -> Self {
-        Self(patches)
+        Self {
+            by_slot: patches,
+            contacts: Vec::new(),
+        }
+    }
+
+    /// The same patches, each polygon divided where an edge lies in the middle of it.
+    #[must_use]
+    pub fn divided(&self, contacts: &[EdgeContact]) -> Self {
+        Self {
+            by_slot: self.by_slot.clone(),
+            contacts: contacts.to_vec(),
+        }
+    }
+
+    /// The edges that lie in the middle of polygons, which are to be divided there.
+    pub fn contacts(&self) -> &[EdgeContact] {
+        &self.contacts
     }
 
     /// Return the patch of a face.
     pub fn of(&self, face: SourceFace, source: &Source) -> u32 {
-        let own = self.0.get(face.slot.place()).and_then(Option::as_ref);
+        let own = self.by_slot.get(face.slot.place()).and_then(Option::as_ref);
         let found = own.and_then(|own| own.get(source.number(face.id) as usize));
         found.copied().unwrap_or(COMMON)
     }

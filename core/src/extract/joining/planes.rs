@@ -8,38 +8,17 @@ use smallvec::SmallVec;
 use crate::extract::boundary::collect::{Boundary, CutFace};
 use crate::extract::boundary::leaves::{Fate, Fates};
 use crate::extract::boundary::rim::{FrontierEdge, Rims};
+use crate::extract::joining::chords::{divided, Chord, EdgeContact};
+use crate::extract::joining::group::PlaneGroup;
 use crate::extract::joining::patches::Patches;
 use crate::geometry::line::{LineKey, PlaneResidues};
-use crate::geometry::outline::{BareEdge, Outline, OutlineEdge};
+use crate::geometry::outline::{Outline, OutlineEdge};
 use crate::geometry::plane::{normal, Plane};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::side::{Orientation, Side};
 use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, SourceFace};
-
-/// All boundary in one oriented plane that is not left as it came.
-#[derive(Debug)]
-pub struct PlaneGroup {
-    /// The plane, inside on its minus side.
-    pub plane: Arc<Plane>,
-    /// The faces that lie in it, ascending.
-    pub faces: SmallVec<[OrientedFace; 2]>,
-    /// The outline, counterclockwise as seen from outside.
-    pub outline: Outline,
-}
-
-impl PlaneGroup {
-    /// The edges of the outline.
-    pub fn edges(&self) -> &[BareEdge] {
-        self.outline.edges()
-    }
-
-    /// The keys of the lines that the edges lie on.
-    pub fn lines(&mut self) -> &[LineKey] {
-        self.outline.lines(&PlaneResidues::of(&self.plane))
-    }
-}
 
 /// A group in the making.
 struct Gathered {
@@ -50,6 +29,8 @@ struct Gathered {
     cut: SmallVec<[Outline; 1]>,
     /// The edges of whole faces.
     whole: Vec<OutlineEdge>,
+    /// The chords that divide the group again.
+    chords: Vec<Chord>,
 }
 
 impl Gathered {
@@ -82,16 +63,23 @@ struct Grouping<'a> {
     rims: Rims,
 }
 
-/// Joins cut faces by plane; returns the fates that remain, the groups, and where whole faces end.
+/// Boundary whose cut faces are joined by plane.
+pub struct Joined {
+    /// The fates that remain.
+    pub fates: Fates,
+    /// The groups.
+    pub groups: Vec<PlaneGroup>,
+    /// The rims of the whole faces.
+    pub rims: Rims,
+    /// The lines along which groups were divided.
+    pub chords: Vec<LineKey>,
+}
+
+/// Joins cut faces by plane.
 ///
 /// Faces of different patches are not joined. Without `join` each cut face stays on its own, as it
 /// must where faces of one plane may overlap.
-pub fn group(
-    boundary: Boundary,
-    sources: &Sources,
-    patches: &Patches,
-    join: bool,
-) -> (Fates, Vec<PlaneGroup>, Rims) {
+pub fn group(boundary: Boundary, sources: &Sources, patches: &Patches, join: bool) -> Joined {
     let count = boundary.cut.len();
     let mut grouping = Grouping {
         sources,
@@ -108,18 +96,57 @@ pub fn group(
         grouping.add_cut(cut);
     }
     if join {
+        for contact in patches.contacts() {
+            poll();
+            grouping.add_contact(contact);
+        }
         grouping.spread();
         grouping.absorb_seams();
         grouping.spread();
     }
-    let groups = grouping.groups.into_iter().filter(|g| !g.faces.is_empty());
-    let mut groups: Vec<PlaneGroup> = groups.map(Gathered::joined).collect();
-    groups.retain(|g| !g.edges().is_empty());
-    groups.shrink_to_fit();
-    (grouping.fates, groups, grouping.rims)
+    grouping.joined()
 }
 
 impl Grouping<'_> {
+    /// The groups in the end.
+    fn joined(self) -> Joined {
+        let (mut groups, mut chords) = (Vec::with_capacity(self.groups.len()), Vec::new());
+        for mut gathered in self.groups {
+            if gathered.faces.is_empty() {
+                continue;
+            }
+            let dividing = std::mem::take(&mut gathered.chords);
+            let group = gathered.joined();
+            if group.edges().is_empty() {
+                continue;
+            }
+            if dividing.is_empty() {
+                groups.push(group);
+            } else {
+                groups.extend(divided(group, dividing, self.sources, &mut chords));
+            }
+        }
+        groups.shrink_to_fit();
+        Joined {
+            fates: self.fates,
+            groups,
+            rims: self.rims,
+            chords,
+        }
+    }
+
+    /// Takes the faces at a contact into groups, and divides the one that the edge lies in.
+    fn add_contact(&mut self, contact: &EdgeContact) {
+        for face in contact.faces() {
+            if self.fates[face.face] == Fate::Whole(face.orientation) {
+                let group = self.group_of(face);
+                self.absorb(face, group);
+            }
+        }
+        let group = self.group_of(contact.face);
+        self.groups[group].chords.push(contact.chord(self.sources));
+    }
+
     /// The group of a face's plane and patch.
     fn group_of(&mut self, face: OrientedFace) -> usize {
         let plane = self.oriented_plane(face);
@@ -138,6 +165,7 @@ impl Grouping<'_> {
                 faces: SmallVec::new(),
                 cut: SmallVec::new(),
                 whole: Vec::new(),
+                chords: Vec::new(),
             });
         }
         at
@@ -322,8 +350,8 @@ mod tests {
         let solid = made_of(solids, Term::Or);
         let sources = Sources::new(solid.sources().clone());
         let boundary = collect(&solid, &sources);
-        let (_, groups, _) = group(boundary, &sources, &Patches::default(), join);
-        groups.iter().map(|g| g.faces.len()).collect()
+        let joined = group(boundary, &sources, &Patches::default(), join);
+        joined.groups.iter().map(|g| g.faces.len()).collect()
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::planes::PlaneGroup;
+use super::group::PlaneGroup;
 use crate::extract::triangulate::Planar;
 use crate::extract::vertices::Projection;
 use crate::geometry::line::LineKey;

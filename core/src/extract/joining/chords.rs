@@ -1,0 +1,142 @@
+//! Polygons divided where edges of other faces lie in the middle of them.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::group::PlaneGroup;
+use crate::geometry::line::LineKey;
+use crate::geometry::outline::{halves, BareEdge, Outline};
+use crate::geometry::plane::Plane;
+use crate::geometry::side::Side;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::merge::lists::list::Sources;
+use crate::mesh::handle::OrientedFace;
+
+/// An edge of a surface that lies in the middle of a face.
+#[derive(Clone, Debug)]
+pub struct EdgeContact {
+    /// The ends of the edge.
+    pub ends: [Arc<Vertex>; 2],
+    /// The faces that meet in it.
+    pub beside: [OrientedFace; 2],
+    /// The face that it lies in.
+    pub face: OrientedFace,
+}
+
+impl EdgeContact {
+    /// The three faces.
+    pub fn faces(&self) -> [OrientedFace; 3] {
+        let [first, second] = self.beside;
+        [self.face, first, second]
+    }
+
+    /// The edge as it divides the polygon of the face that it lies in.
+    pub fn chord(&self, sources: &Sources) -> Chord {
+        let [beside, _] = self.beside;
+        Chord {
+            ends: self.ends.clone(),
+            plane: sources.get(beside.slot()).plane(beside.id()),
+        }
+    }
+}
+
+/// A segment in a polygon's plane, and another plane through it.
+#[derive(Clone, Debug)]
+pub struct Chord {
+    ends: [Arc<Vertex>; 2],
+    plane: Arc<Plane>,
+}
+
+impl Chord {
+    /// Return whether the ends lie on the minus and on the plus side of a plane; neither if the plane
+    /// holds the chord.
+    fn reaches(&self, plane: &Plane) -> [bool; 2] {
+        let sides = self.ends.each_ref().map(|end| end.side_of(plane));
+        [Side::Minus, Side::Plus].map(|side| sides.contains(&side))
+    }
+}
+
+/// A part of a group that is to be divided further.
+struct Part {
+    edges: Vec<BareEdge>,
+    faces: SmallVec<[OrientedFace; 2]>,
+    chords: Vec<Chord>,
+}
+
+/// Divide a group along chords, each lengthened to the ends of the part it lies in: a planar
+/// autopartition by the chords. Adds the lines of those that divided something.
+///
+/// # Cost
+/// Each part is looked through for each chord that divides it. The middle one comes first: then
+/// parallel ones in their order halve their number, and others do in general.
+///
+/// # Source
+/// Thibault, Naylor 1987 (autopartition).
+pub fn divided(
+    group: PlaneGroup,
+    chords: Vec<Chord>,
+    sources: &Sources,
+    lines: &mut Vec<LineKey>,
+) -> Vec<PlaneGroup> {
+    let plane = Arc::clone(&group.plane);
+    let mut done = Vec::new();
+    let mut open = vec![Part {
+        edges: group.edges().to_vec(),
+        faces: group.faces,
+        chords,
+    }];
+    while let Some(mut part) = open.pop() {
+        poll();
+        if part.chords.is_empty() {
+            done.push(PlaneGroup {
+                plane: Arc::clone(&plane),
+                faces: part.faces,
+                outline: Outline::of_bare(&part.edges),
+            });
+            continue;
+        }
+        let pivot = part.chords.swap_remove(part.chords.len() / 2);
+        lines.push(LineKey::of_planes(&plane, &pivot.plane));
+        let halves = part.halved(&plane, &pivot.plane, sources);
+        open.extend(halves.into_iter().filter(|half| !half.edges.is_empty()));
+    }
+    done
+}
+
+impl Part {
+    /// The part on the minus side of a plane across the group's, and that on the plus side.
+    fn halved(self, support: &Arc<Plane>, cut: &Arc<Plane>, sources: &Sources) -> [Self; 2] {
+        let mut halves = halves(self.edges, support, cut).map(|edges| Self {
+            edges,
+            faces: SmallVec::new(),
+            chords: Vec::new(),
+        });
+        for chord in self.chords {
+            poll();
+            let reached = halves.iter_mut().zip(chord.reaches(cut));
+            for (half, _) in reached.filter(|(_, reaches)| *reaches) {
+                half.chords.push(chord.clone());
+            }
+        }
+        for face in self.faces {
+            poll();
+            let reached = halves.iter_mut().zip(reaches(face, cut, sources));
+            for (half, _) in reached.filter(|(_, reaches)| *reaches) {
+                half.faces.push(face);
+            }
+        }
+        halves
+    }
+}
+
+/// Return whether a face lies on the minus and on the plus side of a plane across it.
+fn reaches(face: OrientedFace, plane: &Plane, sources: &Sources) -> [bool; 2] {
+    let Some(mesh) = sources.get(face.slot()).mesh() else {
+        // A half-space's face is everywhere.
+        return [true; 2];
+    };
+    let sides = mesh.corners(face.id()).map(|p| plane.side_of_lattice(&p));
+    [Side::Minus, Side::Plus].map(|side| sides.contains(&side))
+}

@@ -1,0 +1,121 @@
+//! The surface of a solid with exact corners.
+
+use std::sync::Arc;
+
+use super::facet::Facet;
+use super::near::Space;
+use crate::error::Result;
+use crate::extract::assemble::assemble_patches;
+use crate::extract::joining::patches::Patches;
+use crate::extract::mesh::ExactMesh;
+use crate::geometry::plane::Plane;
+use crate::geometry::points;
+use crate::geometry::side::Side;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::mesh::handle::{OrientedFace, VertexId};
+use crate::query::exact;
+use crate::tree::solid::Solid;
+
+/// The surface of a solid.
+pub struct Surface<'a> {
+    solid: &'a Solid,
+    patches: &'a Patches,
+    mesh: ExactMesh,
+}
+
+impl<'a> Surface<'a> {
+    /// The surface of a bounded solid, no triangle of which lies in faces of several patches.
+    pub fn of(solid: &'a Solid, patches: &'a Patches) -> Result<Self> {
+        let mesh = assemble_patches(solid, patches)?;
+        Ok(Self {
+            solid,
+            patches,
+            mesh,
+        })
+    }
+
+    /// The triangles.
+    pub fn triangles(&self) -> &[[VertexId; 3]] {
+        &self.mesh.triangles
+    }
+
+    /// The number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.mesh.vertices.len()
+    }
+
+    /// A vertex.
+    pub fn vertex(&self, vertex: VertexId) -> Vertex {
+        exact::vertex(self.solid, &self.mesh, vertex)
+    }
+
+    /// The face that a triangle lies in.
+    pub fn face(&self, triangle: u32) -> OrientedFace {
+        self.mesh.faces[triangle as usize]
+    }
+
+    /// The patch that a triangle lies in.
+    pub fn patch(&self, triangle: u32) -> u32 {
+        let face = self.face(triangle).face;
+        self.patches.of(face, self.solid.sources().get(face.slot))
+    }
+
+    /// The plane that a triangle lies in, whichever side is outside.
+    pub fn plane(&self, triangle: u32) -> Arc<Plane> {
+        let face = self.face(triangle);
+        self.solid.sources().get(face.slot()).plane(face.id())
+    }
+
+    /// The side of a triangle's plane on which a point lies; `Plus` is outside.
+    pub fn side(&self, triangle: u32, point: &Vertex) -> Side {
+        let [a, b, c] = self.corners(triangle).map(|corner| corner.approx());
+        points::clear_side([a, b, c, point.approx()]).or_exact(|| {
+            let side = point.side_of(&self.plane(triangle));
+            if self.face(triangle).orientation.is_opposite() {
+                side.opposite()
+            } else {
+                side
+            }
+        })
+    }
+
+    /// The corners of a triangle.
+    pub fn corners(&self, triangle: u32) -> [Vertex; 3] {
+        self.mesh.triangles[triangle as usize].map(|vertex| self.vertex(vertex))
+    }
+
+    /// A triangle.
+    pub fn facet(&self, triangle: u32) -> Facet {
+        Facet {
+            corners: self.corners(triangle),
+            plane: self.plane(triangle),
+        }
+    }
+
+    /// A box around all of it.
+    pub fn space(&self) -> Space {
+        let vertices = VertexId::all().take(self.mesh.vertices.len());
+        vertices.fold(Space::NOTHING, |all, vertex| {
+            poll();
+            all.with(&Space::around([&self.vertex(vertex)]))
+        })
+    }
+
+    /// A box around some triangles.
+    pub fn space_of(&self, triangles: &[u32]) -> Space {
+        let spaces = triangles.iter().map(|t| Space::around(&self.corners(*t)));
+        spaces.fold(Space::NOTHING, |all, one| all.with(&one))
+    }
+
+    /// The triangles whose boxes overlap another box, with theirs.
+    pub fn triangles_in(&self, space: &Space) -> Vec<(u32, Space)> {
+        let boxed = |triangle: u32| {
+            poll();
+            let around = Space::around(&self.corners(triangle));
+            around.overlaps(space).then_some((triangle, around))
+        };
+        let all = (0u32..).take(self.mesh.triangles.len());
+        all.filter_map(boxed).collect()
+    }
+}
