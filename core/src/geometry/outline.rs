@@ -419,7 +419,7 @@ pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
 /// let triangle = Polygon::triangle(&corners, Arc::clone(&floor));
 /// let cut = Arc::new(Plane::through(&[1, 0, 0], &[1, 1, 0], &[1, 0, 1]).expect("a plane"));
 /// let parts = halves(BareEdge::all_of(&triangle).collect(), &floor, &cut);
-/// assert_eq!(parts.map(|edges| edges.len()), [3, 4]);
+/// assert_eq!(parts.map(|edges| edges.len()), [4, 3]);
 /// ```
 pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [Vec<BareEdge>; 2] {
     let axis = LineKey::of_planes(support, cut).axis();
