@@ -61,10 +61,10 @@ def test_nothing_has_no_parts() -> None:
     assert connected_parts(b.Solid.empty()) == []
 
 
-def grooved(depth: float, x: float = 4, tags: Any = None) -> b.Solid:
+def grooved(depth: float, tags: Any = None) -> b.Solid:
     """Return a block with a groove from below; one 4 deep touches its top from inside."""
     groove = b.Region.polygon([(1, -1), (3, -1), (2, depth)]).extrude(6).rotate(90, "x")
-    block = b.box(x, 4, 4)
+    block = b.box(4, 4, 4)
     return (block if tags is None else block.tagged(**tags)) - groove.translate(0, 5, 0)
 
 
