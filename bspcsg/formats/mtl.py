@@ -1,53 +1,131 @@
 """MTL: the materials of an OBJ, in a file beside it; pictures lie there, too."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from ..attributes.material import Material
 from ..errors import InvalidMeshError
 from .source import Source
 
 #: The colour of materials that say none.
-_PLAIN = (0.8, 0.8, 0.8, 1.0)
+_PLAIN = (0.8, 0.8, 0.8)
+
+#: Statements after which names follow.
+_NAMING = frozenset({b"newmtl", b"map_Kd"})
+
+#: Words of a file's name: names end at 255 bytes.
+_MOST_WORDS = 128
 
 
-def materials_in(source: Source, libraries: list[str]) -> tuple[dict[str, Material], list[str]]:
-    """Return the materials of the libraries that an OBJ names, and the files that are not there."""
-    found: dict[str, Material] = {}
-    missing = []
-    for library in libraries:
-        data = source.beside(library)
-        if data is None:
-            missing.append(library)
-            continue
-        for name, words in _sections(data):
-            picture = words.get("map_Kd", [])
-            texture = source.beside(picture[-1]) if picture else None
-            if picture and texture is None:
-                missing.append(picture[-1])
-            found.setdefault(name, _material(words, texture))
-    return found, missing
+@dataclass
+class Libraries:
+    """The content of the libraries that an OBJ names.
+
+    Parameters
+    ----------
+    materials : dict of str to Material
+    missing : list of str
+        The files that are not there.
+    dropped : set of str
+        Kinds of data that a material has no room for.
+    """
+
+    materials: dict[str, Material] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+    dropped: set[str] = field(default_factory=set)
 
 
-def _sections(data: bytes) -> list[tuple[str, dict[str, list[str]]]]:
+def name_of(words: Sequence[bytes]) -> str:
+    """Return the name that some words are; what is no UTF-8 is taken for Latin-1."""
+    name = b" ".join(words)
+    try:
+        return name.decode("utf-8")
+    except UnicodeDecodeError:
+        return name.decode("latin-1")
+
+
+def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Libraries:
+    """Return the content of the libraries; the words of each are one name, or a name each."""
+    found = Libraries()
+    for words in libraries:
+        whole = name_of(words)
+        names = [whole] if source.beside(whole) is not None else [name_of([word]) for word in words]
+        for name in names:
+            data = source.beside(name)
+            if data is None:
+                found.missing.append(name)
+                continue
+            for material, said in _sections(Source(name, data)):
+                found.materials.setdefault(material, _material(source, said, found))
+    return found
+
+
+def _sections(library: Source) -> list[tuple[str, dict[bytes, list[bytes]]]]:
     """Return the statements of each material, the words by the first of each."""
-    found: list[tuple[str, dict[str, list[str]]]] = []
-    for line in data.decode("utf-8", "replace").splitlines():
-        words = line.partition("#")[0].split()
-        if words[:1] == ["newmtl"]:
-            found.append((" ".join(words[1:]), {}))
-        elif words and found:
+    found: list[tuple[str, dict[bytes, list[bytes]]]] = []
+    for _, words in library.text_lines(b"#", _NAMING):
+        if words[0] == b"newmtl":
+            found.append((name_of(words[1:]), {}))
+        elif found:
             found[-1][1][words[0]] = words[1:]
     return found
 
 
-def _material(words: Mapping[str, list[str]], texture: bytes | None) -> Material:
-    """Return a material; numbers that are none leave it plain."""
+def _material(source: Source, said: Mapping[bytes, list[bytes]], found: Libraries) -> Material:
+    """Return a material; colours that are none leave it plain."""
+    color = _color(said.get(b"Kd"))
+    if color is None:
+        found.dropped.add("colours of materials that are not three numbers")
+    full = (*(color or _PLAIN), _opacity(said))
+    texture = _picture(source, said.get(b"map_Kd", []), found)
     try:
-        red, green, blue = map(float, words.get("Kd", _PLAIN[:3]))
-        opacity = float(words["d"][0]) if "d" in words else 1 - float(words.get("Tr", ["0"])[0])
-        return Material((red, green, blue, opacity), texture)
-    except (ValueError, IndexError, InvalidMeshError):
-        return Material(_PLAIN)
+        return Material(full, texture)
+    except InvalidMeshError:
+        found.dropped.add("pictures that are neither PNG nor JPEG")
+        return Material(full)
+
+
+def _color(words: Sequence[bytes] | None) -> tuple[float, ...] | None:
+    """Return red, green and blue, of which one number is a grey; None if it is neither."""
+    if words is None:
+        return _PLAIN
+    numbers = [_number(word) for word in words]
+    if len(numbers) not in (1, 3) or any(map(math.isnan, numbers)):
+        return None
+    return tuple(numbers * 3)[:3]
+
+
+def _opacity(said: Mapping[bytes, list[bytes]]) -> float:
+    """Return the opacity, which is 1 where no number tells it."""
+    if b"d" in said:
+        told = _number(said[b"d"][-1]) if said[b"d"] else math.nan
+    else:
+        told = 1 - _number(said[b"Tr"][-1]) if said.get(b"Tr") else math.nan
+    return 1.0 if math.isnan(told) else told
+
+
+def _number(word: bytes) -> float:
+    """Return a number from 0 to 1, to which those beyond are moved; NaN if it is none."""
+    try:
+        return float(np.clip(float(word), 0, 1))
+    except ValueError:
+        return math.nan
+
+
+def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes | None:
+    """Return the picture whose name, which may be of several words, ends a statement."""
+    for start in range(max(0, len(words) - _MOST_WORDS), len(words)):
+        data = source.beside(name_of(words[start:]))
+        if data is not None:
+            return data
+    if words:
+        # The words after an option may be numbers of it as well as of the name.
+        has_options = words[0].startswith(b"-")
+        found.missing.append(name_of(words[-1:] if has_options else words))
+    return None
 
 
 def written(materials: Mapping[str, Material], stem: str) -> tuple[str, dict[str, bytes]]:

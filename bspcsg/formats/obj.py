@@ -28,6 +28,9 @@ _DROPPED = {
 #: Statements that would add surface which is not in the polygons.
 _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
+#: Statements after which names follow.
+_NAMING = frozenset({b"o", b"g", b"usemtl", b"mtllib"})
+
 
 @dataclass
 class _Found:
@@ -48,7 +51,7 @@ class _Found:
     normals: list[list[bytes]] = field(default_factory=list)
     corners: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
     materials: list[tuple[str, int]] = field(default_factory=list)
-    libraries: list[str] = field(default_factory=list)
+    libraries: list[list[bytes]] = field(default_factory=list)
 
 
 def read(source: Source) -> RawMesh:
@@ -105,9 +108,10 @@ def _said(
     if not found.materials:
         return Attributes(faces, vertex, corner), []
     names = _material_names(found)[polygons.owners(positions)]
-    materials, missing = mtl.materials_in(source, found.libraries)
-    used = {name: material for name, material in materials.items() if name in names}
-    return Attributes(faces, vertex, corner, {"material": names}, used), missing
+    libraries = mtl.materials_in(source, found.libraries)
+    found.dropped |= libraries.dropped
+    used = {name: one for name, one in libraries.materials.items() if name in names}
+    return Attributes(faces, vertex, corner, {"material": names}, used), libraries.missing
 
 
 def _numbers(rows: list[list[bytes]], width: int) -> FloatArray:
@@ -177,19 +181,15 @@ def _collected(source: Source) -> _Found:
         elif key == b"vn":
             found.normals.append(words[1:])
         elif key == b"usemtl":
-            found.materials.append((_text(words[1:]), len(found.polygons)))
+            found.materials.append((mtl.name_of(words[1:]), len(found.polygons)))
         elif key == b"mtllib":
-            found.libraries.append(_text(words[1:]))
+            found.libraries.append(words[1:])
         elif key == b"o":
             found.objects.append((b" ".join(words[1:]), len(found.polygons)))
         elif key in _DROPPED:
             found.dropped.add(_DROPPED[key])
         found.surfaces += key in _SURFACES
     return found
-
-
-def _text(words: list[bytes]) -> str:
-    return b" ".join(words).decode("utf-8", "replace")
 
 
 def _objects(
@@ -213,7 +213,7 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
     """Yield number and words of each line; a line that ends in a backslash goes on."""
     held: list[bytes] = []
     start = 0
-    for number, words in source.text_lines(b"#"):
+    for number, words in source.text_lines(b"#", _NAMING):
         start = start if held else number
         if words[-1].endswith(b"\\"):
             held += [*words[:-1], *filter(None, [words[-1][:-1]])]
@@ -269,13 +269,15 @@ def kept(said: Attributes) -> Attributes:
 
     Colours of vertices and materials of faces; texture coordinates and normals of corners.
     """
-    names = {name: called(name) for name in said.materials}
+    given = said.face.get("material")
+    is_named = given is not None and given.dtype.kind == "U" and given.ndim == 1
+    kinds, numbers = np.unique(given if is_named else np.array([""]), return_inverse=True)
+    names = _held_names({*kinds.tolist(), *said.materials})
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         depth = 2 if kind == "corner" else 1
-        if name == "material" and kind == "face" and values.dtype.kind == "U" and values.ndim == 1:
-            kinds, numbers = np.unique(values, return_inverse=True)
-            return np.array([called(one) for one in kinds.tolist()])[numbers]
+        if values is given and is_named:
+            return np.array([names[one] for one in kinds.tolist()])[numbers]
         if kind == "vertex" and is_color(name, values, depth) and values.shape[1:] == (3,):
             scale = 1.0 if values.dtype.kind == "f" else 1 / np.iinfo(values.dtype).max
             return values.astype(np.float64) * scale
@@ -289,6 +291,22 @@ def kept(said: Attributes) -> Attributes:
     named = {names[name]: material for name, material in said.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
+
+
+def _held_names(names: set[str]) -> dict[str, str]:
+    """Return materials' names as lines can hold them, each by the name: no two are the same."""
+    held = {"": ""}
+    taken = {""}
+    # Those that can stay as they are come first.
+    for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
+        fit = free = called(name) or "_"
+        number = 1
+        while free in taken:
+            number += 1
+            free = f"{fit} ({number})"
+        held[name] = free
+        taken.add(free)
+    return held
 
 
 #: Attributes of corners that OBJ has statements for, and how many numbers each has.

@@ -78,10 +78,18 @@ class Source:
             return FormatError(f"{self.name}: at byte {offset}: {message}", code, [offset])
         return FormatError(f"{self.name}: {message}", code)
 
-    def text_lines(self, comment: bytes = b"") -> Iterator[tuple[int, list[bytes]]]:
-        """Yield number and words of each line that is not blank, without its comment."""
+    def text_lines(
+        self, comment: bytes = b"", naming: frozenset[bytes] = frozenset()
+    ) -> Iterator[tuple[int, list[bytes]]]:
+        """Yield number and words of each line that is not blank, without its comment.
+
+        After the words of `naming` follow names, which may hold the mark: there a comment begins by
+        the mark alone.
+        """
         for number, line in enumerate(self.without_mark().data.splitlines(), 1):
-            words = (line.partition(comment)[0] if comment else line).split()
+            words = line.split()
+            if comment and comment in line:
+                words = _uncommented(line, words, comment, naming)
             if words:
                 yield number, words
 
@@ -112,6 +120,14 @@ class Source:
         words = b" ".join(rows[row][:3])
         message = f"expected three coordinates, found {quoted(words)}."
         return self.error(message, line=lines[row])
+
+
+def _uncommented(
+    line: bytes, words: list[bytes], comment: bytes, naming: frozenset[bytes]
+) -> list[bytes]:
+    if words[0] not in naming:
+        return line.partition(comment)[0].split()
+    return words[: words.index(comment)] if comment in words else words
 
 
 def content_of(path: Path) -> bytes:

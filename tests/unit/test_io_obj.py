@@ -6,9 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import bspcsg as b
 from bspcsg.errors import held
-from bspcsg.io import read, write
+from bspcsg.io import RawMesh, decoded, read, write
 from support.io import area, cube_mesh, read_text, refusal, same_mesh, signed_area
+from support.pictures import PIXEL
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
@@ -126,3 +128,115 @@ def test_no_mesh_at_all(tmp_path: Path) -> None:
 def test_curves_are_reported(tmp_path: Path) -> None:
     raw = read_text(tmp_path / "x.obj", SQUARE + "cstype bezier\nf 1 2 3\n")
     assert [finding.code for finding in raw.findings] == ["curves_ignored"]
+
+
+def painted(names: list[str], files: dict[str, bytes], library: str = "m.mtl") -> RawMesh:
+    """Return a square whose halves have materials of these names."""
+    first, second = names
+    faces = f"usemtl {first}\nf 1 2 3\nusemtl {second}\nf 1 3 4\n"
+    return decoded("x.obj", f"mtllib {library}\n{SQUARE}{faces}".encode(), ".obj", files)
+
+
+def colors(raw: RawMesh) -> list[tuple[float, ...]]:
+    """Return the colours of the halves."""
+    said = held(raw.attributes, "said")
+    return [said.materials[name].color[:3] for name in said.face["material"].tolist()]
+
+
+RED, BLUE = (1, 0, 0), (0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("Color #1", "Color #2"),
+        ("a\u00a0b", "a b"),
+        ("a\u3000b", "a\u2003b"),
+        ("a # a comment", "b"),
+    ],
+)
+def test_materials_are_found_by_names_of_any_kind(first: str, second: str) -> None:
+    library = f"newmtl {first}\nKd 1 0 0\nnewmtl {second}\nKd 0 0 1 # blue\n"
+    raw = painted([first, second], {"m.mtl": library.encode()})
+    assert colors(raw) == [RED, BLUE]
+    assert not raw.dropped and not raw.findings
+
+
+def test_names_that_are_no_utf_8_stay_apart() -> None:
+    library = "newmtl \xe4\nKd 1 0 0\nnewmtl \xf6\nKd 0 0 1\n".encode("latin-1")
+    text = f"mtllib m.mtl\n{SQUARE}usemtl \xe4\nf 1 2 3\nusemtl \xf6\nf 1 3 4\n".encode("latin-1")
+    assert colors(decoded("x.obj", text, ".obj", {"m.mtl": library})) == [RED, BLUE]
+
+
+def test_a_byte_order_mark_hides_no_material() -> None:
+    library = "\ufeffnewmtl a\nKd 1 0 0\n".encode()
+    assert colors(painted(["a", "a"], {"m.mtl": library})) == [RED, RED]
+
+
+def test_a_picture_of_another_kind_leaves_the_colour() -> None:
+    library = b"newmtl a\nKd 1 0 0\nd .5\nmap_Kd t.tga\n"
+    raw = painted(["a", "a"], {"m.mtl": library, "t.tga": bytes(40)})
+    assert held(raw.attributes, "said").materials["a"] == b.Material((1, 0, 0, 0.5))
+    assert raw.dropped == ("pictures that are neither PNG nor JPEG",)
+
+
+@pytest.mark.parametrize(
+    ("color", "meant"),
+    [
+        ("Kd .5", (0.5, 0.5, 0.5)),
+        ("Kd 2 0 -1", (1, 0, 0)),
+        ("Kd spectral x.rfl", (0.8, 0.8, 0.8)),
+        ("Kd", (0.8, 0.8, 0.8)),
+        ("Kd 1 nan 0", (0.8, 0.8, 0.8)),
+        ("Kd 1 0 0\nTr x", RED),
+        ("Kd 1 0 0\nd -halo 1", RED),
+    ],
+)
+def test_colours_as_libraries_write_them(color: str, meant: tuple[float, ...]) -> None:
+    raw = painted(
+        ["a", "a"], {"m.mtl": f"newmtl a\n{color}\nmap_Kd p.png".encode(), "p.png": PIXEL}
+    )
+    material = held(raw.attributes, "said").materials["a"]
+    assert (material.color[:3], material.texture) == (meant, PIXEL)
+    assert bool(raw.dropped) == (meant == (0.8, 0.8, 0.8))
+
+
+@pytest.mark.parametrize(
+    "library", ["m.mtl n.mtl", "n.mtl m.mtl", "m.mtl # n.mtl", "my library.mtl"]
+)
+def test_a_statement_names_several_libraries(library: str) -> None:
+    red = b"newmtl a\nKd 1 0 0\n"
+    files = {"m.mtl": red, "n.mtl": b"", "my library.mtl": red}
+    raw = painted(["a", "a"], files, library)
+    assert colors(raw) == [RED, RED] and not raw.findings
+
+
+def test_libraries_that_are_missing_are_told_one_by_one() -> None:
+    raw = painted(["a", "a"], {"m.mtl": b"newmtl a\nmap_Kd my pic.png\n"}, "m.mtl n.mtl")
+    (finding,) = raw.findings
+    assert "“my pic.png”, “n.mtl”" in finding.message
+
+
+@pytest.mark.parametrize("words", ["my pic.png", "-s 1 1 1 my pic.png", "-clamp on pic.png"])
+def test_a_picture_is_found_by_its_whole_name(words: str) -> None:
+    files = {"m.mtl": f"newmtl a\nmap_Kd {words}\n".encode(), "my pic.png": PIXEL}
+    files["pic.png"] = PIXEL if words.startswith("-clamp") else b"another"
+    raw = painted(["a", "a"], files)
+    assert held(raw.attributes, "said").materials["a"].texture == PIXEL
+
+
+def test_materials_whose_names_become_one_get_names_of_their_own(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    names = ["a#", "a_", "a_ (2)", "a b", "a\u00a0b", "\n"]
+    given = {name: b.Material((k / 8, 0, 0)) for k, name in enumerate(names)}
+    solid = b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        face_attributes={"material": np.repeat(names, 2)},
+        materials=given,
+    )
+    solid.save(tmp_path / "x.obj")
+    again = b.load(tmp_path / "x.obj").to_mesh()
+    told = [again.materials[name] for name in again.face_attributes["material"].tolist()]
+    assert told == [given[name] for name in np.repeat(names, 2).tolist()]
+    assert {"a_", "a_ (2)", "a b"} <= set(again.materials)
