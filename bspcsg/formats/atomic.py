@@ -46,10 +46,24 @@ def write_file(
         return
     # A link stays a link: what it points to is replaced.
     target = Path(os.path.realpath(name))
-    try:
+    with _writing(name):
         _check_target(target)
         part = target.with_name(f".{target.name[:_KEPT]}.{os.urandom(4).hex()}.part")
         _write_new(part, target, chunks, prove)
+
+
+def refuse_target(path: str | os.PathLike[str]) -> None:
+    """Raise a `FormatError` where no file can be, or where something else is than a file."""
+    name = file_path(path)
+    with _writing(name):
+        _check_target(Path(os.path.realpath(name)))
+
+
+@contextlib.contextmanager
+def _writing(name: str) -> Iterator[None]:
+    """Raise a `FormatError` where the block cannot write a file."""
+    try:
+        yield
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise FormatError(f"{name}: cannot write this file: {reason}.", "unwritable") from error

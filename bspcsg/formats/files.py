@@ -14,7 +14,7 @@ from ..errors import Finding, FormatError, format_errors, invalid_parameter
 from ..mesh.mesh import Mesh
 from ..parameters import file_path, of_kind, shown, text_value, truth_value
 from . import single
-from .atomic import write_file
+from .atomic import refuse_target, write_file
 from .proof import prove, prove_with_attributes
 from .raw import RawMesh, empty_set
 from .registry import FORMATS, Form, Format
@@ -168,7 +168,8 @@ def write(
     """Write a mesh; the suffix names the format.
 
     The file appears complete or not at all: before it gets its name it is read back, and every
-    corner of every triangle of every object in it is compared with the mesh. Every format but
+    corner of every triangle of every object in it is compared with the mesh. Files beside it, such
+    as the materials of an OBJ, are written just before that. Every format but
     binary STL and GLB keeps each coordinate's double; what single precision changes is returned as
     findings.
 
@@ -189,8 +190,12 @@ def write(
         If the format needs a library that is not installed.
     """
     made = encoded(mesh, path, Path(file_path(path)).suffix, text)
-    write_file(path, made.chunks, made.prove)
-    write_beside(path, made.files)
+
+    def prove(file: BinaryIO) -> None:
+        made.prove(file)
+        write_beside(path, made.files)
+
+    write_file(path, made.chunks, prove)
     return made.findings
 
 
@@ -215,10 +220,21 @@ class Encoded:
     files: Mapping[str, bytes] = field(default_factory=dict)
 
 
+def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> dict[Path, bytes]:
+    """Return files by the paths at which they lie beside one, which may be a link to another."""
+    folder = Path(path).parent
+    if os.path.islink(path):
+        folder = Path(os.path.realpath(path)).parent
+    return {folder / name: data for name, data in files.items()}
+
+
 def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
-    """Write the files that go beside one."""
-    for name, data in files.items():
-        write_file(Path(path).parent / name, [data])
+    """Write the files that go beside one, which is to get its name after them."""
+    places = places_beside(path, files)
+    for place in places:
+        refuse_target(place)
+    for place, data in places.items():
+        write_file(place, [data])
 
 
 def encoded(
@@ -247,7 +263,9 @@ def encoded(
         proof = partial(prove, name, bare, form.scan, form.called, form.repeats)
         return Encoded(form.encode(bare), findings, proof)
     full = saying(mesh, kept)
-    head, files = form.beside(full, Path(name).stem) if form.beside is not None else (b"", {})
+    # What goes beside a link to a file is named as that file.
+    stem = Path(os.path.realpath(name)).stem
+    head, files = form.beside(full, stem) if form.beside is not None else (b"", {})
     reader = partial(_read_back, suffix, files)
     proof = partial(prove_with_attributes, name, full, reader, form.called, form.repeats)
     return Encoded(itertools.chain([head], form.encode(full)), findings, proof, files)

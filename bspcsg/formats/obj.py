@@ -318,8 +318,19 @@ def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
     said = said_of(mesh)
     if said is None or not said.materials:
         return b"", {}
-    library, files = mtl.written(said.materials, called(stem).replace(" ", "_"))
+    library, files = mtl.written(said.materials, _as_word(stem))
     return f"mtllib {library}\n".encode(), files
+
+
+def _as_word(stem: str) -> str:
+    """Return the stem of a file as one word, by which no other stem goes.
+
+    Many readers take a name with a blank for two.
+    """
+    return "".join(
+        letter if letter.isprintable() and letter not in " #\\~" else f"~{ord(letter):02x}"
+        for letter in stem
+    )
 
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:

@@ -57,11 +57,12 @@ class Source:
         # What a mesh names may be anything: a folder, a device, a file of somebody else.
         if Path(name).name != name:
             return None
-        try:
-            path = Path(self.name).parent / name
-            return content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
-        except (OSError, ValueError):
-            return None
+        # Beside a link may lie links; beside what it points to, the files written with that.
+        for path in (self.name, os.path.realpath(self.name)):
+            data = _limited(Path(path).parent / name)
+            if data is not None:
+                return data
+        return None
 
     def error(
         self,
@@ -128,6 +129,14 @@ def _uncommented(
     if words[0] not in naming:
         return line.partition(comment)[0].split()
     return words[: words.index(comment)] if comment in words else words
+
+
+def _limited(path: Path) -> bytes | None:
+    """Return the bytes of a file, or None if it is not there or too large."""
+    try:
+        return content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
+    except (OSError, ValueError):
+        return None
 
 
 def content_of(path: Path) -> bytes:

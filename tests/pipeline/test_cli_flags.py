@@ -4,6 +4,7 @@ import io
 import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -165,6 +166,21 @@ def test_files_are_kept_if_asked_to(folder: Path, capsys: Capture, verb: str) ->
 def test_a_dangling_link_is_there_as_well(folder: Path, capsys: Capture) -> None:
     os.symlink("nowhere.off", "x.off")
     assert ran(capsys, "convert", "a.off", "-o", "x.off", "--no-overwrite")[0] == 5
+
+
+@pytest.mark.parametrize("words", [["convert", "in.3mf"], ["union", "in.3mf", "in.3mf"]])
+def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: list[str]) -> None:
+    mesh = b.cube(1).to_mesh()
+    faces: dict[str, Any] = {"material": np.full(12, "a")}
+    red = {"a": b.Material((1, 0, 0))}
+    b.Solid(mesh.vertices, mesh.faces, face_attributes=faces, materials=red).save("in.3mf")
+    Path("new.mtl").write_text("mine")
+    command = [*words, "-o", "new.obj", "--no-overwrite"]
+    code, _, err = ran(capsys, *command)
+    assert code == 5 and "new.mtl: this file is there already; --overwrite replaces it." in err
+    assert Path("new.mtl").read_text("utf-8") == "mine" and not Path("new.obj").exists()
+    Path("new.mtl").unlink()
+    assert ran(capsys, *command)[0] == 0 and Path("new.mtl").is_file()
 
 
 # --up

@@ -240,3 +240,46 @@ def test_materials_whose_names_become_one_get_names_of_their_own(tmp_path: Path)
     told = [again.materials[name] for name in again.face_attributes["material"].tolist()]
     assert told == [given[name] for name in np.repeat(names, 2).tolist()]
     assert {"a_", "a_ (2)", "a b"} <= set(again.materials)
+
+
+def of_color(color: tuple[float, ...]) -> b.Solid:
+    """Return a cube of one material."""
+    mesh = b.cube(1).to_mesh()
+    return b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        face_attributes={"material": np.full(12, "a")},
+        materials={"a": b.Material(color, PIXEL)},
+    )
+
+
+def color_in(path: Path) -> tuple[float, ...]:
+    """Return the colour of the one material in a file."""
+    return b.load(path).to_mesh().materials["a"].color[:3]
+
+
+@pytest.mark.parametrize("folder", ["q.mtl", "q-0.png"])
+def test_an_obj_stays_where_a_file_beside_it_cannot_be(tmp_path: Path, folder: str) -> None:
+    (tmp_path / folder).mkdir()
+    (tmp_path / "q.obj").write_text("old")
+    with pytest.raises(b.FormatError, match=f"{folder}: cannot write this file"):
+        of_color(RED).save(tmp_path / "q.obj")
+    assert (tmp_path / "q.obj").read_text() == "old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted([folder, "q.obj"])
+
+
+def test_libraries_of_several_objs_stay_apart(tmp_path: Path) -> None:
+    stems = ["part_1", "part 1", "part#1", "part~201", "part\u00a01", "part\\1"]
+    for k, stem in enumerate(stems):
+        of_color((k / 8, 0, 0)).save(tmp_path / f"{stem}.obj")
+    found = [color_in(tmp_path / f"{stem}.obj")[0] for stem in stems]
+    assert found == [k / 8 for k in range(len(stems))]
+    assert "mtllib part~201.mtl\n" in (tmp_path / "part 1.obj").read_text()
+
+
+def test_a_link_and_its_obj_have_one_library(tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    (tmp_path / "link.obj").symlink_to(tmp_path / "in" / "x.obj")
+    of_color(BLUE).save(tmp_path / "link.obj")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in", "link.obj"]
+    assert color_in(tmp_path / "in" / "x.obj") == color_in(tmp_path / "link.obj") == BLUE

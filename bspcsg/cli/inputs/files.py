@@ -4,7 +4,7 @@ import io
 import os
 import shlex
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -18,6 +18,7 @@ from .objects import ObjectNames
 from .scripts import STREAMED, SUFFIXES, made_by
 
 if TYPE_CHECKING:
+    from ...formats.files import Encoded
     from ...formats.raw import RawMesh
     from ...mesh.mesh import Mesh
     from ...solid.solid import Solid
@@ -304,16 +305,22 @@ class Target:
 
         shortened, moved = self.rounded(mesh)
         made = encoded(shortened, shown(self.path), self.suffix, self.text)
-        put(self.path, made.chunks, self.overwrite, made.prove)
-        self.put_beside(made.files)
+        self.put(made, made.prove)
         return moved + made.findings
 
-    def put_beside(self, files: Mapping[str, bytes]) -> None:
-        """Write the files that go beside the one that was written; a stream has none."""
-        from ...formats.files import write_beside
+    def put(self, made: "Encoded", prove: Callable[[BinaryIO], None]) -> None:
+        """Write a file and those that go beside it; a stream has none."""
+        from ...formats.files import places_beside, write_beside
 
-        if not self.is_stream and not is_dropped(self.path):
+        files = {} if self.is_stream or is_dropped(self.path) else made.files
+        for place in places_beside(self.path, files):
+            refuse_unwritable(place, self.overwrite)
+
+        def prove_and_write(file: BinaryIO) -> None:
+            prove(file)
             write_beside(self.path, files)
+
+        put(self.path, made.chunks, self.overwrite, prove_and_write)
 
 
 def put(

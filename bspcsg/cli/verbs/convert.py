@@ -13,7 +13,7 @@ import click
 from ...errors import BspcsgError, Finding
 from ..console import output, status, terminal
 from ..console.output import Output, counted
-from ..inputs.files import STREAM, Inputs, Target, expanded, is_dropped, make_folder, put, shown
+from ..inputs.files import STREAM, Inputs, Target, expanded, is_dropped, make_folder, shown
 from ..inputs.lengths import MILLIMETRES
 from ..options.patterns import files_argument
 from ..options.shared import PATH, SIMPLIFY, common, reading, writing
@@ -156,8 +156,7 @@ class _Conversion:
             again = decoded(shown(target.path), file.read(), target.suffix, made.files)
             found.append(losses_between(raw, again))
 
-        put(target.path, made.chunks, target.overwrite, compare)
-        target.put_beside(made.files)
+        target.put(made, compare)
         lost = found[0]
         for finding in made.findings:
             self._tell(target, finding)
