@@ -3,9 +3,11 @@
 import struct
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from bspcsg.io import read, write
+from bspcsg.errors import held
+from bspcsg.io import RawMesh, decoded, read, write
 from support.io import cube_mesh, read_text, refusal, same_mesh, signed_area
 
 OUTLINE = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
@@ -168,3 +170,62 @@ def test_data_after_the_end(tmp_path: Path) -> None:
     assert read_text(tmp_path / "x.ply", data + b"\n").findings == ()
     findings = read_text(tmp_path / "y.ply", data + b"more").findings
     assert [(finding.code, finding.count) for finding in findings] == [("extra_data", 4)]
+
+
+def read_square(vertex: str, faces: str, rows: str, lines: str) -> RawMesh:
+    """Read a square with further columns of vertices, and with these faces."""
+    corners = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"]
+    axes = "".join(f"property float {axis}\n" for axis in "xyz")
+    text = (
+        f"ply\nformat ascii 1.0\nelement vertex 4\n{axes}{vertex}"
+        f"element face {lines.count(chr(10))}\nproperty list uchar int vertex_indices\n{faces}"
+        f"end_header\n{''.join(f'{corner} {rows}{chr(10)}' for corner in corners)}{lines}"
+    )
+    return decoded("x.ply", text.encode(), ".ply")
+
+
+COLOUR = "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+PLACES = "property list uchar float texcoord\n"
+
+
+def test_colours_that_two_elements_have_are_told() -> None:
+    raw = read_square(COLOUR, COLOUR, "255 0 0", "3 0 1 2 0 0 255\n3 0 2 3 0 0 255\n")
+    assert held(raw.attributes, "said").vertex["color"].tolist() == [[255, 0, 0]] * 4
+    assert raw.dropped == ("face properties red, green, blue",)
+
+
+@pytest.mark.parametrize("quad", [(0, 1, 2, 3), (3, 0, 1, 2)])
+def test_texture_coordinates_of_polygons_are_kept(quad: tuple[int, ...]) -> None:
+    places = {0: "0 0", 1: "1 0", 2: "1 1", 3: "0 1"}
+    line = f"4 {' '.join(map(str, quad))} 8 {' '.join(places[k] for k in quad)}\n"
+    raw = read_square("", PLACES, "", line)
+    uv = held(raw.attributes, "said").corner["uv"]
+    np.testing.assert_array_equal(uv, raw.vertices[raw.faces][..., :2])
+    assert raw.dropped == ("faces of more than three corners",)
+
+
+@pytest.mark.parametrize(
+    "lines", ["3 0 1 2 7 0 0 1 0 1 1 0\n", "3 0 1 2 6 0 0 1 0 1 1\n4 0 1 2 3 8 0 0 1 0 1 1 0 1\n"]
+)
+def test_lists_that_do_not_go_with_the_corners_are_told(lines: str) -> None:
+    assert "face properties texcoord" in read_square("", PLACES, "", lines).dropped
+
+
+def test_texture_coordinates_of_two_names_are_both_kept() -> None:
+    columns = "".join(f"property float {name}\n" for name in "uvst")
+    vertex = held(read_square(columns, "", "1 2 3 4", "3 0 1 2\n").attributes, "said").vertex
+    assert vertex["uv"].tolist() == [[3, 4]] * 4
+    assert (vertex["u"].tolist(), vertex["v"].tolist()) == ([1] * 4, [2] * 4)
+
+
+def test_pictures_that_comments_name_are_told() -> None:
+    raw = read_square("comment TextureFile my pic.png\n", "", "", "3 0 1 2\n")
+    assert raw.dropped == ("the picture “my pic.png”",)
+
+
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian"])
+def test_lists_of_vertices_are_refused_as_such(tmp_path: Path, form: str) -> None:
+    text = header(form, extra="property list uchar int friends\n") + "end_header\n"
+    body = "0 0 0 0\n" * 6 if form == "ascii" else "\0" * 25 * 6
+    message = refusal(tmp_path / "x.ply", text + body + "3 0 1 2\n" * 3, "syntax")
+    assert "vertices with list properties cannot be read" in message

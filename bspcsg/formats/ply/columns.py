@@ -106,7 +106,10 @@ def lists_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]:
 
 def attributes_of(columns: Mapping[str, Values]) -> dict[str, Values]:
     """Return the attributes that columns of vertices or faces are."""
-    left = {_ALIASES.get(name, name): values for name, values in columns.items()}
+    left: dict[str, Values] = {}
+    for name, values in columns.items():
+        usual = _ALIASES.get(name, name)
+        left[name if usual in left or usual in columns else usual] = values
     found: dict[str, Values] = {}
     for name, known in _KNOWN.items():
         wanted = [one for one in known if one in left or one != "alpha"]
@@ -131,12 +134,31 @@ def _numbered(columns: Mapping[str, Values]) -> dict[str, list[str]]:
     }
 
 
-def corners_of(lists: Mapping[str, Values]) -> dict[str, Values]:
-    """Return the attributes of corners that lists on triangles are."""
+def corners_of(lists: Mapping[str, Values], count: int) -> dict[str, Values]:
+    """Return the values at the corners of polygons, one after another, that lists on them are.
+
+    Parameters
+    ----------
+    lists : dict of str to (p, n) array
+    count : int
+        The number of corners of every polygon.
+    """
     found = {}
     for name, values in lists.items():
-        if values.ndim == 2 and values.shape[1] % 3 == 0:
-            width = values.shape[1] // 3
-            shape = (len(values), 3) if width == 1 else (len(values), 3, width)
+        width, rest = divmod(values.shape[1], count)
+        if width and not rest:
+            shape = (-1,) if width == 1 else (-1, width)
             found["uv" if name == _TEXCOORD else name] = values.reshape(shape)
     return found
+
+
+def names_in(attributes: Attributes | None) -> dict[str, set[str]]:
+    """Return the names of columns and lists, by the elements that have them, that are kept."""
+    if attributes is None:
+        return {}
+    vertex = {name for name, _ in columns_of(attributes.vertex)}
+    face = {name for name, _ in (*columns_of(attributes.face), *lists_of(attributes.corner))}
+    return {
+        element: names | {other for other, usual in _ALIASES.items() if usual in names}
+        for element, names in (("vertex", vertex), ("face", face))
+    }

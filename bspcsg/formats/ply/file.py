@@ -15,12 +15,14 @@ from ..blocks import OF_FILE, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, quoted, whole
-from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of
+from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of, names_in
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
 
 #: Both names of the list are in use.
 _FACE_LISTS = ("vertex_indices", "vertex_index")
+
+_LISTS_OF_VERTICES = "vertices with list properties cannot be read."
 
 
 @dataclass
@@ -57,7 +59,7 @@ def read(source: Source) -> RawMesh:
         hint = " Its triangle strips cannot be read; save it with faces." if strips else ""
         raise source.error(f"this PLY has no face lists.{hint}", line=header.lines)
     faces, said = _said(found, found.polygons, found.vertices, found.polygon_error)
-    dropped = (*_more_than_a_shape(header, found), *found.polygons.dropped)
+    dropped = (*_more_than_a_shape(header, said), *found.polygons.dropped)
     return RawMesh(found.vertices, faces, "", rest, dropped=dropped, attributes=said)
 
 
@@ -74,7 +76,9 @@ def _said(
     faces, owners = polygons.corners[positions], polygons.owners(positions)
     lists = {name: values for name, values in found.face_columns.items() if values.ndim == 2}
     single = {name: values for name, values in found.face_columns.items() if values.ndim == 1}
-    corner = corners_of(lists) if (polygons.counts == 3).all() else {}
+    count = int(polygons.counts.max(initial=3))
+    lists = lists if (polygons.counts == count).all() else {}
+    corner = {name: values[positions] for name, values in corners_of(lists, count).items()}
     face = {name: values[owners] for name, values in attributes_of(single).items()}
     vertex = attributes_of(found.vertex_columns)
     vertex, corner, face = _apart(vertex, corner, face)
@@ -89,10 +93,10 @@ def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
         taken.update(kind)
 
 
-def _more_than_a_shape(header: Header, found: _Found) -> tuple[str, ...]:
+def _more_than_a_shape(header: Header, said: Attributes | None) -> tuple[str, ...]:
     """Return which elements and properties say something besides the shape, and are not kept."""
-    columns = {"vertex": found.vertex_columns, "face": found.face_columns}
-    told = []
+    columns = names_in(said)
+    told = [f"the picture “{name}”" for name in header.pictures]
     for element in header.elements:
         shape = {"vertex": ("x", "y", "z"), "face": _FACE_LISTS}.get(element.name)
         kept = (*(shape or ()), *columns.get(element.name, ()))
@@ -147,7 +151,7 @@ def _text_vertices(
     axes: tuple[int, int, int],
 ) -> FloatArray:
     if element.has_lists:
-        raise source.error("vertices with list properties cannot be read.", line=block[0][0])
+        raise source.error(_LISTS_OF_VERTICES, line=block[0][0] if block else None)
     x, y, z = axes
     width = len(element.properties)
     for number, words in block:
@@ -264,6 +268,8 @@ def _read_binary(
         if not element.has_lists:
             offset = _read_records(source, order, element, start, found)
             continue
+        if element.name == "vertex" and _axes(element):
+            raise source.error(_LISTS_OF_VERTICES, line=header.lines)
         column = _face_column(source, header, element)
         block = read_uniform(source, order, element, start, column)
         if block is None:

@@ -71,12 +71,15 @@ class Header:
         Bytes before the data.
     lines : int
         Lines before the data.
+    pictures : tuple of str
+        The files of pictures that programs name in comments.
     """
 
     order: Order | None
     elements: list[Element]
     end: int
     lines: int
+    pictures: tuple[str, ...] = ()
 
 
 def read_header(source: Source) -> Header:
@@ -89,6 +92,7 @@ def read_header(source: Source) -> Header:
     """
     form: str | None = None
     elements: list[Element] = []
+    pictures: list[str] = []
     end = number = 0
     while True:
         line, end = _line(source, end, number)
@@ -106,11 +110,13 @@ def read_header(source: Source) -> Header:
             elements.append(_element(source, number, words))
         elif key == "property" and elements:
             elements[-1].properties.append(_property(source, number, words))
+        elif words[1:2] == ["TextureFile"]:
+            pictures.append(" ".join(words[2:]))
         elif key not in ("comment", "obj_info"):
             raise source.error(f"expected a header line, found {quoted(line)}.", line=number)
     if form is None or form not in _FORMS:
         raise source.error(f"the header names no known form, but “{form}”.", line=number)
-    return Header(_FORMS[form], elements, end, number)
+    return Header(_FORMS[form], elements, end, number, tuple(pictures))
 
 
 def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
