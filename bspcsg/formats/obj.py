@@ -16,7 +16,7 @@ from ..mesh.mesh import Mesh
 from . import mtl
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
-from .said import chosen, is_color, said_of
+from .said import as_floats, chosen, is_color, said_of
 from .source import Source, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
@@ -171,7 +171,7 @@ def _collected(source: Source) -> _Found:
         elif key == b"f":
             found.polygons.append(_references(source, number, words, len(found.rows)))
             found.face_lines.append(number)
-            if len(words) > 1 and b"/" in words[1]:
+            if b"/" in b"".join(words):
                 known = len(found.textures), len(found.normals)
                 parts = [word.split(b"/") for word in words[1:]]
                 rows = [(_row(each, 1, known[0]), _row(each, 2, known[1])) for each in parts]
@@ -279,11 +279,13 @@ def kept(said: Attributes) -> Attributes:
         if values is given and is_named:
             return np.array([names[one] for one in kinds.tolist()])[numbers]
         if kind == "vertex" and is_color(name, values, depth) and values.shape[1:] == (3,):
-            scale = 1.0 if values.dtype.kind == "f" else 1 / np.iinfo(values.dtype).max
-            return values.astype(np.float64) * scale
+            return as_floats(values)
         width = _CORNERS.get(name)
         if kind != "face" and values.dtype.kind == "f" and values.shape[depth:] == (width,):
-            return values.astype(np.float64)
+            # A corner has a row of numbers or none.
+            is_known = ~np.isnan(values).any(axis=-1, keepdims=True)
+            rows = np.where(is_known, values, np.nan).astype(np.float64)
+            return rows if is_known.any() else None
         return None
 
     held = chosen(said, keep)

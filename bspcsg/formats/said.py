@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .._types import FloatArray
 from ..attributes.attributes import KINDS, Attributes, Kind, Values
 from ..errors import Finding
 from ..mesh.mesh import Mesh
@@ -65,11 +66,17 @@ def is_color(name: str, values: Values, depth: int) -> bool:
 
 
 def as_bytes(colors: Values) -> npt.NDArray[np.uint8]:
-    """Return colours in bytes; floats are from 0 to 1, and NaN is white."""
+    """Return colours in bytes, as `as_floats` has them; those beyond 0 and 1 are moved there."""
     if colors.dtype == np.uint8:
         return colors
-    if colors.dtype.kind == "u":
-        return np.clip(colors, 0, _BYTE).astype(np.uint8)
-    scaled: Any = np.nan_to_num(colors, nan=1.0) * _BYTE
-    rounded: npt.NDArray[np.uint8] = np.rint(np.clip(scaled, 0, _BYTE)).astype(np.uint8)
+    scaled: Any = np.clip(as_floats(colors), 0, 1) * _BYTE
+    rounded: npt.NDArray[np.uint8] = np.rint(scaled).astype(np.uint8)
     return rounded
+
+
+def as_floats(colors: Values) -> FloatArray:
+    """Return colours as floats: whole numbers are parts of their type's largest, NaN is white."""
+    numbers = colors.astype(np.float64)
+    if colors.dtype.kind == "u":
+        return numbers * (1 / np.iinfo(colors.dtype).max)
+    return np.where(np.isnan(numbers), 1.0, numbers)

@@ -1,6 +1,7 @@
 """Attributes in files: every format with every kind that it can hold, and what it cannot."""
 
 import io
+import math
 import re
 import zipfile
 from dataclasses import replace
@@ -136,6 +137,52 @@ def test_float_colours_of_vertices_are_those_of_obj(tmp_path: Path) -> None:
     colors = RNG.uniform(size=(8, 3))
     b.Solid(mesh.vertices, mesh.faces, vertex_attributes={"color": colors}).save(tmp_path / "x.obj")
     assert np.array_equal(b.load(tmp_path / "x.obj").to_mesh().vertex_attributes["color"], colors)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".3mf", ".glb", ".off"])
+def test_colours_of_sixteen_bits_are_the_same_in_any_format(tmp_path: Path, suffix: str) -> None:
+    mesh = b.cube(2).to_mesh()
+    colors: dict[str, Any] = {"color": np.tile(np.array([65535, 32768, 255], np.uint16), (8, 1))}
+    b.Solid(mesh.vertices, mesh.faces, vertex_attributes=colors).save(tmp_path / f"x{suffix}")
+    told = of(read(tmp_path / f"x{suffix}"), "color")[..., :3].reshape(-1, 3)
+    scale = 1 if told.dtype.kind == "f" else 255
+    assert np.allclose(told / scale, [1, 0.5, 0], atol=0.005)
+
+
+def test_vertices_without_a_colour_are_white_in_an_obj(tmp_path: Path) -> None:
+    mesh = b.cube(2).to_mesh()
+    colors: dict[str, Any] = {"color": np.full((8, 3), 0.5)}
+    solid = b.Solid(mesh.vertices, mesh.faces, vertex_attributes=colors)
+    (solid | b.cube(2).translate(5, 0, 0)).save(tmp_path / "x.obj")
+    assert "nan" not in (tmp_path / "x.obj").read_text()
+    told = of(read(tmp_path / "x.obj"), "color").reshape(-1, 3)
+    assert {tuple(row) for row in told.tolist()} == {(0.5,) * 3, (1.0,) * 3}
+
+
+def test_a_corner_of_half_a_place_has_none_in_an_obj(tmp_path: Path) -> None:
+    mesh = b.cube(2).to_mesh()
+    places = RNG.uniform(size=(12, 3, 2))
+    places[0, 0, 1] = math.nan
+    b.Solid(mesh.vertices, mesh.faces, corner_attributes={"uv": places}).save(tmp_path / "x.obj")
+    places[0, 0] = math.nan
+    assert np.array_equal(of(read(tmp_path / "x.obj"), "uv"), places, equal_nan=True)
+
+
+def test_places_that_no_corner_has_are_left_out_of_an_obj(tmp_path: Path) -> None:
+    mesh = b.cube(2).to_mesh()
+    given: dict[str, Any] = {"uv": np.full((12, 3, 2), math.nan)}
+    findings = b.save(
+        b.Solid(mesh.vertices, mesh.faces, corner_attributes=given), tmp_path / "x.obj"
+    )
+    assert [one.code for one in findings] == ["attributes_left_out"]
+
+
+@pytest.mark.parametrize("kind", [np.float16, np.float32, np.float64, np.longdouble])
+def test_floats_of_any_width_go_to_ply(tmp_path: Path, kind: Any) -> None:
+    mesh = b.cube(2).to_mesh()
+    given: dict[str, Any] = {"q": np.arange(8).astype(kind) / 4}
+    b.Solid(mesh.vertices, mesh.faces, vertex_attributes=given).save(tmp_path / "x.ply")
+    assert np.array_equal(of(read(tmp_path / "x.ply"), "q"), given["q"][mesh.faces])
 
 
 @pytest.mark.parametrize("suffix", [".ply", ".obj", ".glb", ".3mf", ".off"])

@@ -59,6 +59,12 @@ def test_negative_references_to_texture_and_normal_count_from_where_they_stand(
     np.testing.assert_array_equal(corner["normal"][:, 0, 0], [0, 5])
 
 
+def test_the_first_corner_may_name_no_texture(tmp_path: Path) -> None:
+    raw = read_text(tmp_path / "x.obj", f"{SQUARE}vt 7 8\nf 1 2/1 3/1\n")
+    uv = held(raw.attributes, "said").corner["uv"]
+    np.testing.assert_array_equal(uv, [[[math.nan] * 2, [7, 8], [7, 8]]])
+
+
 def test_colours_and_weights_are_passed_by(tmp_path: Path) -> None:
     text = "v 0 0 0 1\nv 1 0 0 .5 .5 .5\nv 1 1 0 .1 .2 .3 1\nf 1 2 3\n"
     assert read_text(tmp_path / "x.obj", text).vertices.shape == (3, 3)

@@ -75,7 +75,8 @@ def _of_known_type(values: Values) -> Values | None:
     if values.dtype.kind == "b":
         return values.astype(np.uint8)
     if values.dtype.kind == "f":
-        return values.astype(np.float32) if values.dtype.itemsize < 4 else values
+        size = min(max(values.dtype.itemsize, 4), 8)
+        return values.astype(f"f{size}", copy=False)
     if values.dtype.kind not in "iu":
         return None
     if values.dtype.itemsize < 8:
