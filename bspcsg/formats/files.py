@@ -16,7 +16,7 @@ from ..parameters import file_path, of_kind, shown, text_value, truth_value
 from . import single
 from .atomic import refuse_target, write_file
 from .proof import prove, prove_with_attributes
-from .raw import RawMesh, empty_set
+from .raw import RawMesh, empty_set, says_empty_set
 from .registry import FORMATS, Form, Format
 from .said import left_out, said_of, saying
 from .source import Source, whole_content
@@ -185,7 +185,8 @@ def write(
     ------
     FormatError
         If the format is unknown, cannot hold the coordinates, or the file cannot be written; code
-        ``"write_mismatch"`` if what was written reads back as another mesh.
+        ``"write_mismatch"`` if what was written reads back as another mesh, ``"empty"`` if there
+        are no vertices for an OBJ.
     MissingPartError
         If the format needs a library that is not installed.
     """
@@ -283,5 +284,8 @@ def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
     if len(mesh.faces) and not 0 <= mesh.faces.min() <= mesh.faces.max() < count:
         message = f"{name}: a triangle names a vertex that does not exist."
         raise FormatError(message, "index_out_of_range")
+    if form.needs_vertices and not count and not says_empty_set(mesh):
+        message = f"{name}: there are no vertices to write, without which this format is not read."
+        raise FormatError(f"{message} An empty Solid or Mesh can be written.", "empty")
     if form.beyond is not None and (reason := form.beyond(mesh)):
         raise FormatError(f"{name}: {reason}", "too_large")

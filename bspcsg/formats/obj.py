@@ -269,23 +269,19 @@ def kept(said: Attributes) -> Attributes:
 
     Colours of vertices and materials of faces; texture coordinates and normals of corners.
     """
-    given = said.face.get("material")
-    is_named = given is not None and given.dtype.kind == "U" and given.ndim == 1
-    kinds, numbers = np.unique(given if is_named else np.array([""]), return_inverse=True)
-    names = _held_names({*kinds.tolist(), *said.materials})
+    given = _named_materials(said)
+    names = _held_names({*np.unique(given).tolist(), *said.materials})
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         depth = 2 if kind == "corner" else 1
-        if values is given and is_named:
+        if values is given:
+            kinds, numbers = np.unique(values, return_inverse=True)
             return np.array([names[one] for one in kinds.tolist()])[numbers]
         if kind == "vertex" and is_color(name, values, depth) and values.shape[1:] == (3,):
             return as_floats(values)
         width = _CORNERS.get(name)
         if kind != "face" and values.dtype.kind == "f" and values.shape[depth:] == (width,):
-            # A corner has a row of numbers or none.
-            is_known = ~np.isnan(values).any(axis=-1, keepdims=True)
-            rows = np.where(is_known, values, np.nan).astype(np.float64)
-            return rows if is_known.any() else None
+            return _whole_rows(values)
         return None
 
     held = chosen(said, keep)
@@ -293,6 +289,21 @@ def kept(said: Attributes) -> Attributes:
     named = {names[name]: material for name, material in said.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
+
+
+def _named_materials(said: Attributes) -> Values:
+    """Return the name of each face's material; none if faces have no names."""
+    names = said.face.get("material")
+    if names is not None and names.dtype.kind == "U" and names.ndim == 1:
+        return names
+    return np.array([], dtype=str)
+
+
+def _whole_rows(values: Values) -> Values | None:
+    """Return the rows of known numbers, and NaN for the others; None if no row is known."""
+    is_known = ~np.isnan(values).any(axis=-1, keepdims=True)
+    rows: Values = np.where(is_known, values, np.nan).astype(np.float64)
+    return rows if is_known.any() else None
 
 
 def _held_names(names: set[str]) -> dict[str, str]:

@@ -45,6 +45,8 @@ class Form:
     beside : callable, optional
         Returns what a file begins with to name files beside it, and those, from the mesh and the
         stem of the file.
+    needs_vertices : bool
+        True if a file without vertices is read only as the empty set.
     """
 
     encode: Encoder
@@ -56,6 +58,7 @@ class Form:
     keeps: Keeper | None = None
     beyond: Limit | None = None
     beside: Companions | None = None
+    needs_vertices: bool = False
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,12 @@ def _obj() -> Format:
     from .held import plain
 
     text = Form(
-        obj.text, plain.obj, obj.called, keeps=lambda said, _: obj.kept(said), beside=obj.beside
+        obj.text,
+        plain.obj,
+        obj.called,
+        keeps=lambda said, _: obj.kept(said),
+        beside=obj.beside,
+        needs_vertices=True,
     )
     return Format(obj.read, text)
 

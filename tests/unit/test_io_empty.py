@@ -46,6 +46,17 @@ def test_a_mesh_that_lost_its_faces_is_not_the_empty_set(tmp_path: Path, suffix:
     assert caught.value.code == "empty_mesh"
 
 
+def test_an_obj_of_nothing_is_not_written(tmp_path: Path) -> None:
+    path = tmp_path / "x.obj"
+    nothing = RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
+    assembly = b.Assembly("a", [b.Assembly("part", b.Solid.empty())])
+    with pytest.raises(b.FormatError) as of_mesh:
+        write(nothing, path)
+    with pytest.raises(b.FormatError) as of_assembly:
+        assembly.save(path)
+    assert of_mesh.value.code == of_assembly.value.code == "empty" and not path.exists()
+
+
 def test_meshes_of_other_libraries() -> None:
     manifold3d, trimesh = pytest.importorskip("manifold3d"), pytest.importorskip("trimesh")
     meshes: list[Any] = [trimesh.Trimesh(), manifold3d.Manifold(), ([], [])]
