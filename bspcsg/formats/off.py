@@ -7,7 +7,7 @@ from itertools import repeat
 import numpy as np
 
 from ..attributes.attributes import Attributes, Kind, Values
-from ..errors import Finding
+from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
@@ -29,11 +29,50 @@ def read(source: Source) -> RawMesh:
         line.
     """
     keyword, lines = _body(source)
-    vertex_count, face_count, lines = _counts(source, lines)
+    vertex_count, face_count, rest = _counts(source, lines)
+    try:
+        return _mesh(source, keyword, vertex_count, face_count, rest)
+    except FormatError:
+        number, words = lines[0]
+        spread = _spread(vertex_count, face_count, [(number, words[3:]), *rest])
+        # Its kin say more of a vertex than its place.
+        if spread is None or (keyword.isalpha() and keyword != b"OFF"):
+            raise
+        return _mesh(source, keyword, vertex_count, face_count, spread)
+
+
+def _spread(vertex_count: int, face_count: int, lines: list[_Line]) -> list[_Line] | None:
+    """Return a line for each vertex and face if the file has their numbers, but on other lines.
+
+    A colour would end by its line: where there are more numbers, nothing is returned.
+    """
+    # Where there are as many lines as there should be, one of them is wrong.
+    is_spread = sum(bool(words) for _, words in lines) != vertex_count + face_count
+    if not is_spread or sum(len(words) for _, words in lines) < 3 * vertex_count + face_count:
+        return None
+    words = [(number, word) for number, line in lines for word in line]
+    found: list[_Line] = []
+    at = 0
+    while len(found) < vertex_count + face_count:
+        try:
+            length = 3 if len(found) < vertex_count else 1 + whole(words[at][1])
+        except (ValueError, IndexError):
+            return None
+        row = words[at : at + length]
+        if not 1 <= length == len(row):
+            return None
+        found.append((row[0][0], [word for _, word in row]))
+        at += length
+    return found if at == len(words) else None
+
+
+def _mesh(
+    source: Source, keyword: bytes, vertex_count: int, face_count: int, lines: list[_Line]
+) -> RawMesh:
     if vertex_count + face_count > len(lines):
         message = (
             f"the file ends after {len(lines)} lines of data, but its header promises"
-            f" {vertex_count} vertices and {face_count} faces."
+            f" {vertex_count} vertices and {face_count} faces, on a line each."
         )
         raise source.error(message, "truncated", line=lines[-1][0] if lines else 1)
     points, polygons = lines[:vertex_count], lines[vertex_count : vertex_count + face_count]

@@ -80,3 +80,19 @@ def test_lines_after_the_end_are_reported(tmp_path: Path) -> None:
 
 def test_no_faces_is_a_mesh_of_none(tmp_path: Path) -> None:
     assert len(read_text(tmp_path / "x.off", "OFF\n0 0 0\n").faces) == 0
+
+
+@pytest.mark.parametrize("between", [" ", "\n", "\n\n# x\n"])
+@pytest.mark.parametrize("head", ["OFF 6 1 0", "OFF\n6 1 0", "6 1 0"])
+def test_numbers_may_stand_on_any_lines(tmp_path: Path, head: str, between: str) -> None:
+    raw = read_text(tmp_path / "x.off", f"{head}{between}{between.join(BODY.split())}\n")
+    assert (len(raw.faces), signed_area(raw), raw.findings) == (4, 3, ())
+
+
+@pytest.mark.parametrize("body", [BODY + "7", BODY[:-2], BODY.replace("6 5", "-6 5")])
+def test_other_numbers_than_the_header_promises_are_refused(tmp_path: Path, body: str) -> None:
+    refusal(tmp_path / "x.off", f"OFF\n6 1 0\n{' '.join(body.split())}\n", "truncated")
+
+
+def test_kin_need_a_line_for_each_vertex(tmp_path: Path) -> None:
+    refusal(tmp_path / "x.off", f"COFF\n6 1 0\n{' '.join(BODY.split())}\n", "truncated")
