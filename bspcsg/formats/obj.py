@@ -31,6 +31,10 @@ _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 #: Statements after which names follow.
 _NAMING = frozenset({b"o", b"g", b"usemtl", b"mtllib"})
 
+#: Statements of one name, and those that follow them: a name may end in a backslash, as paths do.
+_NAMED = frozenset({b"o", b"usemtl", b"mtllib"})
+_FOLLOWING = frozenset({*_NAMING, b"v", b"vt", b"vn", b"f", b"s"})
+
 
 @dataclass
 class _Found:
@@ -212,10 +216,14 @@ def _objects(
 def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
     """Yield number and words of each line; a line that ends in a backslash goes on."""
     held: list[bytes] = []
-    start = 0
+    start, is_in_word = 0, False
     for number, words in source.text_lines(b"#", _NAMING):
+        if len(held) > 1 and held[0] in _NAMED and is_in_word and words[0] in _FOLLOWING:
+            yield start, [*held[:-1], held[-1] + b"\\"]
+            held = []
         start = start if held else number
         if words[-1].endswith(b"\\"):
+            is_in_word = words[-1] != b"\\"
             held += [*words[:-1], *filter(None, [words[-1][:-1]])]
             continue
         yield start, held + words

@@ -40,6 +40,15 @@ def test_references(tmp_path: Path, face: str) -> None:
     assert raw.name == "thing"
 
 
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [("o C:\\tmp\\\n", "C:\\tmp\\"), ("o a\\\nb\n", "a b"), ("o a \\\nv\n", "a v")],
+)
+def test_names_may_end_in_a_backslash(tmp_path: Path, line: str, name: str) -> None:
+    raw = read_text(tmp_path / "x.obj", f"{line}{SQUARE}f 1 2 3\n")
+    assert (raw.name, len(raw.vertices)) == (name, 4)
+
+
 def test_negative_references_count_from_where_they_stand(tmp_path: Path) -> None:
     triangle = "v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nf -3 -2 -1\n"
     raw = read_text(tmp_path / "x.obj", triangle.format(0) + triangle.format(1))
