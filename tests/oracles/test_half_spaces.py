@@ -322,3 +322,15 @@ def test_planes_of_the_command_line(
     assert code == 0 and "note: box.ply: the plane" in said and "moved by at most 1.000e-11" in said
     code, _, said = ran(capsys, "slice", "box.ply", "-o", "x.svg", "--z", "0.12345678901")
     assert code == 0 and "note: box.ply: the plane" in said and "moved by at most 1.000e-11" in said
+
+
+def test_halves_of_a_step_far_out() -> None:
+    # Exactly 4503599629882812.5 steps, more than 2^52.
+    far = 4503599.6298828125
+    vertices, faces = (
+        [(0, 0, 0), (far, 0, 0), (0, 1, 0), (0, 0, 1)],
+        [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+    )
+    solid = b.Solid(vertices, faces, pitch=-9)
+    assert solid.classify([(far, 0, 0)]).tolist() == [0]
+    assert b.half_space((1, 0, 0), far).classify([(far, 0, 0)]).tolist() == [0]

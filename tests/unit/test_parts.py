@@ -4,6 +4,7 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
+import numpy as np
 import pytest
 
 import bspcsg as b
@@ -136,3 +137,23 @@ def test_sides_make_the_whole(normal: tuple[float, float, float]) -> None:
 def test_unbounded_solids_have_no_parts() -> None:
     with pytest.raises(b.UnboundedError):
         connected_parts(~b.cube(1))
+
+
+def cone(sides: int) -> b.Solid:
+    """Return a cone whose apex and the middle of whose base are corners of all its faces."""
+    turns = np.arange(sides) * 2 * np.pi / sides
+    rim = np.stack([10 * np.cos(turns), 10 * np.sin(turns), 0 * turns], axis=1)
+    near = np.arange(sides)
+    far = (near + 1) % sides
+    base = np.stack([0 * near, 2 + far, 2 + near], axis=1)
+    mantle = np.stack([0 * near + 1, 2 + near, 2 + far], axis=1)
+    return b.Solid(np.concatenate([[[0, 0, 0], [0, 0, 10]], rim]), np.concatenate([base, mantle]))
+
+
+def test_faces_around_a_corner_cost_each_alike() -> None:
+    times = {}
+    for sides in (4_000, 16_000):
+        whole = cone(sides)
+        whole.to_mesh()
+        times[sides] = seconds(partial(connected_parts, whole), 3)
+    assert times[16_000] < 8 * times[4_000]

@@ -86,3 +86,7 @@ def test_many_jobs_through_a_forked_pool(tmp_path: Path) -> None:
 def test_small_operations_leave_no_memory_behind(tmp_path: Path) -> None:
     grown, _ = ran("memory", tmp_path, 850)
     assert float(grown) < 20
+
+
+def test_many_symmetric_differences_need_no_deep_stack(tmp_path: Path) -> None:
+    ran("stack", tmp_path)

@@ -236,7 +236,7 @@ impl<const N: usize> Int<N> {
     #[inline]
     pub fn rem_u61(&self, p: u64) -> u64 {
         let top = self.limbs[N - 1].cast_signed();
-        let lead = modular::reduce(u128::from(top.unsigned_abs()), p);
+        let lead = modular::reduce_mod(u128::from(top.unsigned_abs()), p);
         let mut residue = if top < 0 && lead != 0 { p - lead } else { lead };
         for &limb in self.limbs[..N - 1].iter().rev() {
             residue = modular::push_limb(residue, limb, p);

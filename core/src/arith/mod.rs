@@ -20,7 +20,7 @@ mod sum;
 pub use filtered::Filtered;
 pub use gcd::{gcd, gcd_u128};
 pub use int::Int;
-pub use modular::{inv_mod, mul_mod, P1, P2};
+pub use modular::{inv_mod, mul_mod, reduce_mod, P1, P2};
 pub use ratio::ratio_to_f64;
 pub use round::mantissa_and_exponent;
 pub use sign::Sign;

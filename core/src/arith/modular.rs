@@ -20,7 +20,7 @@ const MAX_EXCESS: u64 = 1 << 16;
 /// The product of two residues modulo `p`, which is [`P1`] or [`P2`].
 #[inline]
 pub const fn mul_mod(a: u64, b: u64, p: u64) -> u64 {
-    reduce((a as u128).wrapping_mul(b as u128), p)
+    reduce_mod((a as u128).wrapping_mul(b as u128), p)
 }
 
 /// The inverse of a residue modulo the prime `p`; 0 for 0.
@@ -49,12 +49,12 @@ pub fn inv_mod(a: u64, p: u64) -> u64 {
 pub(super) const fn push_limb(residue: u64, limb: u64, p: u64) -> u64 {
     let limb_base = excess(p) << 3;
     let wide = (residue as u128).wrapping_mul(limb_base as u128);
-    reduce(wide.wrapping_add(limb as u128), p)
+    reduce_mod(wide.wrapping_add(limb as u128), p)
 }
 
-/// The residue of any 128-bit number.
+/// The residue of any 128-bit number modulo `p`, which is [`P1`] or [`P2`].
 #[inline]
-pub(super) const fn reduce(number: u128, p: u64) -> u64 {
+pub const fn reduce_mod(number: u128, p: u64) -> u64 {
     let once = fold(number, excess(p));
     let twice = low_limb(fold(once, excess(p)));
     if twice >= p {

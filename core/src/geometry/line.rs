@@ -1,104 +1,237 @@
 //! Names for lines that do not depend on which planes or edges they were made from.
 
+use num_bigint::BigInt;
+use num_integer::Integer;
 use smallvec::SmallVec;
 
 use super::axes::each_axis;
 use super::plane::{normal, Lattice, Plane};
-use super::residue::{mul_p1, reduce_p1, residue};
-use crate::arith::{inv_mod, P1};
+use super::residue::{mul, reduce, residue};
+use super::unbounded::big;
+use crate::arith::{inv_mod, P1, P2};
 
-/// Plücker coordinates of a line up to scale, modulo a prime.
+/// Plücker coordinates of a line up to scale, modulo two primes.
 ///
-/// Equal lines have equal keys; two unequal lines share one by chance 2^-244 (four degrees of
-/// freedom, 61 bits each).
+/// Equal lines have equal keys.
+///
+/// # Bits
+/// Two lines through lattice points have the same key only if they are the same: of primitive
+/// directions d and e below 2^54, d × e is below 2^109, and so is (p − q) × d for points p and q of
+/// parallel ones; P1·P2 divides neither but if it is zero. Two other lines share one by
+/// chance 2^-488 (four degrees of freedom, 122 bits each).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct LineKey([u64; 6]);
+pub struct LineKey {
+    first: [u64; 6],
+    second: [u64; 6],
+}
 
-/// Plücker coordinates of a line modulo the prime, at any scale.
+/// A line, modulo both primes.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
+    first: Pluecker<P1>,
+    second: Pluecker<P2>,
+}
+
+/// Plücker coordinates of a line modulo a prime, at any scale; not all are zero.
+#[derive(Clone, Copy, Debug)]
+struct Pluecker<const P: u64> {
     direction: [u64; 3],
     moment: [u64; 3],
 }
 
-/// A plane's coefficients modulo the prime.
-#[derive(Clone, Copy, Debug)]
+/// A plane, modulo both primes.
+#[derive(Clone, Debug)]
 pub struct PlaneResidues {
+    first: Coefficients<P1>,
+    second: Coefficients<P2>,
+    given: Given,
+}
+
+/// A plane's coefficients modulo a prime.
+#[derive(Clone, Copy, Debug)]
+struct Coefficients<const P: u64> {
     normal: [u64; 3],
     offset: u64,
 }
 
+/// A plane as it was given.
+#[derive(Clone, Debug)]
+enum Given {
+    Corners([Lattice; 3]),
+    Plane(Plane),
+}
+
+impl<const P: u64> Coefficients<P> {
+    fn through(normal: &[i128; 3], on: &Lattice) -> Self {
+        let normal = normal.map(residue::<P>);
+        let terms = each_axis(|i| {
+            let negative = sub::<P>(0, normal[i]);
+            u128::from(negative) * u128::from(residue::<P>(on[i].into()))
+        });
+        Self {
+            normal,
+            offset: reduce::<P>(terms.iter().sum()),
+        }
+    }
+
+    fn of(plane: &Plane) -> Self {
+        let offset = plane.offset();
+        let short = offset.to_i128().map(residue::<P>);
+        Self {
+            normal: plane.normal().map(residue::<P>),
+            offset: short.unwrap_or_else(|| offset.rem_u61(P)),
+        }
+    }
+}
+
 impl PlaneResidues {
     /// Those of a multiple of the plane through three lattice points.
-    pub fn through([a, b, c]: &[Lattice; 3]) -> Self {
-        let lattice = |c: i64| residue(c.into());
-        let [x, y, z] = normal(a, b, c).map(residue);
-        let negative = [x, y, z].map(|r| sub(0, r));
-        let first = u128::from(negative[0]) * u128::from(lattice(a[0]));
-        let second = u128::from(negative[1]) * u128::from(lattice(a[1]));
-        let third = u128::from(negative[2]) * u128::from(lattice(a[2]));
+    pub fn through(corners: &[Lattice; 3]) -> Self {
+        let [a, b, c] = corners;
+        let normal = normal(a, b, c);
         Self {
-            normal: [x, y, z],
-            offset: reduce_p1(first + second + third),
+            first: Coefficients::through(&normal, a),
+            second: Coefficients::through(&normal, a),
+            given: Given::Corners(*corners),
         }
     }
 
     /// Those of a plane.
     pub fn of(plane: &Plane) -> Self {
-        let ([x, y, z], offset) = (plane.normal(), plane.offset());
-        let short = offset.to_i128().map(residue);
         Self {
-            normal: [residue(*x), residue(*y), residue(*z)],
-            offset: short.unwrap_or_else(|| offset.rem_u61(P1)),
+            first: Coefficients::of(plane),
+            second: Coefficients::of(plane),
+            given: Given::Plane(plane.clone()),
         }
+    }
+
+    /// The coefficients of a multiple of the plane, the normal first.
+    fn exact(&self) -> [BigInt; 4] {
+        let of_plane = |plane: &Plane| {
+            let [x, y, z] = plane.normal().map(BigInt::from);
+            [x, y, z, big(plane.offset())]
+        };
+        match &self.given {
+            Given::Plane(plane) => of_plane(plane),
+            Given::Corners([a, b, c]) => {
+                let plane = Plane::through(a, b, c);
+                of_plane(&plane.expect("a face has an area"))
+            }
+        }
+    }
+}
+
+impl<const P: u64> Pluecker<P> {
+    fn of_edge(a: &Lattice, b: &Lattice) -> Self {
+        let residues = |point: &Lattice| point.map(|c| residue::<P>(c.into()));
+        let p = residues(a);
+        if let Some(direction) = unit_along(a, b) {
+            let moment = cross::<P>(&p, &direction);
+            return Self { direction, moment };
+        }
+        let q = residues(b);
+        Self {
+            direction: each_axis(|i| sub::<P>(q[i], p[i])),
+            moment: cross::<P>(&p, &q),
+        }
+    }
+
+    /// The line of two planes, or None if the prime divides all of its coordinates.
+    fn of_planes(a: &Coefficients<P>, b: &Coefficients<P>) -> Option<Self> {
+        let (n, m) = (&a.normal, &b.normal);
+        let line = Self {
+            direction: cross::<P>(n, m),
+            moment: each_axis(|i| minor::<P>(a.offset, m[i], b.offset, n[i])),
+        };
+        (line.lead() != 0).then_some(line)
+    }
+
+    /// The line with coordinates that have no common divisor.
+    fn of_exact(coordinates: &[BigInt; 6]) -> Self {
+        let prime = BigInt::from(P);
+        let small = |k: usize| {
+            coordinates[k]
+                .mod_floor(&prime)
+                .iter_u64_digits()
+                .next()
+                .unwrap_or(0)
+        };
+        Self {
+            direction: each_axis(small),
+            moment: each_axis(|i| small(3 + i)),
+        }
+    }
+
+    /// The first coordinate that is not zero.
+    fn lead(&self) -> u64 {
+        let mut all = self.direction.iter().chain(&self.moment);
+        all.find(|c| **c != 0).copied().unwrap_or(0)
+    }
+
+    /// The coordinates for the inverse of the lead.
+    fn scaled(&self, scale: u64) -> [u64; 6] {
+        let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
+        [u, v, w, x, y, z].map(|c| mul::<P>(c, scale))
+    }
+
+    /// The key's half for each of several lines, for one inversion.
+    fn all_scaled(lines: impl Iterator<Item = Self>) -> SmallVec<[[u64; 6]; 8]> {
+        let mut product = 1;
+        let before: SmallVec<[(Self, u64); 8]> = lines
+            .map(|line| {
+                let so_far = product;
+                product = mul::<P>(product, line.lead());
+                (line, so_far)
+            })
+            .collect();
+        let mut inverse = inv_mod(product, P);
+        let mut scaled: SmallVec<[[u64; 6]; 8]> = SmallVec::with_capacity(before.len());
+        for (line, so_far) in before.iter().rev() {
+            scaled.push(line.scaled(mul::<P>(inverse, *so_far)));
+            inverse = mul::<P>(inverse, line.lead());
+        }
+        scaled.reverse();
+        scaled
     }
 }
 
 impl Line {
     /// The line through two lattice points.
     pub fn of_edge(a: &Lattice, b: &Lattice) -> Self {
-        let residue = |c: i64| residue(c.into());
-        let residues = |[x, y, z]: &Lattice| [residue(*x), residue(*y), residue(*z)];
-        let p = residues(a);
-        if let Some(direction) = unit_along(a, b) {
-            let moment = cross(&p, &direction);
-            return Self { direction, moment };
-        }
-        let q = residues(b);
         Self {
-            direction: [sub(q[0], p[0]), sub(q[1], p[1]), sub(q[2], p[2])],
-            moment: cross(&p, &q),
+            first: Pluecker::of_edge(a, b),
+            second: Pluecker::of_edge(a, b),
         }
     }
 
     /// The line in which two planes meet.
     pub fn of_planes(a: &PlaneResidues, b: &PlaneResidues) -> Self {
-        let (n, m) = (&a.normal, &b.normal);
-        let moment = |i: usize| minor(a.offset, m[i], b.offset, n[i]);
-        Self {
-            direction: cross(n, m),
-            moment: [moment(0), moment(1), moment(2)],
+        let first = Pluecker::of_planes(&a.first, &b.first);
+        let second = Pluecker::of_planes(&a.second, &b.second);
+        match (first, second) {
+            (Some(first), Some(second)) => Self { first, second },
+            _ => Self::of_exact(&a.exact(), &b.exact()),
         }
     }
 
-    /// The first component of the direction that is not zero.
-    fn lead(&self) -> u64 {
-        let lead = self.direction.iter().find(|c| **c != 0);
-        lead.copied().unwrap_or(1)
-    }
-
-    /// The key, for the inverse of the lead.
-    fn scaled(&self, scale: u64) -> LineKey {
-        let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
-        let scaled = |c| mul_p1(c, scale);
-        LineKey([
-            scaled(u),
-            scaled(v),
-            scaled(w),
-            scaled(x),
-            scaled(y),
-            scaled(z),
-        ])
+    /// The line in which two planes meet, by their coefficients.
+    #[cold]
+    fn of_exact(a: &[BigInt; 4], b: &[BigInt; 4]) -> Self {
+        let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+        let all = [
+            minor(1, 2),
+            minor(2, 0),
+            minor(0, 1),
+            minor(3, 0),
+            minor(3, 1),
+            minor(3, 2),
+        ];
+        let divisor = all.iter().fold(BigInt::ZERO, |g, c| g.gcd(c));
+        let primitive = all.map(|c| c / &divisor);
+        Self {
+            first: Pluecker::of_exact(&primitive),
+            second: Pluecker::of_exact(&primitive),
+        }
     }
 }
 
@@ -118,33 +251,27 @@ impl LineKey {
 
     /// The key of a line.
     pub fn of(line: &Line) -> Self {
-        line.scaled(inv_mod(line.lead(), P1))
+        Self {
+            first: line.first.scaled(inv_mod(line.first.lead(), P1)),
+            second: line.second.scaled(inv_mod(line.second.lead(), P2)),
+        }
     }
 
-    /// The keys of several lines, for one inversion modulo the prime.
+    /// The keys of several lines, for one inversion modulo each prime.
     pub fn of_all(lines: impl Iterator<Item = Line>) -> SmallVec<[Self; 8]> {
-        let mut product = 1;
-        let before: SmallVec<[(Line, u64); 8]> = lines
-            .map(|line| {
-                let so_far = product;
-                product = mul_p1(product, line.lead());
-                (line, so_far)
-            })
-            .collect();
-        let mut inverse = inv_mod(product, P1);
-        let mut keys: SmallVec<[Self; 8]> = SmallVec::with_capacity(before.len());
-        for (line, so_far) in before.iter().rev() {
-            keys.push(line.scaled(mul_p1(inverse, *so_far)));
-            inverse = mul_p1(inverse, line.lead());
-        }
-        keys.reverse();
-        keys
+        let lines: SmallVec<[Line; 8]> = lines.collect();
+        let first = Pluecker::all_scaled(lines.iter().map(|line| line.first));
+        let second = Pluecker::all_scaled(lines.iter().map(|line| line.second));
+        let pairs = first.into_iter().zip(second);
+        pairs
+            .map(|(first, second)| Self { first, second })
+            .collect()
     }
 
     /// A number that equal keys share and most others do not, to sort by.
     pub fn mixed(&self) -> u64 {
         // Odd constants of SplitMix (Steele, Lea, Flood 2014) keep small coordinates apart.
-        let [_, v, w, x, y, z] = self.0;
+        let [_, v, w, x, y, z] = self.first;
         let first = v.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(x);
         let second = w.wrapping_mul(0xbf58_476d_1ce4_e5b9).wrapping_add(y);
         let third = first.wrapping_add(second.rotate_left(32));
@@ -156,7 +283,9 @@ impl LineKey {
 
     /// The first axis the line is not perpendicular to: points on it are ordered by this coordinate.
     pub fn axis(&self) -> usize {
-        self.0[..3].iter().position(|c| *c != 0).unwrap_or(0)
+        let mut axes = 0..3;
+        axes.find(|i| self.first[*i] != 0 || self.second[*i] != 0)
+            .unwrap_or(0)
     }
 }
 
@@ -166,22 +295,51 @@ fn unit_along(a: &Lattice, b: &Lattice) -> Option<[u64; 3]> {
     (along.iter().sum::<u64>() == 1).then_some(along)
 }
 
-fn sub(a: u64, b: u64) -> u64 {
+fn sub<const P: u64>(a: u64, b: u64) -> u64 {
     if a >= b {
         a - b
     } else {
-        a + P1 - b
+        a + P - b
     }
 }
 
 /// The difference a·d − c·b of residues, reduced once.
-fn minor(a: u64, d: u64, c: u64, b: u64) -> u64 {
-    // Residues are below P1, so that their products are below its square and nothing overflows.
-    const SQUARE: u128 = P1 as u128 * P1 as u128;
-    reduce_p1(u128::from(a) * u128::from(d) + (SQUARE - u128::from(c) * u128::from(b)))
+fn minor<const P: u64>(a: u64, d: u64, c: u64, b: u64) -> u64 {
+    // Residues are below P, so that their products are below its square and nothing overflows.
+    let square = const { P as u128 * P as u128 };
+    reduce::<P>(u128::from(a) * u128::from(d) + (square - u128::from(c) * u128::from(b)))
 }
 
-fn cross(a: &[u64; 3], b: &[u64; 3]) -> [u64; 3] {
-    let term = |i: usize, j: usize| minor(a[i], b[j], a[j], b[i]);
+fn cross<const P: u64>(a: &[u64; 3], b: &[u64; 3]) -> [u64; 3] {
+    let term = |i: usize, j: usize| minor::<P>(a[i], b[j], a[j], b[i]);
     [term(1, 2), term(2, 0), term(0, 1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arith::Int;
+
+    #[test]
+    fn parallel_edges_that_a_prime_cannot_tell_apart_have_keys_of_their_own() {
+        // (1, 2^30, 0) x (2^31, 1, 0) = (0, 0, 1 - 2^61).
+        let one = LineKey::of_edge(&[0; 3], &[1 << 31, 1, 0]);
+        let other = LineKey::of_edge(&[1, 1 << 30, 0], &[1 + (1 << 31), 1 + (1 << 30), 0]);
+        assert_eq!(one.first, other.first);
+        assert_ne!(one, other);
+    }
+
+    #[test]
+    fn a_prime_may_divide_all_coordinates_of_a_meet() {
+        // The normals (2^31, 1, 0) and (1, 2^30, 0) have the product (0, 0, 2^61 - 1).
+        let plane = |n: [i128; 3], d: i64| Plane::new(n, Int::from_i64(d)).expect("a normal");
+        let cut = LineKey::of_planes(&plane([1 << 31, 1, 0], 0), &plane([1, 1 << 30, 0], 0));
+        assert_eq!(cut, LineKey::of_edge(&[0; 3], &[0, 0, 5]));
+        assert_eq!(cut.axis(), 2);
+        // The same plane, told by points of it.
+        let [a, b] = [[0, 0, 0], [1, -(1 << 31), 0]];
+        let through = PlaneResidues::through(&[a, b, [0, 0, 7]]);
+        let beside = PlaneResidues::of(&plane([1, 1 << 30, 0], 0));
+        assert_eq!(cut, LineKey::of(&Line::of_planes(&through, &beside)));
+    }
 }

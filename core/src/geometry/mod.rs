@@ -15,6 +15,7 @@ pub mod polygon;
 mod residue;
 pub mod side;
 pub mod spaces;
+pub mod unbounded;
 pub mod vertex;
 pub mod vertices;
 pub mod winding;

@@ -1,13 +1,13 @@
-//! Residues of small integers modulo the Mersenne prime 2^61 − 1, by folding.
+//! Residues of small integers modulo the primes just below 2^61, by folding.
 
-use crate::arith::P1;
+use crate::arith::{mul_mod, reduce_mod, P1};
 
-/// The residue of a signed integer in `0..P1`.
+/// The residue of a signed integer in `0..P`, for `P` one of `P1` and `P2`.
 #[inline]
-pub fn residue(value: i128) -> u64 {
-    let r = reduce_p1(value.unsigned_abs());
+pub fn residue<const P: u64>(value: i128) -> u64 {
+    let r = reduce::<P>(value.unsigned_abs());
     if value < 0 && r != 0 {
-        P1 - r
+        P - r
     } else {
         r
     }
@@ -15,8 +15,28 @@ pub fn residue(value: i128) -> u64 {
 
 /// The residue of any 128-bit number.
 #[inline]
+pub fn reduce<const P: u64>(value: u128) -> u64 {
+    // A fold modulo the Mersenne prime multiplies nothing.
+    if P == P1 {
+        reduce_p1(value)
+    } else {
+        reduce_mod(value, P)
+    }
+}
+
+/// The product of two residues.
+#[inline]
+pub fn mul<const P: u64>(a: u64, b: u64) -> u64 {
+    if P == P1 {
+        mul_p1(a, b)
+    } else {
+        mul_mod(a, b, P)
+    }
+}
+
+#[inline]
 #[allow(clippy::cast_possible_truncation)]
-pub fn reduce_p1(value: u128) -> u64 {
+fn reduce_p1(value: u128) -> u64 {
     let low = value as u64 & P1;
     let middle = (value >> 61) as u64 & P1;
     let once = low.wrapping_add(middle).wrapping_add((value >> 122) as u64);
@@ -28,10 +48,9 @@ pub fn reduce_p1(value: u128) -> u64 {
     }
 }
 
-/// The product of two residues.
 #[inline]
 #[allow(clippy::cast_possible_truncation)]
-pub fn mul_p1(a: u64, b: u64) -> u64 {
+fn mul_p1(a: u64, b: u64) -> u64 {
     let product = u128::from(a).wrapping_mul(u128::from(b));
     // Below 2^122, so that the two halves of 61 bits are all there is.
     let sum = (product as u64 & P1).wrapping_add((product >> 61) as u64);

@@ -11,7 +11,7 @@ use super::plane::{Lattice, Plane, FILTER};
 use super::residue::residue;
 use super::side::Side;
 use crate::arith::convert::as_double;
-use crate::arith::{Filtered, Int};
+use crate::arith::{Filtered, Int, P1};
 
 /// The distance that two doubles of one coordinate may have, relative to it: twice three units in
 /// the last place of 2^-52, and room for the rounding of the question.
@@ -321,7 +321,7 @@ impl Vertex {
     /// The key shared by all representations of this point.
     pub fn key(&self) -> VertexKey {
         match &self.place {
-            Place::Lattice(p) => VertexKey(p.map(|c| residue(c.into()))),
+            Place::Lattice(p) => VertexKey(p.map(|c| residue::<P1>(c.into()))),
             _ => VertexKey(self.exact().residues()),
         }
     }

@@ -70,6 +70,28 @@ pub struct Parted {
     pub whole: Expression,
 }
 
+impl Parted {
+    /// The operands of the two others.
+    pub fn operands(&self) -> [Vec<u32>; 2] {
+        self.halves.each_ref().map(Expression::operands)
+    }
+
+    /// The entries of operands of the first, and of the second.
+    pub fn divide<T>(&self, entries: Vec<(u32, T)>) -> (Vec<(u32, T)>, Vec<(u32, T)>) {
+        let [ours, _] = self.operands();
+        let is_ours = |entry: &(u32, T)| ours.binary_search(&entry.0).is_ok();
+        entries.into_iter().partition(is_ours)
+    }
+
+    /// Return whether the second is one argument of a symmetric difference.
+    pub fn takes_one_by_one(&self) -> bool {
+        self.whole
+            .terms
+            .iter()
+            .any(|term| matches!(term, Term::Xor(_)))
+    }
+}
+
 impl Expression {
     /// An expression; every line may name earlier lines only.
     pub fn new(terms: Vec<Term>) -> Result<Self> {

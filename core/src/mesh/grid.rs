@@ -218,7 +218,7 @@ fn snap_doubtful(x: f64, power: f64, product: f64, rounded: f64) -> f64 {
     let error = x.mul_add(power, -product);
     let exact = rest + error;
     let tie_away = exact.abs() == 0.5 && (exact > 0.0) == (x > 0.0);
-    if exact.abs() > 0.5 || (tie_away && rounded.abs() < product.abs()) {
+    if exact.abs() > 0.5 || tie_away {
         rounded + exact.signum()
     } else {
         rounded
@@ -244,6 +244,19 @@ pub fn snap_point(pitch: Pitch, p: &[f64; 3]) -> Result<Lattice> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halves_go_away_from_zero_at_all_sizes() {
+        let pitch = Pitch::new(-9).expect("a pitch");
+        // Halves of a step that doubles hold exactly, below and beyond 2^52 steps.
+        for (x, steps) in [
+            (0.5f64.powi(10), 976_563),
+            (4_503_599.629_882_812_5, 4_503_599_629_882_813),
+        ] {
+            assert_eq!(pitch.snap(x).expect("on the lattice"), steps);
+            assert_eq!(pitch.snap(-x).expect("on the lattice"), -steps);
+        }
+    }
 
     #[test]
     fn a_pitch_is_between_the_powers_that_doubles_hold() {

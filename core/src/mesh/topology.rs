@@ -25,34 +25,30 @@ impl Topology {
         let outgoing = Outgoing::new(faces, vertex_count);
         let mut mates = vec![NONE; 3 * faces.len()];
         let mut irregular = Vec::new();
-        for tail in 0..vertex_count {
-            poll();
-            for &half in outgoing.of(tail) {
-                let (a, b) = ends(faces, half);
-                if a > b {
+        for tail in VertexId::all().take(vertex_count) {
+            for run in outgoing.of(tail).chunk_by(|a, b| a.head == b.head) {
+                poll();
+                let head = run[0].head;
+                if tail > head {
                     continue;
                 }
-                let twins = outgoing
-                    .of(a.place())
-                    .iter()
-                    .filter(|h| ends(faces, **h).1 == b)
-                    .count();
-                if twins > 1 {
-                    irregular.extend([a, b]);
+                if run.len() > 1 {
+                    irregular.extend([tail, head]);
                 }
-                let free = |h: &&u32| ends(faces, **h).1 == a && mates[**h as usize] == NONE;
-                if let Some(&mate) = outgoing.of(b.place()).iter().find(free) {
-                    mates[half as usize] = mate;
-                    mates[mate as usize] = half;
+                for (half, mate) in run.iter().zip(outgoing.between(head, tail)) {
+                    mates[half.number as usize] = mate.number;
+                    mates[mate.number as usize] = half.number;
                 }
             }
         }
         let mates_of = |half: u32| mates[half as usize];
-        irregular.extend((0..vertex_count).filter_map(|v| {
-            let fan = outgoing.of(v);
-            let several = fan.len() > 3 && turns(fan[0], mates_of) < fan.len();
-            several.then_some(VertexId(as_number(v)))
-        }));
+        let has_several_fans = |vertex: &VertexId| {
+            let row = outgoing.of(*vertex);
+            let first = row.iter().map(|half| half.number).min();
+            row.len() > 3 && first.is_some_and(|first| turns(first, mates_of) < row.len())
+        };
+        let all = VertexId::all().take(vertex_count);
+        irregular.extend(all.filter(has_several_fans));
         irregular.sort_unstable();
         irregular.dedup();
         Self { mates, irregular }
@@ -107,10 +103,17 @@ pub fn ends(faces: &[[VertexId; 3]], half: u32) -> (VertexId, VertexId) {
     (face[corner], face[(corner + 1) % 3])
 }
 
-/// Half-edges by their start vertex, in compressed rows.
+/// A half-edge that leaves a vertex.
+#[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Leaving {
+    head: VertexId,
+    number: u32,
+}
+
+/// Half-edges by their start vertex, in compressed rows; each row is sorted by end vertex.
 struct Outgoing {
     starts: Vec<u32>,
-    halves: Vec<u32>,
+    halves: Vec<Leaving>,
 }
 
 impl Outgoing {
@@ -123,18 +126,32 @@ impl Outgoing {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut halves = vec![0u32; 3 * faces.len()];
-        for (half, vertex) in (0u32..).zip(faces.iter().flatten()) {
+        let mut halves = vec![Leaving::default(); 3 * faces.len()];
+        for (number, vertex) in (0u32..).zip(faces.iter().flatten()) {
             poll();
             let slot = &mut next[vertex.place()];
-            halves[*slot as usize] = half;
+            let head = ends(faces, number).1;
+            halves[*slot as usize] = Leaving { head, number };
             *slot += 1;
+        }
+        for row in starts.windows(2) {
+            poll();
+            halves[row[0] as usize..row[1] as usize].sort_unstable();
         }
         Self { starts, halves }
     }
 
-    fn of(&self, vertex: usize) -> &[u32] {
-        &self.halves[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
+    fn of(&self, vertex: VertexId) -> &[Leaving] {
+        let row = &self.starts[vertex.place()..vertex.place() + 2];
+        &self.halves[row[0] as usize..row[1] as usize]
+    }
+
+    /// The half-edges from one vertex to another.
+    fn between(&self, tail: VertexId, head: VertexId) -> &[Leaving] {
+        let row = self.of(tail);
+        let first = row.partition_point(|half| half.head < head);
+        let past = row[first..].iter().take_while(|half| half.head == head);
+        &row[first..first + past.count()]
     }
 }
 

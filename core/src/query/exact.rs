@@ -1,9 +1,8 @@
-//! Exact places of a mesh's vertices, and integers without a bound on their width.
+//! Exact places of a mesh's vertices.
 
-use num_bigint::{BigInt, Sign};
+use num_bigint::BigInt;
 use num_integer::Integer;
 
-use crate::arith::Int;
 use crate::extract::mesh::{Corner, ExactMesh};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::{Homogeneous, Vertex};
@@ -40,20 +39,4 @@ pub(super) fn lowest(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt)
         return (numerator, denominator);
     }
     (numerator / &g, denominator / g)
-}
-
-/// The integer without a bound on its width.
-pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
-    let size = value.abs();
-    let digits: Vec<u32> = size
-        .limbs()
-        .iter()
-        .flat_map(|l| [*l as u32, (*l >> 32) as u32])
-        .collect();
-    let sign = if value.is_negative() {
-        Sign::Minus
-    } else {
-        Sign::Plus
-    };
-    BigInt::from_slice(sign, &digits)
 }

@@ -10,10 +10,11 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use smallvec::SmallVec;
 
-use super::exact::{big, homogeneous, lattice, lowest};
+use super::exact::{homogeneous, lattice, lowest};
 use crate::arith::{inv_mod, mul_mod, Int};
 use crate::extract::mesh::ExactMesh;
 use crate::geometry::plane::Lattice;
+use crate::geometry::unbounded::big;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, Worth};

@@ -414,22 +414,62 @@ impl<'a> Descent<'a> {
     /// The result in a cell from those of two groups of operands.
     fn grouped(&self, cell: Cell, parted: Parted, states: States, depth: u32) -> Visited {
         poll();
-        let Parted { halves, whole } = parted;
+        if parted.takes_one_by_one() {
+            return self.folded(cell, parted, states, depth);
+        }
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-        let [ours, theirs] = halves.each_ref().map(Expression::operands);
-        let is_ours = |s: &(u32, State)| ours.binary_search(&s.0).is_ok();
-        let (first, second): (States, States) = states.into_iter().partition(is_ours);
-        let [left, right] = halves;
-        let (left, right) = both_in_turn(
+        let operands = parted.operands();
+        let (first, second) = parted.divide(states);
+        let [left, right] = parted.halves;
+        let results = both_in_turn(
             worth(total),
             || self.group(cell, &left, first, depth),
             || self.group(cell, &right, second, depth),
         )?;
-        let states = vec![(0, State::Tree(left)), (1, State::Tree(right))];
+        let [ours, theirs] = &operands;
+        self.united(cell, parted.whole, results.into(), [ours, theirs])
+    }
+
+    /// The result in a cell where one operand after the other is taken, in a loop: there may be many.
+    fn folded(&self, cell: Cell, mut parted: Parted, states: States, depth: u32) -> Visited {
+        let mut first = states;
+        let mut steps = Vec::new();
+        let left = loop {
+            poll();
+            let last;
+            (first, last) = parted.divide(first);
+            let [left, right] = parted.halves;
+            steps.push((right, last, parted.whole));
+            let next = left.parted().filter(Parted::takes_one_by_one);
+            match next.filter(|_| first.len() > TOGETHER) {
+                Some(next) => parted = next,
+                None => break left,
+            }
+        };
+        let mut ours = left.operands();
+        let mut result = self.group(cell, &left, first, depth)?;
+        for (right, last, whole) in steps.into_iter().rev() {
+            let theirs = right.operands();
+            let next = self.group(cell, &right, last, depth)?;
+            result = self.united(cell, whole, [result, next], [&ours, &theirs])?;
+            ours.extend(theirs);
+        }
+        Ok(result)
+    }
+
+    /// The result in a cell from the results of two groups of operands.
+    fn united(
+        &self,
+        cell: Cell,
+        whole: Expression,
+        results: [Branch; 2],
+        operands: [&[u32]; 2],
+    ) -> Visited {
+        let states: States = (0..).zip(results.map(State::Tree)).collect();
         let pair = Self::new(self.sources, self.rule, self.share, states.len());
         let result = pair.cell(cell, Arc::new(whole), states, Round::OF_GROUPS);
         self.counters.add(&pair.counters);
-        for (group, overlaps) in [ours, theirs].iter().zip(&pair.overlaps) {
+        for (group, overlaps) in operands.iter().zip(&pair.overlaps) {
             if overlaps.load(Ordering::Relaxed) {
                 self.note_overlaps(group)?;
             }

@@ -159,6 +159,9 @@ impl<'a> Folds<'a> {
     /// The pairs of a flat part and a reflex edge in its plane that does not bound it; their boxes
     /// overlap.
     fn in_planes(&self) -> Vec<[u32; 2]> {
+        if self.reflex.is_empty() {
+            return Vec::new();
+        }
         let first = as_number(self.reflex.len());
         let mut elements: Vec<Element> = self.reflex.iter().map(ReflexEdge::element).collect();
         elements.extend(self.flats.all().map(|flat| Element {

@@ -10,11 +10,12 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::extract::assemble::assemble;
 use crate::geometry::plane::{Lattice, Plane, ShortPlane, FILTER};
 use crate::geometry::side::Side;
+use crate::geometry::unbounded::big;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
-use crate::query::exact::{big, vertex};
+use crate::query::exact::vertex;
 use crate::tree::solid::Solid;
 
 /// A bounded solid's boundary, read once for any number of sections.

@@ -1,0 +1,21 @@
+//! Integers without a bound on their width.
+
+use num_bigint::{BigInt, Sign};
+
+use crate::arith::Int;
+
+/// The integer without a bound on its width.
+pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
+    let size = value.abs();
+    let digits: Vec<u32> = size
+        .limbs()
+        .iter()
+        .flat_map(|l| [*l as u32, (*l >> 32) as u32])
+        .collect();
+    let sign = if value.is_negative() {
+        Sign::Minus
+    } else {
+        Sign::Plus
+    };
+    BigInt::from_slice(sign, &digits)
+}
