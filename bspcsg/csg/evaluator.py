@@ -190,27 +190,33 @@ class _Cache:
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the number of the node's geometry, made if it is new."""
         key = (node.name, node.arguments, children, is_part)
-        if key not in self.numbers:
-            made = self._make(node, [self.made[child] for child in children], is_part)
-            self.made.append(made)
-            self.numbers[key] = len(self.made) - 1
-        return self.numbers[key]
+        if key in self.numbers:
+            return self.numbers[key]
+        number = len(self.made)
+        try:
+            self.made.append(self._make(node, [self.made[child] for child in children], is_part))
+            self.numbers[key] = number
+        except BspcsgError as error:
+            # Another node like it is left out, too, and told at its own place.
+            self.made.append(self._nothing_for(node, error))
+        return number
 
     def _make(self, node: Node, children: list[Geometry], is_part: bool) -> Geometry:
-        try:
-            recipe = RECIPES.get(node.name)
-            if recipe is None:
-                raise unsupported(node, self.run.script)
-            made = recipe.maker(node, children, self.run)
-            if isinstance(made, Solid) and (recipe.makes_corners or (is_part and self.run.polish)):
-                made.tree  # noqa: B018  builds it, so that what is wrong is this node's error
-            return self._part(made) if is_part and self.run.polish else made
-        except BspcsgError as error:
-            placed = _placed(error, node, self.run.script)
-            if not is_left_out(error, lenient=self.run.lenient):
-                raise placed from error
-            self.run.tell(f"{placed.message} It is left out.")
-            return nothing_of(node)
+        recipe = RECIPES.get(node.name)
+        if recipe is None:
+            raise unsupported(node, self.run.script)
+        made = recipe.maker(node, children, self.run)
+        if isinstance(made, Solid) and (recipe.makes_corners or (is_part and self.run.polish)):
+            made.tree  # noqa: B018  builds it, so that what is wrong is this node's error
+        return self._part(made) if is_part and self.run.polish else made
+
+    def _nothing_for(self, node: Node, error: BspcsgError) -> Geometry:
+        """Return nothing for a node that cannot be made, and tell; raise the error if it counts."""
+        placed = _placed(error, node, self.run.script)
+        if not is_left_out(error, lenient=self.run.lenient):
+            raise placed from error
+        self.run.tell(f"{placed.message} It is left out.")
+        return nothing_of(node)
 
     def _part(self, body: Geometry) -> Geometry:
         """Return a part with its corners on the lattice asked for."""

@@ -162,11 +162,10 @@ def _standard_error() -> int:
 def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made | BspcsgError:
     sys.argv = [name, *arguments]
     sys.path.insert(0, str(Path(name).parent.absolute()))
-    variables: dict[str, Any] = {}
+    program = ModuleType("__main__")
     try:
-        with contextlib.suppress(SystemExit):
-            variables = _ran(name, defines)
-        result = _result(name, variables)
+        _run(program, name, defines)
+        result = _result(name, vars(program))
         return result if isinstance(result, BspcsgError) else _with_operation(result)
     except BspcsgError as error:
         return _located(error, name)
@@ -174,14 +173,24 @@ def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made |
         return _located(error, name)
 
 
-def _ran(name: str, defines: dict[str, Any]) -> dict[str, Any]:
-    """Run a script as the main program of this process and return its global variables."""
+def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
+    """Run a script as the main program of this process, to its end or until it exits well.
+
+    Raises
+    ------
+    FormatError
+        If it exits with a message, or with another number than 0; code ``"script_failed"``.
+    """
     code = compiled(Path(name).read_bytes(), name, defines)
-    program = ModuleType("__main__")
     vars(program).update({"__file__": name, VALUES: defines} if defines else {"__file__": name})
     sys.modules["__main__"] = program
-    exec(code, vars(program))
-    return vars(program)
+    try:
+        exec(code, vars(program))
+    except SystemExit as end:
+        if end.code not in (None, 0):
+            told = f"code {end.code}" if isinstance(end.code, int) else end.code
+            message = f"the script ended with {told}."
+            raise FormatError(message, "script_failed").with_traceback(end.__traceback__) from end
 
 
 def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
@@ -204,15 +213,15 @@ def _with_operation(result: Solid) -> _Made:
 
 def _located(error: Exception, name: str) -> BspcsgError:
     """Return the error with the line of the script in which it arose."""
-    if isinstance(error, SyntaxError):
-        line = error.lineno
+    detail = str(error)
+    if isinstance(error, SyntaxError) and error.filename == name:
+        line, detail = error.lineno, error.msg
     else:
         frames = traceback.extract_tb(error.__traceback__)
         line = next((f.lineno for f in reversed(frames) if f.filename == name), None)
     place = name if line is None else f"{name}:{line}"
     if isinstance(error, BspcsgError):
         return type(error)(f"{place}: {error.message}", error.code, error.where)
-    detail = error.msg if isinstance(error, SyntaxError) else str(error)
     message = f"{place}: {type(error).__name__}: {detail}".rstrip(": ")
     return FormatError(message, "script_failed", [] if line is None else [line])
 

@@ -134,7 +134,7 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid
     angle : float
         In degrees, above 0 and up to 360.
     segments : int
-        Sides around, at least 3 for a full turn.
+        Sides around, each of less than a half turn: at least 3 for a full one.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid
     if turn > 360:
         raise invalid_parameter(f"angle must not exceed 360, not {turn:g}.")
     full = turn == 360
-    columns = sides_around(3 if full else 1, segments, "segments") + (not full)
+    columns = sides_around(least_segments(turn), segments, "segments") + (not full)
     contours = contours_of(polygon)
     if not contours:
         return Solid.empty()
@@ -163,6 +163,11 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid
         caps = triangulate(contours)
         faces += [ends[:, 0][caps], ends[:, -1][caps[:, ::-1]]]
     return _solid(rings.vertices(directions), faces)
+
+
+def least_segments(angle: float) -> int:
+    """Return in how many parts a turn in degrees is divided at least: each is below a half turn."""
+    return int(abs(angle) // 180) + 1
 
 
 def _swept(rings: RingLayout, start: int, end: int, full: bool) -> IndexArray:

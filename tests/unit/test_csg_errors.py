@@ -160,3 +160,26 @@ def test_errors_are_one_line_that_prints_whatever_they_quote(word: str) -> None:
     with pytest.raises(b.FormatError) as caught:
         csg.loads(f"cube(-2 {word});")
     assert str(caught.value).isprintable()
+
+
+def test_true_is_not_one() -> None:
+    assert csg.parse("cube(true);") != csg.parse("cube(1);")
+    for text in ("cube(true); cube(1);", "cube(1); cube(true);"):
+        with pytest.raises(b.FormatError, match="not true"):
+            csg.loads(text)
+        with pytest.warns(csg.CsgWarning, match="not true"):
+            left = csg.loads(text, lenient=True)
+        assert left.volume == 1
+
+
+def test_each_node_that_is_left_out_is_told_at_its_place() -> None:
+    with pytest.warns(csg.CsgWarning) as told:
+        csg.loads('sphere(r = "two"); cube(1); sphere(r = "two");', lenient=True)
+    assert [str(one.message)[:9] for one in told] == ["<csg>:1:1", "<csg>:1:2"]
+
+
+def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
+    for text in ("*group() { !cube(2); } cube(5);", "*!cube(2); cube(5);"):
+        assert csg.loads(text).volume == 125
+        simplified = csg.simplified(csg.parse(text))
+        assert csg.evaluate(simplified).volume == 125

@@ -107,7 +107,7 @@ def test_projections() -> None:
     assert region(f"projection() {ball}").area == 4
     assert region(f"projection(cut = true) {ball}").is_empty
     assert region("projection(cut = true) cube(2);").area == 4
-    with pytest.warns(csg.CsgWarning, match="plane figures; they are ignored"):
+    with pytest.warns(csg.CsgWarning, match="plane figures are ignored"):
         assert csg.evaluate(csg.parse("projection() square(1);")) is None
 
 
@@ -116,7 +116,7 @@ def test_offsets() -> None:
     assert region("offset(delta = -0.5) square(2);").area == 1
     assert region("offset(delta = -5) square(2);").is_empty
     assert region("offset(r = 1, $fn = 4) square(2);").area == pytest.approx(4 + 8 + 2)
-    with pytest.warns(csg.CsgWarning, match="solids; they are ignored"):
+    with pytest.warns(csg.CsgWarning, match="solids are ignored"):
         assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
 
 
@@ -163,3 +163,56 @@ def test_round_pens_have_openscads_corners(tmp_path: Path) -> None:
     turn = 2 * math.atan(20 / 25)
     assert plain - joint == pytest.approx(36 * (math.tan(turn / 2) - turn / 2), rel=1e-3)
     assert joint < plain and bevel < plain
+
+
+# Children of the other dimension, and figures that vanish
+
+
+@pytest.mark.parametrize(
+    ("text", "size"),
+    [
+        ("linear_extrude(height = 1) { cube(1); square(2); }", 4),
+        ("offset(delta = 1) { cube(1); square(2); }", 16),
+        ("projection() { square(9); cube(2); }", 4),
+        ("projection(cut = true) { square(9); cube(2); }", 4),
+        ("hull() { cube(0); square(1); }", 0),
+    ],
+)
+def test_children_of_the_other_dimension_may_come_first(text: str, size: float) -> None:
+    with pytest.warns(csg.CsgWarning) as told:
+        made = csg.evaluate(csg.parse(text))
+    assert size == (made.volume if isinstance(made, b.Solid) else made.area)
+    assert len(told) == 1
+
+
+def test_figures_that_vanish_add_nothing_to_an_offset() -> None:
+    assert region("offset(delta = 1) { square(0); square(1); }").area == 9
+    assert region("offset(delta = 1) { square(10); square(1e-5); }").area == 144
+    assert region("offset(delta = 1) { square(0); square(1e-5); }").is_empty
+
+
+@pytest.mark.parametrize(
+    "text", ["offset(delta = 1) { square(1e14); square(2e14); }", "offset(delta = 1e13) square(1);"]
+)
+def test_offsets_that_cannot_be_counted_are_refused(text: str) -> None:
+    with pytest.raises(b.LimitError) as refused:
+        csg.loads(text)
+    assert refused.value.code == "too_large"
+
+
+def test_a_radius_goes_before_a_distance() -> None:
+    round_corners = region("offset(r = 2, delta = 1) square(10);")
+    assert round_corners.equals(region("offset(r = 2) square(10);"))
+
+
+def test_turns_are_divided_below_half_turns() -> None:
+    plate = "polygon([[1, 0], [2, 0], [2, 1], [1, 1]]);"
+    assert volume(f"rotate_extrude(angle = 200, $fn = 3) {plate}") > 2
+    for angle in (180, 200):
+        with pytest.raises(b.InvalidParameterError, match="from 2 on"):
+            b.revolve([(1, 0), (2, 0), (2, 1)], angle=angle, segments=1)
+
+
+def test_many_plane_figures_are_taken_away_at_once() -> None:
+    squares = "".join(f"{moved(2 * k, 0, 0)} square(1);" for k in range(40))
+    assert region(f"difference() {{ square(100); {squares} }}").area == 10_000 - 40

@@ -151,3 +151,23 @@ def test_show_does_nothing_elsewhere() -> None:
     b.show(b.cube(1))
     with pytest.raises(b.InvalidMeshError):
         b.show(object())
+
+
+def test_scripts_may_exit_with_a_result(tmp_path: Path) -> None:
+    for end in ("sys.exit()", "sys.exit(0)", "sys.exit(None)"):
+        text = f"import sys\nimport bspcsg as b\nresult = b.cube(2)\n{end}\n"
+        assert b.run_script(script(tmp_path, text)).volume == 8
+
+
+@pytest.mark.parametrize(("code", "says"), [('"no width"', "no width"), ("3", "code 3")])
+def test_scripts_that_give_up(tmp_path: Path, code: str, says: str) -> None:
+    text = f"import sys\nimport bspcsg as b\nb.show(b.cube(1))\nsys.exit({code})\n"
+    with pytest.raises(b.FormatError, match=rf"part.py:4: the script ended with {says}") as failed:
+        b.run_script(script(tmp_path, text))
+    assert failed.value.code == "script_failed"
+
+
+def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) -> None:
+    Path(tmp_path, "broken.py").write_text("x = 1\n\n\ndef f(:\n    pass\n")
+    with pytest.raises(b.FormatError, match=r"part.py:2: SyntaxError.*broken.py, line 4"):
+        b.run_script(script(tmp_path, "x = 1\nimport broken\n"))

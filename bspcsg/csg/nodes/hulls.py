@@ -17,7 +17,7 @@ _Shape = TypeVar("_Shape", Solid, Region)
 @node("hull")
 def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the convex hull of all children together."""
-    solids, regions = run.same_kind(owner, [child for child in children if child])
+    solids, regions = run.same_kind(owner, children)
     if solids:
         return hulls.hull(*solids)
     return hulls.hull(*regions) if regions else None

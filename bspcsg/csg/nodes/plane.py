@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...bsp import Region
-from ...modelling.planar.offsetting import cleaned, grown
+from ...modelling.planar.offsetting import cleaned, grown, refuse_far
 from ...shapes.sweep import unit_circle
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
@@ -62,19 +62,19 @@ def _paths(arguments: Arguments, count: int) -> list[list[int]]:
 def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Grow or shrink the children, with round (`r`), mitred or chamfered (`delta`) corners."""
     arguments = run.arguments(owner, ("r",))
-    figure = union_of(owner, children, run)
-    if figure is None:
-        return None
+    figure = union_of(owner, run.figures(owner, children), run)
     if not isinstance(figure, Region):
-        run.warn(owner, "its children are solids; they are ignored")
         return None
-    is_round = "delta" not in arguments
+    is_round = "r" in arguments or "delta" not in arguments
     delta = arguments.number("r", 1.0) if is_round else arguments.number("delta")
     if figure.is_empty or delta == 0:
         return figure
     sides = arguments.sides(Fineness.of(arguments).fragments(abs(delta)), "a corner")
     figure = cleaned(run.parts_of(figure)) if _is_combined(owner) else figure
-    return figure if figure.is_empty else grown(figure, delta, _join(is_round, arguments), sides)
+    if figure.is_empty:
+        return figure
+    refuse_far(figure, delta)
+    return grown(figure, delta, _join(is_round, arguments), sides)
 
 
 def _is_combined(owner: Node) -> bool:

@@ -11,11 +11,8 @@ from .sets import union_of
 def projection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the children's shadow on the plane z = 0, or their section by it (`cut`)."""
     arguments = run.arguments(owner, ("cut",))
-    body = union_of(owner, children, run)
-    if isinstance(body, Region):
-        run.warn(owner, "its children are plane figures; they are ignored")
-        return None
-    if body is None:
+    body = union_of(owner, run.solids(owner, children), run)
+    if not isinstance(body, Solid):
         return None
     if body.is_empty:
         return Region.empty()

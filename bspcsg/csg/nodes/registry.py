@@ -63,6 +63,20 @@ class Evaluation:
         """Return the arguments of a node."""
         return Arguments(node, self.script, order)
 
+    def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
+        """Return the children of a node that takes plane figures; solids are left out and told."""
+        figures = [child for child in children if not isinstance(child, Solid)]
+        if len(figures) < len(children):
+            self.warn(owner, "its children that are solids are ignored")
+        return figures
+
+    def solids(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
+        """Return the children of a node that takes solids; plane figures are left out and told."""
+        solids = [child for child in children if not isinstance(child, Region)]
+        if len(solids) < len(children):
+            self.warn(owner, "its children that are plane figures are ignored")
+        return solids
+
     def parts_of(self, figure: Region) -> list[Region]:
         """Return the figures whose union a figure is; itself if it is none."""
         return self.united[id(figure)][1] if id(figure) in self.united else [figure]

@@ -1,7 +1,7 @@
 """Operations on children: unions, differences, intersections, and nodes that only group."""
 
 from functools import reduce
-from operator import and_, sub
+from operator import and_
 
 from ...bsp import Region
 from ...operations import setops
@@ -37,7 +37,9 @@ def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     if not children or children[0] is None:
         return None
     solids, regions = run.same_kind(owner, children)
-    return setops.difference(solids[0], solids[1:]) if solids else reduce(sub, regions)
+    if solids:
+        return setops.difference(solids[0], solids[1:])
+    return regions[0] - setops.union(regions[1:]) if regions[1:] else regions[0]
 
 
 @node("intersection", makes_corners=False)

@@ -4,6 +4,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
+from ...shapes.profile import least_segments
 from ...solid.solid import Solid
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
@@ -31,11 +32,8 @@ def _figure(
 ) -> Region | None:
     if "file" in arguments and not owner.children:
         return drawing_of(arguments, run)
-    figure = union_of(owner, children, run)
-    if isinstance(figure, Solid):
-        run.warn(owner, "its children are solids; they are ignored")
-        return None
-    return figure
+    figure = union_of(owner, run.figures(owner, children), run)
+    return figure if isinstance(figure, Region) else None
 
 
 def _extruded(arguments: Arguments, figure: Region, height: float) -> Solid:
@@ -92,7 +90,7 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
         message = f"its children must not cross the axis: x runs from {left:g} to {right:g}."
         raise arguments.error(message)
     around = arguments.sides(Fineness.of(arguments).fragments(max(right, -left)), "this turn")
-    segments = max(int(around * abs(angle) / 360), 1)
+    segments = max(int(around * abs(angle) / 360), least_segments(angle))
     arguments.limited(segments * sum(map(len, figure.to_polygons())), "this turn")
     return _turned(figure, angle, segments, left < 0)
 

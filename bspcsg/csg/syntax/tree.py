@@ -21,7 +21,14 @@ class Place(NamedTuple):
 NOWHERE = Place(0, 0)
 
 
-@dataclass(frozen=True, slots=True)
+def _are_same(one: "Value", other: "Value") -> bool:
+    """Say whether values are equal; true is not 1, though Python's are."""
+    if isinstance(one, tuple) and isinstance(other, tuple):
+        return len(one) == len(other) and all(map(_are_same, one, other))
+    return isinstance(one, bool) == isinstance(other, bool) and (one is other or one == other)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Argument:
     """One argument of a node.
 
@@ -34,6 +41,14 @@ class Argument:
 
     name: str | None
     value: Value
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Argument):
+            return NotImplemented
+        return self.name == other.name and _are_same(self.value, other.value)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.value))
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +105,15 @@ class CsgTree:
         return error if self.intermediate is None else self.intermediate.explained(error)
 
     def roots(self) -> tuple[Node, ...]:
-        """Return the nodes that count: the first one marked ``!``, else all top nodes."""
+        """Return the nodes that count: the first one marked ``!``, else all top nodes.
+
+        A node marked ``*`` does not exist, and neither do those in it.
+        """
         waiting = list(reversed(self.nodes))
         while waiting:
             node = waiting.pop()
+            if "*" in node.modifiers:
+                continue
             if "!" in node.modifiers:
                 return (node,)
             waiting.extend(reversed(node.children))

@@ -31,6 +31,9 @@ _FARTHEST = 2.0**20
 #: OpenSCAD 2021.01 rounds the corners of figures that it combines to this part of a unit.
 _GRID = 2.0**16
 
+#: Clipper ends the process where coordinates reach 2**62 of these parts.
+_GRID_REACH = 2.0**62 / _GRID
+
 #: It counts what pens draw in steps of this part of a unit, a quarter of which arcs are off.
 _PEN = 10_000.0
 
@@ -56,13 +59,13 @@ def offset_region(
         return figure
     if not figure.is_bounded and (~figure).is_bounded:
         return ~offset_region(~figure, -distance, join, segments=sides, miter_limit=limit)
-    _refuse_far(figure, distance)
+    refuse_far(figure, distance)
     if join == "bevel":
         return _bevelled(figure, distance)
     return grown(figure, distance, join, sides, limit)
 
 
-def _refuse_far(figure: Region, delta: float) -> None:
+def refuse_far(figure: Region, delta: float) -> None:
     """Raise `LimitError` if the figure would be lost in the rounding of what it grows to."""
     size = max(float(np.abs(loop).max()) for loop in figure.to_polygons())
     if delta > _FARTHEST * size:
@@ -128,15 +131,35 @@ def cleaned(figures: Sequence[Region]) -> Region:
 
     Six digits put the sides of turned shapes a hair apart or across each other. To shrink such a
     figure widens the hair to a cut, and to grow it with mitres draws it out to a spike. What is
-    left differs from the union by less than a thousandth of a unit.
+    left differs from the union by less than a thousandth of a unit. Figures that rounding leaves
+    without an area are left out.
+
+    Raises
+    ------
+    LimitError
+        If a coordinate is beyond what can be counted; code ``"too_large"``.
     """
+    loops = [loop for figure in figures for loop in figure.to_polygons()]
+    largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
+    if largest >= _GRID_REACH:
+        message = f"a figure reaches to {largest:g}, and an offset to {_GRID_REACH:g} at most."
+        raise LimitError(message, "too_large")
+    rounded = [path for path in _whole_numbers(loops, _GRID) if _has_area(path)]
+    if not rounded:
+        return Region.empty()
     pen = pyclipper.Pyclipper()
-    for figure in figures:
-        pen.AddPaths(_whole_numbers(figure.to_polygons(), _GRID), pyclipper.PT_SUBJECT)
+    pen.AddPaths(rounded, pyclipper.PT_SUBJECT)
     paths = pen.Execute(pyclipper.CT_UNION, pyclipper.PFT_NONZERO, pyclipper.PFT_NONZERO)
     kept = [pyclipper.CleanPolygon(path, _CLEANED * _GRID) for path in paths]
     loops = [np.array(path) / _GRID for path in kept if len(path) >= 3]
     return Region(loops, pitch=min(figure.pitch for figure in figures))
+
+
+def _has_area(path: list[list[int]]) -> bool:
+    """Say whether the corners of a path are not all on one line, as Clipper asks of each."""
+    (x, y), *others = path
+    arms = [(u - x, v - y) for u, v in others if (u, v) != (x, y)]
+    return any(arms[0][0] * v != arms[0][1] * u for u, v in arms[1:])
 
 
 def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Region:
