@@ -194,3 +194,19 @@ def test_a_compressed_mesh_is_refused(tmp_path: Path) -> None:
     scene.tree["extensionsRequired"] = ["EXT_meshopt_compression"]
     with pytest.raises(FormatError, match="EXT_meshopt_compression"):
         read_back(scene, tmp_path)
+
+
+def test_colours_of_a_mesh_come_in_one_form(tmp_path: Path) -> None:
+    scene = scene_of()
+    scene.primitive["attributes"]["COLOR_0"] = scene.add(
+        np.full((8, 4), 255, "u1"), normalized=True
+    )
+    other = dict(scene.primitive["attributes"], COLOR_0=scene.add(np.full((8, 3), 0.5, "f4")))
+    other["POSITION"] = scene.add(np.asarray(cube(2.0)[0] + 5, "f4"))
+    scene.tree["meshes"][0]["primitives"].append(scene.primitive | {"attributes": other})
+    said = read_back(scene, tmp_path).attributes
+    assert said is not None
+    colors = said.at_corners("color")
+    assert colors.dtype == np.float32
+    assert np.allclose(colors[0, 0], 1, rtol=0, atol=1e-6)
+    assert np.allclose(colors[-1, 0], [0.7353570] * 3 + [1], rtol=0, atol=1e-6)
