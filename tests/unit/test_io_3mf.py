@@ -351,3 +351,35 @@ def test_objects_without_triangles_are_told(tmp_path: Path) -> None:
     assert [found.message for found in raw.findings] == [
         "1 objects without triangles were ignored."
     ]
+
+
+def painted(bases: str) -> str:
+    """Return a cube of two base materials by turns."""
+    told = CUBE
+    for k in range(12):
+        told = told.replace('"/><triangle', f'" pid="9" p1="{k % 2}" /><triangle', 1)
+    told = told.replace('"/></triangles>', '" pid="9" p1="1"/></triangles>')
+    return f'<basematerials id="9">{bases}</basematerials>' + told
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("PLA", "PLA"), ["PLA", "PLA (1)"]),
+        (("", ""), ["material 0", "material 1"]),
+        (("", "material 0"), ["material 0 (0)", "material 0"]),
+    ],
+)
+def test_materials_of_one_name_stay_apart(
+    tmp_path: Path, names: tuple[str, str], expected: list[str]
+) -> None:
+    red, blue = (
+        f'<base name="{name}" displaycolor="#{color}"/>'
+        for name, color in zip(names, ("FF0000", "0000FF"), strict=True)
+    )
+    path = package(tmp_path / "x.3mf", model(painted(red + blue), ITEM))
+    write(read(path), path)
+    said = held(read(path).attributes, "the attributes")
+    assert said.face["material"].tolist() == expected * 6
+    colors = [said.materials[name].color for name in expected]
+    assert colors == [(1, 0, 0, 1), (0, 0, 1, 1)]

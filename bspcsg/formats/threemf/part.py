@@ -41,6 +41,9 @@ _READ = (
 #: Attributes of a triangle that has no properties.
 _BARE = 3
 
+#: The name of a base material, and its colour in bytes.
+Base: TypeAlias = tuple[str, tuple[int, ...]]
+
 Start: TypeAlias = Callable[[str, dict[str, str]], None]
 
 
@@ -118,7 +121,7 @@ class ModelPart:
     items: list[PlacedObject] = field(default_factory=list)
     dropped: set[str] = field(default_factory=set)
     colors: dict[str, list[tuple[int, ...]]] = field(default_factory=dict)
-    bases: dict[str, list[tuple[str, tuple[int, ...]]]] = field(default_factory=dict)
+    bases: dict[str, list[Base]] = field(default_factory=dict)
     textures: dict[str, str] = field(default_factory=dict)
     coordinates: dict[str, tuple[str, list[tuple[float, float]]]] = field(default_factory=dict)
 

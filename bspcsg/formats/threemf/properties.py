@@ -15,7 +15,7 @@ from ...attributes.attributes import Attributes, Kind, Values
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
-from .part import ModelPart, Object
+from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
 
 _Entry = TypeVar("_Entry")
@@ -65,8 +65,10 @@ class _Reading:
         self._materials: dict[str, Material] = {}
         self._textures: dict[str, str] = {}
         self._has_colors = False
-        bases = [name for group in part.bases.values() for name, _ in group]
-        self._taken = Counter([*bases, *map(named_after, part.textures.values())])
+        bases = [base for group in part.bases.values() for base in group]
+        pictures = [*map(named_after, part.textures.values())]
+        self._base_names = _names_of_bases(bases, pictures)
+        self._taken = Counter([*(name for name, _ in bases), *pictures])
 
     def take(self, k: int, group: str, numbers: tuple[int, ...]) -> None:
         """Note what one triangle says."""
@@ -75,8 +77,9 @@ class _Reading:
             self._colors[k] = [_entry(part.colors[group], number) for number in numbers]
             self._has_colors = True
         elif group in part.bases:
-            self._names[k], color = _entry(part.bases[group], numbers[0])
-            self._materials[self._names[k]] = _plain(color)
+            base = _entry(part.bases[group], numbers[0])
+            self._names[k] = self._base_names[base]
+            self._materials[self._names[k]] = _plain(base[1])
         elif group in part.coordinates:
             texture, places = part.coordinates[group]
             self._names[k] = self._textures.setdefault(texture, self._called(texture))
@@ -100,6 +103,24 @@ class _Reading:
         corner |= {"uv": self._places} if self._textures else {}
         face = {"material": np.array(self._names)} if materials else {}
         return Attributes(faces, {}, corner, face, materials) if corner or face else None
+
+
+def _names_of_bases(bases: list[Base], pictures: list[str]) -> dict[Base, str]:
+    """Return the names of base materials, each of which stands for one colour and no picture.
+
+    A name that stands for another already gets a number behind it; no name is that of no material.
+    """
+    taken = {*(name for name, _ in bases), *pictures}
+    found: dict[Base, str] = {}
+    seen = {""}
+    for number, (name, color) in enumerate(dict.fromkeys(bases)):
+        free = name
+        while name in seen and free in taken:
+            free = f"{free} ({number})" if free else f"material {number}"
+        seen.add(name)
+        taken.add(free)
+        found[name, color] = free
+    return found
 
 
 @lru_cache(maxsize=256)
