@@ -155,11 +155,30 @@ def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix:
     again.save(tmp_path / f"y{suffix}")
     once_more = b.Assembly.load(tmp_path / f"y{suffix}")
     assert [part.path for part in once_more] == [part.path for part in made]
-    # glTF names meshes, too: those of instances after the first of them.
     data = [(tmp_path / f"{name}{suffix}").read_bytes() for name in "xy"]
-    assert suffix == ".glb" or data[0] == data[1]
+    assert data[0] == data[1]
     whole = b.load(tmp_path / f"x{suffix}")
     assert whole.volume == pytest.approx(made.to_solid().volume)
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_instances_of_a_named_part_may_have_no_name(tmp_path: Path, suffix: str) -> None:
+    cube = b.cube(1)
+    b.Assembly("a", [b.Assembly("wheel", cube), cube]).save(tmp_path / f"x{suffix}")
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert [part.path for part in again] == ["a/wheel", "a/part"]
+
+
+def test_materials_called_after_their_colours_can_be_saved_again(tmp_path: Path) -> None:
+    near = (1.0, 0.0, 0.0, 0.9999)
+    parts = [b.Assembly("x", b.cube(1)), b.Assembly("y", b.cube(1).translate(3, 0, 0), color=near)]
+    b.Assembly("a", parts, color=RED).save(tmp_path / "x.glb")
+    again = b.Assembly("b", [b.load(tmp_path / "x.glb"), b.Assembly.load(tmp_path / "x.glb")])
+    again.save(tmp_path / "y.glb")
+    found = [part.color for part in b.Assembly.load(tmp_path / "y.glb")]
+    assert found == [None, RED, near]
+    b.Assembly("c", [b.load(tmp_path / "x.glb") & b.cube(2)]).save(tmp_path / "z.glb")
+    assert b.Assembly.load(tmp_path / "z.glb").parts[0].color == RED
 
 
 @pytest.mark.parametrize("suffix", [".3mf", ".glb"])
