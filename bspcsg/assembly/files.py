@@ -16,6 +16,7 @@ from ..formats.atomic import write_file
 from ..formats.files import form_of, read, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
+from ..formats.registry import Form
 from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, whole_content
@@ -95,15 +96,20 @@ class _Making:
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     """Write an assembly (see `Assembly.save`)."""
     suffix = Path(file_path(path)).suffix.lower()
+    return (*_written(assembly, path, suffix), *_densities(assembly))
+
+
+def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> tuple[Finding, ...]:
+    """Write an assembly, and return what could not be kept of all but densities."""
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":
         return write(_in_place(assembly), path)
+    form = form_of(path)
     if suffix not in _TREES:
-        form_of(path)
         message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
         raise FormatError(message, "unknown_format")
-    describing = _Describing(in_single=suffix == ".glb")
+    describing = _Describing(form)
     try:
         scene = describing.node(assembly, None)
     except OverflowError:
@@ -121,7 +127,7 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
-    return (*_lost(given, scene), *_empty(describing.empty), *describing.changes)
+    return (*_lost(given, scene, suffix), *_empty(describing.empty), *describing.changes)
 
 
 def _empty(count: int) -> tuple[Finding, ...]:
@@ -131,15 +137,23 @@ def _empty(count: int) -> tuple[Finding, ...]:
     return (Finding("empty_parts", "warning", message, (), count),)
 
 
+def _densities(assembly: Assembly) -> tuple[Finding, ...]:
+    count = sum(part.density is not None for part in assembly.parts)
+    if not count:
+        return ()
+    message = f"files have no room for densities; those of {count} parts were left out."
+    return (Finding("densities_left_out", "warning", message, (), count),)
+
+
 class _Describing:
     """The words of files about an assembly; solids that parts share are meshes that nodes share."""
 
-    def __init__(self, in_single: bool) -> None:
+    def __init__(self, form: Form) -> None:
         #: The number of parts without volume, which files have no place for.
         self.empty = 0
-        #: The findings about meshes in single precision.
+        #: The findings about what the format changes of meshes.
         self.changes: list[Finding] = []
-        self._in_single = in_single
+        self._form = form
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
 
     def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode | None:
@@ -163,12 +177,20 @@ class _Describing:
     def _mesh(self, solid: Solid, name: str) -> RawMesh:
         if id(solid) not in self._meshes:
             mesh = solid.normalized().to_mesh()
-            if self._in_single:
-                mesh, found = single.settled(mesh)
-                told = (replace(one, message=f"“{name}”: {one.message}") for one in found)
-                self.changes.extend(told)
-            self._meshes[id(solid)] = (solid, _raw(mesh, name, self._in_single))
+            self._tell(name, () if self._form.losses is None else self._form.losses(mesh))
+            if self._form.is_single:
+                mesh, mended = single.settled(mesh)
+                self._tell(name, mended)
+            self._meshes[id(solid)] = (solid, _raw(mesh, name, self._form.is_single))
         return self._meshes[id(solid)][1]
+
+    def _tell(self, name: str, findings: tuple[Finding, ...]) -> None:
+        """Take in findings about a part; that of the unit is about all of them."""
+        for one in findings:
+            is_common = one.code == "unit"
+            told = one if is_common else replace(one, message=f"“{name or 'part'}”: {one.message}")
+            if not is_common or one not in self.changes:
+                self.changes.append(told)
 
 
 def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
@@ -197,8 +219,8 @@ class _Held:
         return self._meshes[id(mesh)]
 
 
-def _lost(given: SceneNode, written: SceneNode) -> tuple[Finding, ...]:
-    """Return the finding about attributes that 3MF has no room for."""
+def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about attributes that a format has no room for."""
     lost: set[str] = set()
     for node, held in zip(given.walk(), written.walk(), strict=True):
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
@@ -207,7 +229,7 @@ def _lost(given: SceneNode, written: SceneNode) -> tuple[Finding, ...]:
     if not lost:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(lost))
-    message = f"3MF has no room for attributes: {told} were left out."
+    message = f"{suffix[1:].upper()} has no room for attributes: {told} were left out."
     return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
 
 

@@ -288,7 +288,7 @@ class Assembly:
         Returns
         -------
         tuple of Finding
-            The things that the format could not keep.
+            The things that the format could not keep; no format keeps densities.
 
         Raises
         ------

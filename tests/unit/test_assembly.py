@@ -1,6 +1,7 @@
 """Assemblies: trees of named, coloured, placed solids."""
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,13 @@ import bspcsg as b
 from support.pictures import PIXEL
 
 RED, GREY = (1.0, 0.0, 0.0, 1.0), (0.2, 0.2, 0.2, 1.0)
+
+#: The findings that files of a format always come with.
+UNITS = {".3mf": [], ".glb": ["unit"]}
+
+
+def codes_of(findings: Iterable[b.Finding]) -> list[str]:
+    return [finding.code for finding in findings]
 
 
 def car() -> b.Assembly:
@@ -142,7 +150,7 @@ def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix:
             b.Assembly("group", [b.Assembly("inner", b.cube(1), color=RED)]).rotate(90),
         ],
     ).translate(1, 2, 3)
-    assert made.save(tmp_path / f"x{suffix}") == ()
+    assert codes_of(made.save(tmp_path / f"x{suffix}")) == UNITS[suffix]
     again = b.Assembly.load(tmp_path / f"x{suffix}")
     assert [part.path for part in again] == [part.path for part in made]
     assert [part.color for part in again] == [part.color for part in made]
@@ -186,8 +194,9 @@ def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: st
     gone = b.Assembly("gone", [b.cube(1) - b.cube(1)])
     made = b.Assembly("a\x01\ud800b", [b.cube(1), gone])
     assert [part.path for part in made] == ["a\x01\ud800b/part", "a\x01\ud800b/gone/part"]
-    (finding,) = made.save(tmp_path / f"x{suffix}")
+    finding, *others = made.save(tmp_path / f"x{suffix}")
     assert (finding.code, finding.count) == ("empty_parts", 1)
+    assert codes_of(others) == UNITS[suffix]
     again = b.Assembly.load(tmp_path / f"x{suffix}")
     assert [part.solid.volume for part in again] == [1]
     with pytest.raises(b.FormatError) as caught:
@@ -203,7 +212,9 @@ def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: st
 def test_parts_of_which_single_precision_leaves_nothing_are_said(tmp_path: Path) -> None:
     slab = b.box((1e-9, 1, 1)).translate(1, 0, 0)
     made = b.Assembly("both", [b.Assembly("slab", slab), b.Assembly("twin", slab), b.cube(1)])
-    (finding,) = made.save(tmp_path / "x.glb")
+    findings = made.save(tmp_path / "x.glb")
+    assert codes_of(findings) == codes_of(b.save(slab, tmp_path / "slab.glb"))
+    finding = findings[-1]
     assert (finding.code, finding.count) == ("thickened_in_single", 12)
     assert finding.message.startswith("“slab”: all of this is thinner than single precision")
     parts = b.Assembly.load(tmp_path / "x.glb")
@@ -244,7 +255,7 @@ def test_textures_and_colours_travel_with_parts(tmp_path: Path, suffix: str) -> 
     parts = [top, top.translate(3, 0, 0), b.Assembly("side", other)]
     parts += [b.Assembly("plate", said(face_attributes={"color": colors}))]
     made = b.Assembly("desk", [*parts, b.Assembly("leg", b.cube(1), color=RED)])
-    assert made.save(tmp_path / f"x{suffix}") == ()
+    assert codes_of(made.save(tmp_path / f"x{suffix}")) == UNITS[suffix]
     again = b.Assembly.load(tmp_path / f"x{suffix}")
     assert again.parts[0].shape is again.parts[1].shape and again["desk/leg"].color == RED
     found = again["desk/top"].solid.to_mesh()
@@ -265,6 +276,17 @@ def test_what_parts_say_that_3mf_cannot_hold_is_named(tmp_path: Path) -> None:
     warm = b.Solid(mesh.vertices, mesh.faces, vertex_attributes={"heat": np.arange(8.0)})
     (finding,) = b.Assembly("stove", [b.Assembly("top", warm)]).save(tmp_path / "x.3mf")
     assert finding.code == "attributes_left_out" and "“heat”" in finding.message
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb", ".csg", ".obj"])
+def test_what_files_cannot_hold_of_assemblies_is_named(tmp_path: Path, suffix: str) -> None:
+    third = b.cube(1 / 3).tagged(layer=1)
+    path = tmp_path / f"x{suffix}"
+    part = b.Assembly("", third)
+    found = codes_of(b.Assembly("", [part, part.translate(3, 0, 0)], density=2).save(path))
+    assert sorted(found) == sorted([*codes_of(b.save(third, path)), "densities_left_out"])
+    assert "attributes_left_out" in found
+    assert ("single_precision" in found) == (suffix == ".glb")
 
 
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:

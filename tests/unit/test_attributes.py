@@ -224,9 +224,9 @@ def test_colours_of_operands_come_in_one_form(kind: str) -> None:
     count = {"vertex": 8, "face": 12}[kind]
 
     def painted(rows: list[Any], at: float, dtype: Any) -> b.Solid:
-        return cube(
-            at=at, **{f"{kind}_attributes": {"color": np.tile(np.array(rows, dtype), (count, 1))}}
-        )
+        colors = np.tile(np.array(rows, dtype), (count, 1))
+        said: dict[str, Any] = {f"{kind}_attributes": {"color": colors}}
+        return cube(at=at, **said)
 
     def colors(*solids: b.Solid) -> npt.NDArray[Any]:
         found = b.union(solids).to_mesh().attributes.at_corners("color")
