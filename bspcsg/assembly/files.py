@@ -8,6 +8,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from .._types import FloatArray
 from ..attributes.attributes import Attributes
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
@@ -78,8 +79,19 @@ class _Making:
         self._options = options
         self._solids: dict[int, Solid] = {}
 
-    def assembly(self, node: SceneNode) -> Assembly:
-        content: Any = [self.assembly(child) for child in node.children]
+    def assembly(self, root: SceneNode) -> Assembly:
+        """Return the tree; a file of nothing but what is passed by is refused as a mesh is."""
+        made = self._node(root) or Assembly(root.name)
+        if not made.parts:
+            solid_of(read(self._path), self._path, **self._options)
+        return made
+
+    def _node(self, node: SceneNode) -> Assembly | None:
+        """Return what is at a node, or None if that is flat."""
+        if _is_flat(node.matrix):
+            return None
+        inner = (self._node(child) for child in node.children)
+        content: Any = [child for child in inner if child is not None]
         if node.mesh is not None:
             content = self._solid(node.mesh, node.color is not None)
         factor = transform.matrix_factor(node.matrix)
@@ -91,6 +103,10 @@ class _Making:
             plain = replace(mesh, attributes=None) if colored else mesh
             self._solids[id(mesh)] = solid_of(plain, self._path, **self._options)
         return self._solids[id(mesh)]
+
+
+def _is_flat(matrix: FloatArray) -> bool:
+    return bool(np.isfinite(matrix).all()) and transform.determinant_sign(matrix) == 0
 
 
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:

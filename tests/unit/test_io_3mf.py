@@ -1,5 +1,6 @@
 """3MF: units, transforms, components, and what is refused."""
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -383,3 +384,24 @@ def test_materials_of_one_name_stay_apart(
     assert said.face["material"].tolist() == expected * 6
     colors = [said.materials[name].color for name in expected]
     assert colors == [(1, 0, 0, 1), (0, 0, 1, 1)]
+
+
+FLAT = '<item objectid="2" transform="0 0 0 0 0 0 0 0 0 5 0 0"/>'
+
+
+@pytest.mark.parametrize(
+    ("kind", "item"),
+    [("support", '<item objectid="2"/>'), ("surface", '<item objectid="2"/>'), ("model", FLAT)],
+)
+def test_assemblies_pass_by_what_loading_does(tmp_path: Path, kind: str, item: str) -> None:
+    other = CUBE.replace('id="1"', f'id="2" type="{kind}"')
+    if kind == "surface":
+        other = re.sub("<triangle [^>]*/>", "", other, count=1)
+    path = package(tmp_path / "x.3mf", model(CUBE + other, ITEM + item))
+    assert b.load(path).volume == 1
+    assert [part.solid.volume for part in b.Assembly.load(path)] == [1]
+    package(path, model(other, item))
+    for load in (b.load, b.Assembly.load):
+        with pytest.raises(b.InvalidMeshError) as caught:
+            load(path)
+        assert caught.value.code == "empty_mesh"

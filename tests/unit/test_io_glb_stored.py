@@ -210,3 +210,15 @@ def test_colours_of_a_mesh_come_in_one_form(tmp_path: Path) -> None:
     assert colors.dtype == np.float32
     assert np.allclose(colors[0, 0], 1, rtol=0, atol=1e-6)
     assert np.allclose(colors[-1, 0], [0.7353570] * 3 + [1], rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("is_flat", [False, True])
+def test_assemblies_pass_by_lines_and_what_is_flat(tmp_path: Path, is_flat: bool) -> None:
+    scene = scene_of()
+    primitive = scene.primitive if is_flat else scene.primitive | {"mode": 1}
+    scene.tree["meshes"].append({"primitives": [primitive]})
+    scene.tree["nodes"].append({"mesh": 1, "scale": [1, 1, int(not is_flat)]})
+    path = tmp_path / "x.glb"
+    path.write_bytes(scene.bytes())
+    assert b.load(path).volume == 8e9
+    assert [part.solid.volume for part in b.Assembly.load(path)] == [8e9]

@@ -73,6 +73,8 @@ class _Reading:
         children = tuple(self._node(child, _IDENTITY) for child in told.get("children", []))
         matrix = outer @ local_matrix(told)
         name = str(told.get("name") or (mesh.name if mesh is not None else ""))
+        if mesh is not None and len(mesh.faces) == 0:
+            mesh = None
         if mesh is None or not (children or instances_of(told)):
             return SceneNode(name, matrix, *_painted(mesh), children)
         places = places_of(self._held, told)
