@@ -303,8 +303,8 @@ class Assembly:
         """Read an assembly; the suffix names the format.
 
         Components of 3MF, nodes of GLB, and what scripts unite are the tree; objects of OBJ are its
-        parts. Any other mesh file is an assembly of one part. What `bspcsg.load` passes by is no part:
-        support and surfaces of 3MF, lines of GLB, and what is scaled to nothing.
+        parts. Any other mesh file is an assembly of one part. Support and surfaces of 3MF, lines of
+        GLB, and what is scaled to nothing are no parts, as they are passed by by `bspcsg.load`.
 
         Parameters
         ----------

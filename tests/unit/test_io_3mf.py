@@ -405,3 +405,15 @@ def test_assemblies_pass_by_what_loading_does(tmp_path: Path, kind: str, item: s
         with pytest.raises(b.InvalidMeshError) as caught:
             load(path)
         assert caught.value.code == "empty_mesh"
+
+
+def test_elements_of_other_namespaces_are_passed_by(tmp_path: Path) -> None:
+    space = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"
+    slices = (
+        f'<s:slicestack xmlns:s="{space}" id="7" zbottom="0"><s:slice ztop="1"><s:vertices>'
+        '<s:vertex x="0" y="0"/></s:vertices></s:slice></s:slicestack>'
+    )
+    path = package(tmp_path / "x.3mf", model(slices + CUBE, ITEM))
+    assert b.load(path).volume == 1
+    package(path, model(CUBE + slices, ITEM))
+    assert b.load(path).volume == 1

@@ -131,6 +131,9 @@ def parse_xml(
 ) -> None:
     """Call `start` with the name (without namespace) and attributes of each element.
 
+    Elements of a namespace that is neither that of the root nor of an extension that is read are
+    passed by: their names are words of others.
+
     Parameters
     ----------
     source : Source
@@ -148,14 +151,19 @@ def parse_xml(
     """
     parser = expat.ParserCreate(namespace_separator=" ")
 
+    known: dict[str, bool] = {}
+
     def begin(tag: str, attributes: dict[str, str]) -> None:
+        space, _, element = tag.rpartition(" ")
+        if space not in known:
+            known[space] = not known or any(word in space for word in _READ)
+        if not known[space]:
+            return
         named = {name.rpartition(" ")[2]: value for name, value in attributes.items()}
         try:
-            start(tag.rpartition(" ")[2], named)
+            start(element, named)
         except (KeyError, ValueError, OverflowError) as error:
-            message = (
-                f"the element {quoted(tag.rpartition(' ')[2].encode())} is not valid: {error}."
-            )
+            message = f"the element {quoted(element.encode())} is not valid: {error}."
             raise source.error(message, line=parser.CurrentLineNumber) from None
 
     def refuse(*_: object) -> None:
