@@ -13,10 +13,10 @@ from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
 from .container import Container, container_of, instances_of
-from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, called, container
+from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, container
 from .light import as_read
 from .nodes import local_matrix, places_of, triangles_of
-from .said import Pictures, kept, materials_of
+from .said import Pictures, called, kept, materials_of
 
 _IDENTITY = np.eye(4)
 

@@ -17,6 +17,7 @@ from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
 from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
+from .write import called
 
 _Entry = TypeVar("_Entry")
 
@@ -146,7 +147,7 @@ def kept(said: Attributes) -> Attributes:
     """Return what 3MF holds of attributes: materials of faces, or else colours, both in bytes."""
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
-        return _kept_materials(said, names)
+        return _kept_materials(said.with_materials_called(called))
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):
@@ -159,19 +160,20 @@ def kept(said: Attributes) -> Attributes:
     return Attributes(said.faces, *_kinds(chosen(said, keep)))
 
 
-def _kept_materials(said: Attributes, names: Values) -> Attributes:
+def _kept_materials(said: Attributes) -> Attributes:
+    names = said.face["material"]
     used = [name for name in np.unique(names).tolist() if name]
     given = {name: said.materials.get(name, Material()) for name in used}
     is_pair = _has_places(said)
     textured = [name for name, one in given.items() if one.texture is not None and is_pair]
-    called = fit_for_parts(textured)
+    fit = fit_for_parts(textured, used)
     materials = {
-        called.get(name, name): Material(texture=one.texture) if name in called else _in_bytes(one)
+        fit.get(name, name): Material(texture=one.texture) if name in fit else _in_bytes(one)
         for name, one in given.items()
     }
-    if not called:
+    if not fit:
         return Attributes(said.faces, {}, {}, {"material": names}, materials)
-    renamed = np.array([called.get(name, name) for name in names.tolist()])
+    renamed = np.array([fit.get(name, name) for name in names.tolist()])
     places = np.nan_to_num(said.at_corners("uv").astype(np.float64))
     places[~np.isin(names, textured)] = np.nan
     return Attributes(said.faces, {}, {"uv": places}, {"material": renamed}, materials)
