@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from pathlib import Path
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -136,6 +137,22 @@ def test_the_union_says_of_each_face_which_part_it_is_of() -> None:
     assert (red == [255, 0, 0, 255]).all()
     assert b.Assembly().to_solid().is_empty
     assert b.Solid.from_mesh(car()).volume == car().to_solid().volume
+
+
+def test_many_parts_of_one_name_are_counted_once() -> None:
+    screw, second = (b.Assembly(name, b.cube(1)) for name in ("screw", "screw (2)"))
+    found = b.Assembly("", [screw, second, screw, screw, second, screw])
+    assert [part.path for part in found] == [
+        "screw",
+        "screw (2)",
+        "screw (3)",
+        "screw (4)",
+        "screw (2) (2)",
+        "screw (5)",
+    ]
+    start = process_time()
+    assert len(b.Assembly("", [screw] * 20_000)) == 20_000
+    assert process_time() - start < 5
 
 
 @pytest.mark.parametrize("suffix", [".3mf", ".glb"])
