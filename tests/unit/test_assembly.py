@@ -194,6 +194,20 @@ def test_instances_of_a_named_part_may_have_no_name(tmp_path: Path, suffix: str)
     assert [part.path for part in again] == ["a/wheel", "a/part"]
 
 
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_the_deepest_assembly_can_be_saved(tmp_path: Path, suffix: str) -> None:
+    cube = b.cube(1)
+    made = b.Assembly("0", [b.Assembly("a", cube), b.Assembly("b", cube).translate(3, 0, 0)])
+    for depth in range(1, 63):
+        made = b.Assembly(str(depth), [made])
+    with pytest.raises(b.InvalidParameterError):
+        b.Assembly("", [made])
+    made.save(tmp_path / f"x{suffix}")
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert [part.path for part in again] == [part.path for part in made]
+    assert b.load(tmp_path / f"x{suffix}").volume == 2
+
+
 def test_materials_called_after_their_colours_can_be_saved_again(tmp_path: Path) -> None:
     near = (1.0, 0.0, 0.0, 0.9999)
     parts = [b.Assembly("x", b.cube(1)), b.Assembly("y", b.cube(1).translate(3, 0, 0), color=near)]

@@ -21,6 +21,9 @@ MILLIMETRES = {
     "meter": 1000.0,
 }
 
+#: The part number of an object that only gives its component another name.
+INSTANCE = "bspcsg:instance"
+
 #: Elements about what a mesh of triangles has no room for.
 _DROPPED = {
     "composite": "materials",

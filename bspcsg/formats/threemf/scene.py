@@ -15,12 +15,9 @@ from ..scene import SceneNode
 from ..source import Source
 from .objects import Objects
 from .package import Package, opened
-from .part import MILLIMETRES, ModelPart, Object, PlacedObject
+from .part import INSTANCE, MILLIMETRES, ModelPart, Object, PlacedObject
 from .textures import Resources
 from .write import beginning, called, hex_of, mesh_object, packed, properties
-
-#: The part number of an object that only gives its component another name.
-_INSTANCE = "bspcsg:instance"
 
 _IDENTITY = np.eye(4)
 
@@ -74,7 +71,7 @@ class _Reading:
             mesh = self._mesh(path, part, placed.item)
             return SceneNode(told.name, matrix, mesh, _color(part, told))
         children = self._nodes(path, told.components)
-        if told.part_number == _INSTANCE and len(children) == 1:
+        if told.part_number == INSTANCE and len(children) == 1:
             return SceneNode(told.name, matrix, children[0].mesh, children[0].color)
         return SceneNode(told.name, matrix, None, None, children)
 
@@ -156,7 +153,7 @@ class _Writing:
         number, name = self._numbers[key]
         if name == node.name:
             return number
-        return self._components(node.name, [(number, _IDENTITY)], _INSTANCE)
+        return self._components(node.name, [(number, _IDENTITY)], INSTANCE)
 
     def _components(self, name: str, inner: list[tuple[int, FloatArray]], mark: str) -> int:
         number = self._resources.free()
