@@ -211,7 +211,7 @@ class _Describing:
 
 def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
-    said = mesh.attributes if mesh.carried is not None else None
+    said = mesh.attributes.without_empty_material() if mesh.carried is not None else None
     return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
 
 

@@ -102,6 +102,12 @@ class Attributes:
         )
         return replace(self, vertex=vertex, corner=corner, face=face)
 
+    def without_empty_material(self) -> "Attributes":
+        """Return the attributes without ``"material"`` if no face has one."""
+        names = self.face.get("material")
+        is_empty = names is not None and names.dtype.kind == "U" and not (names != "").any()
+        return self.without({"material"}) if is_empty else self
+
     def turned(self, linear: FloatArray) -> "Attributes":
         """Return the attributes after a linear map of the mesh: normals turn, and keep length."""
         if not NORMALS.intersection(self.names):

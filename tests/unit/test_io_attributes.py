@@ -379,6 +379,21 @@ def test_names_of_materials_are_fit_for_files(
         assert again.materials[third].color == (0, 0, 1, 1)
 
 
+@pytest.mark.parametrize("suffix", [".glb", ".3mf"])
+def test_faces_without_any_material_have_their_colours(tmp_path: Path, suffix: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    bare = {"material": np.full(12, "")}
+    colors = np.full((12, 4), 51, "u1")
+    both = b.Solid(mesh.vertices, mesh.faces, face_attributes={**bare, "color": colors})
+    both.save(tmp_path / f"x{suffix}")
+    assert (of(b.load(tmp_path / f"x{suffix}").to_mesh(), "color") == 51).all()
+    plain = b.Solid(mesh.vertices, mesh.faces, face_attributes=bare)
+    plain.save(tmp_path / f"x{suffix}")
+    blue = (0.0, 0.0, 1.0, 1.0)
+    b.Assembly("blue", [plain], color=blue).save(tmp_path / f"y{suffix}")
+    assert b.Assembly.load(tmp_path / f"y{suffix}").parts[0].color == blue
+
+
 def test_a_picture_fit_for_a_part_has_no_name_of_another_material(tmp_path: Path) -> None:
     mesh = b.cube(1).to_mesh()
     said = b.Solid(

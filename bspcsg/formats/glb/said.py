@@ -41,7 +41,8 @@ def kept(said: Attributes, vertices: FloatArray) -> Attributes:
     Normals and texture coordinates of corners, colours, materials of faces, and other floats of
     vertices and corners, up to four for each. Where normals are missing, those of the faces are.
     """
-    held = chosen(_with_all_normals(said, vertices), _kept).with_materials_called(called)
+    told = _with_all_normals(said.without_empty_material(), vertices)
+    held = chosen(told, _kept).with_materials_called(called)
     names = held.face.get("material")
     if names is None:
         return Attributes(held.faces, held.vertex, held.corner, held.face)

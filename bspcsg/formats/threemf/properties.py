@@ -145,6 +145,7 @@ def _entry(group: list[_Entry], number: int) -> _Entry:
 
 def kept(said: Attributes) -> Attributes:
     """Return what 3MF holds of attributes: materials of faces, or else colours, both in bytes."""
+    said = said.without_empty_material()
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
         return _kept_materials(said.with_materials_called(called))
