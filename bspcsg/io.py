@@ -142,8 +142,9 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     own = of_kind(Solid, solid, "solid")
     if Path(file_path(path)).suffix.lower() == ".csg":
         from . import csg
+        from .csg.from_solid import lost_attributes
 
         csg.dump(own, path)
-        return ()
+        return lost_attributes([own])
     form_of(path, is_text)
     return write(own.normalized().to_mesh(), path, text=is_text)

@@ -8,6 +8,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from .._types import FloatArray
 from ..attributes.attributes import Attributes
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
@@ -16,6 +17,7 @@ from ..formats.atomic import write_file
 from ..formats.files import form_of, read, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
+from ..formats.registry import Form
 from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, whole_content
@@ -77,8 +79,19 @@ class _Making:
         self._options = options
         self._solids: dict[int, Solid] = {}
 
-    def assembly(self, node: SceneNode) -> Assembly:
-        content: Any = [self.assembly(child) for child in node.children]
+    def assembly(self, root: SceneNode) -> Assembly:
+        """Return the tree; a file of nothing but what is passed by is refused as a mesh is."""
+        made = self._node(root) or Assembly(root.name)
+        if not made.parts:
+            solid_of(read(self._path), self._path, **self._options)
+        return made
+
+    def _node(self, node: SceneNode) -> Assembly | None:
+        """Return what is at a node, or None if that is flat."""
+        if _is_flat(node.matrix):
+            return None
+        inner = (self._node(child) for child in node.children)
+        content: Any = [child for child in inner if child is not None]
         if node.mesh is not None:
             content = self._solid(node.mesh, node.color is not None)
         factor = transform.matrix_factor(node.matrix)
@@ -92,18 +105,27 @@ class _Making:
         return self._solids[id(mesh)]
 
 
+def _is_flat(matrix: FloatArray) -> bool:
+    return bool(np.isfinite(matrix).all()) and transform.determinant_sign(matrix) == 0
+
+
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
     """Write an assembly (see `Assembly.save`)."""
     suffix = Path(file_path(path)).suffix.lower()
+    return (*_written(assembly, path, suffix), *_densities(assembly))
+
+
+def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> tuple[Finding, ...]:
+    """Write an assembly, and return what could not be kept of all but densities."""
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":
         return write(_in_place(assembly), path)
+    form = form_of(path)
     if suffix not in _TREES:
-        form_of(path)
         message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
         raise FormatError(message, "unknown_format")
-    describing = _Describing(in_single=suffix == ".glb")
+    describing = _Describing(form)
     try:
         scene = describing.node(assembly, None)
     except OverflowError:
@@ -121,7 +143,7 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
             raise FormatError(message, "write_mismatch")
 
     write_file(path, _TREES[suffix][1](scene), prove)
-    return (*_lost(given, scene), *_empty(describing.empty), *describing.changes)
+    return (*_lost(given, scene, suffix), *_empty(describing.empty), *describing.changes)
 
 
 def _empty(count: int) -> tuple[Finding, ...]:
@@ -131,15 +153,23 @@ def _empty(count: int) -> tuple[Finding, ...]:
     return (Finding("empty_parts", "warning", message, (), count),)
 
 
+def _densities(assembly: Assembly) -> tuple[Finding, ...]:
+    count = sum(part.density is not None for part in assembly.parts)
+    if not count:
+        return ()
+    message = f"files have no room for densities; those of {count} parts were left out."
+    return (Finding("densities_left_out", "warning", message, (), count),)
+
+
 class _Describing:
     """The words of files about an assembly; solids that parts share are meshes that nodes share."""
 
-    def __init__(self, in_single: bool) -> None:
+    def __init__(self, form: Form) -> None:
         #: The number of parts without volume, which files have no place for.
         self.empty = 0
-        #: The findings about meshes in single precision.
+        #: The findings about what the format changes of meshes.
         self.changes: list[Finding] = []
-        self._in_single = in_single
+        self._form = form
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
 
     def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode | None:
@@ -163,17 +193,25 @@ class _Describing:
     def _mesh(self, solid: Solid, name: str) -> RawMesh:
         if id(solid) not in self._meshes:
             mesh = solid.normalized().to_mesh()
-            if self._in_single:
-                mesh, found = single.settled(mesh)
-                told = (replace(one, message=f"“{name}”: {one.message}") for one in found)
-                self.changes.extend(told)
-            self._meshes[id(solid)] = (solid, _raw(mesh, name, self._in_single))
+            self._tell(name, () if self._form.losses is None else self._form.losses(mesh))
+            if self._form.is_single:
+                mesh, mended = single.settled(mesh)
+                self._tell(name, mended)
+            self._meshes[id(solid)] = (solid, _raw(mesh, name, self._form.is_single))
         return self._meshes[id(solid)][1]
+
+    def _tell(self, name: str, findings: tuple[Finding, ...]) -> None:
+        """Take in findings about a part; that of the unit is about all of them."""
+        for one in findings:
+            is_common = one.code == "unit"
+            told = one if is_common else replace(one, message=f"“{name or 'part'}”: {one.message}")
+            if not is_common or one not in self.changes:
+                self.changes.append(told)
 
 
 def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
-    said = mesh.attributes if mesh.carried is not None else None
+    said = mesh.attributes.without_empty_material() if mesh.carried is not None else None
     return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
 
 
@@ -197,8 +235,8 @@ class _Held:
         return self._meshes[id(mesh)]
 
 
-def _lost(given: SceneNode, written: SceneNode) -> tuple[Finding, ...]:
-    """Return the finding about attributes that 3MF has no room for."""
+def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about attributes that a format has no room for."""
     lost: set[str] = set()
     for node, held in zip(given.walk(), written.walk(), strict=True):
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
@@ -207,7 +245,7 @@ def _lost(given: SceneNode, written: SceneNode) -> tuple[Finding, ...]:
     if not lost:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(lost))
-    message = f"3MF has no room for attributes: {told} were left out."
+    message = f"{suffix[1:].upper()} has no room for attributes: {told} were left out."
     return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from .. import csg
 from ..csg import CsgTree, Node
-from ..csg.from_solid import tree_of
+from ..csg.from_solid import lost_attributes, tree_of
 from ..csg.syntax.tree import Argument
 from ..errors import Finding, InvalidMeshError
 from ..solid.solid import Solid
@@ -72,8 +72,9 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
         else:
             nodes.append(Node("color", (Argument(None, part.color),), inner))
     csg.dump(CsgTree(tuple(nodes)), path)
+    lost = lost_attributes(part.shape for part in assembly.parts)
     count = sum(bool(part.name) for part in assembly.parts)
     if not count:
-        return ()
+        return lost
     message = f"scripts have no names; those of {count} parts were left out."
-    return (Finding("names_left_out", "warning", message, (), count),)
+    return (*lost, Finding("names_left_out", "warning", message, (), count))

@@ -128,7 +128,7 @@ class Assembly:
     def parts(self) -> tuple[Part, ...]:
         """All solids, each in its place, in the order of the tree."""
         found: list[Part] = []
-        taken: set[str] = set()
+        taken: dict[str, int] = {}
         waiting: list[tuple[Assembly, str, Part | None]] = [(self, "", None)]
         while waiting:
             node, above, around = waiting.pop()
@@ -137,7 +137,6 @@ class Assembly:
             path = path if node.shape is None else _free(path, taken)
             inherited = node._inherited(path, around)
             if node.shape is not None:
-                taken.add(path)
                 found.append(inherited)
             waiting.extend((child, path, inherited) for child in reversed(node.children))
         return tuple(found)
@@ -288,7 +287,7 @@ class Assembly:
         Returns
         -------
         tuple of Finding
-            The things that the format could not keep.
+            The things that the format could not keep; no format keeps densities.
 
         Raises
         ------
@@ -303,7 +302,8 @@ class Assembly:
         """Read an assembly; the suffix names the format.
 
         Components of 3MF, nodes of GLB, and what scripts unite are the tree; objects of OBJ are its
-        parts. Any other mesh file is an assembly of one part.
+        parts. Any other mesh file is an assembly of one part. Support and surfaces of 3MF, lines of
+        GLB, and what is scaled to nothing are no parts, as they are passed by by `bspcsg.load`.
 
         Parameters
         ----------
@@ -343,11 +343,17 @@ def _as_solid(tool: Any) -> Solid:
     return tool.to_solid() if isinstance(tool, Assembly) else Solid.from_mesh(tool)
 
 
-def _free(path: str, taken: set[str]) -> str:
-    number, free = 1, path
+def _free(path: str, taken: dict[str, int]) -> str:
+    """Take a path, with a number behind it if need be; each taken one has the last that it needed.
+
+    Counting from there on, many parts of one name take as long as those of different ones.
+    """
+    number, free = taken.get(path, 1), path
     while free in taken:
         number += 1
         free = f"{path} ({number})"
+    taken[path] = number
+    taken.setdefault(free, 1)
     return free
 
 

@@ -102,6 +102,12 @@ class Attributes:
         )
         return replace(self, vertex=vertex, corner=corner, face=face)
 
+    def without_empty_material(self) -> "Attributes":
+        """Return the attributes without ``"material"`` if no face has one."""
+        names = self.face.get("material")
+        is_empty = names is not None and names.dtype.kind == "U" and not (names != "").any()
+        return self.without({"material"}) if is_empty else self
+
     def turned(self, linear: FloatArray) -> "Attributes":
         """Return the attributes after a linear map of the mesh: normals turn, and keep length."""
         if not NORMALS.intersection(self.names):
@@ -139,6 +145,24 @@ class Attributes:
         image = np.array([names.get(kind, kind) for kind in kinds.tolist()])[numbers]
         return replace(self, face={**self.face, "material": image})
 
+    def with_materials_called(self, called: Callable[[str], str]) -> "Attributes":
+        """Return the attributes with other names of materials; those of one name get numbers."""
+        values = self.face.get("material")
+        if values is None:
+            return self
+        kinds, numbers = np.unique(values, return_inverse=True)
+        image = {kind: kind for kind in kinds.tolist() if called(kind) == kind}
+        if len(image) == len(kinds):
+            return self
+        taken = set(image)
+        for kind in kinds.tolist():
+            if kind not in image:
+                image[kind] = _free(called(kind), taken)
+                taken.add(image[kind])
+        materials = {image[name]: one for name, one in self.materials.items() if name in image}
+        told = np.array([image[kind] for kind in kinds.tolist()])[numbers]
+        return replace(self, face={**self.face, "material": told}, materials=materials)
+
     @cached_property
     def patches(self) -> tuple[IndexArray, list[bytes]]:
         """The faces that have the same values everywhere: (m,) numbers, and the values behind them.
@@ -174,6 +198,15 @@ class Attributes:
 def _free_name(name: str, material: Material, taken: Mapping[str, Material]) -> str:
     number, free = 1, name
     while taken.get(free, material) != material:
+        number += 1
+        free = f"{name} ({number})"
+    return free
+
+
+def _free(name: str, taken: Container[str]) -> str:
+    """Return a name that is not taken, with a number behind it if need be."""
+    number, free = 1, name
+    while free in taken:
         number += 1
         free = f"{name} ({number})"
     return free

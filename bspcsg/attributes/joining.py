@@ -7,7 +7,7 @@ import numpy as np
 
 from .._types import IndexArray
 from .attributes import Attributes, Kind, Values
-from .carrying import common_type, default_of
+from .carrying import colors_alike, common_type, default_of
 from .material import Material
 
 
@@ -51,12 +51,13 @@ def _values(name: str, kind: Kind, parts: Sequence[MeshPart]) -> Values:
         "face": lambda part: (len(part.faces),),
     }[kind]
     held = [_held(name, kind, part.attributes) for part in parts]
-    known = [values for values in held if values is not None]
     depth = 2 if kind == "corner" else 1
+    known = colors_alike(name, [values for values in held if values is not None], depth)
+    given = iter(known)
     dtype = common_type(name, known, depth)
     shape = known[0].shape[depth:]
     blocks = [
-        np.full(rows(part) + shape, default_of(dtype), dtype) if values is None else values
+        np.full(rows(part) + shape, default_of(dtype), dtype) if values is None else next(given)
         for part, values in zip(parts, held, strict=True)
     ]
     whole: Values = np.concatenate(blocks).astype(dtype, copy=False)

@@ -6,12 +6,12 @@ transforms multmatrix nodes. The language has no complement: a set whose complem
 thing to write is carried as that, with a sign, until something bounded takes it away.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import UnboundedError
+from ..errors import Finding, UnboundedError
 from ..geometry.chain import UNMOVED, FactorChain
 from ..geometry.transform import Factor
 from ..parameters import of_kind, truth_value
@@ -79,6 +79,29 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
         message = "A solid that reaches to infinity cannot be written as a script."
         raise UnboundedError(message, "unbounded")
     return CsgTree(() if body.node is None else (body.node,))
+
+
+def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
+    """Return the finding about attributes of solids, which scripts have no room for.
+
+    Nothing is evaluated for it.
+    """
+    names: set[str] = set()
+    waiting = [expression_of(solid).node for solid in solids]
+    seen = set(waiting)
+    while waiting:
+        content = waiting.pop().content
+        if isinstance(content, Pending):
+            inner = {operand.node for operand in content.operands} - seen
+            seen |= inner
+            waiting.extend(inner)
+            continue
+        names.update(name for said in content.sayings if said is not None for name in said.names)
+    if not names:
+        return ()
+    told = ", ".join(f"“{name}”" for name in sorted(names))
+    message = f"scripts have no room for attributes: {told} were left out."
+    return (Finding("attributes_left_out", "warning", message, (), len(names)),)
 
 
 def _polyhedron(solid: Solid) -> _Body | None:

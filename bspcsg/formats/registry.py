@@ -153,7 +153,7 @@ def _glb() -> Format:
     binary = Form(
         file.binary,
         glb.objects,
-        file.called,
+        said.called,
         file.losses,
         is_single=True,
         keeps=said.kept,

@@ -1,7 +1,9 @@
 """Assemblies: trees of named, coloured, placed solids."""
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
+from time import process_time
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,13 @@ import bspcsg as b
 from support.pictures import PIXEL
 
 RED, GREY = (1.0, 0.0, 0.0, 1.0), (0.2, 0.2, 0.2, 1.0)
+
+#: The findings that files of a format always come with.
+UNITS = {".3mf": [], ".glb": ["unit"]}
+
+
+def codes_of(findings: Iterable[b.Finding]) -> list[str]:
+    return [finding.code for finding in findings]
 
 
 def car() -> b.Assembly:
@@ -130,6 +139,22 @@ def test_the_union_says_of_each_face_which_part_it_is_of() -> None:
     assert b.Solid.from_mesh(car()).volume == car().to_solid().volume
 
 
+def test_many_parts_of_one_name_are_counted_once() -> None:
+    screw, second = (b.Assembly(name, b.cube(1)) for name in ("screw", "screw (2)"))
+    found = b.Assembly("", [screw, second, screw, screw, second, screw])
+    assert [part.path for part in found] == [
+        "screw",
+        "screw (2)",
+        "screw (3)",
+        "screw (4)",
+        "screw (2) (2)",
+        "screw (5)",
+    ]
+    start = process_time()
+    assert len(b.Assembly("", [screw] * 20_000)) == 20_000
+    assert process_time() - start < 5
+
+
 @pytest.mark.parametrize("suffix", [".3mf", ".glb"])
 def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix: str) -> None:
     wheel = b.cylinder(h=2, r=5, segments=4)
@@ -142,7 +167,7 @@ def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix:
             b.Assembly("group", [b.Assembly("inner", b.cube(1), color=RED)]).rotate(90),
         ],
     ).translate(1, 2, 3)
-    assert made.save(tmp_path / f"x{suffix}") == ()
+    assert codes_of(made.save(tmp_path / f"x{suffix}")) == UNITS[suffix]
     again = b.Assembly.load(tmp_path / f"x{suffix}")
     assert [part.path for part in again] == [part.path for part in made]
     assert [part.color for part in again] == [part.color for part in made]
@@ -155,11 +180,44 @@ def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix:
     again.save(tmp_path / f"y{suffix}")
     once_more = b.Assembly.load(tmp_path / f"y{suffix}")
     assert [part.path for part in once_more] == [part.path for part in made]
-    # glTF names meshes, too: those of instances after the first of them.
     data = [(tmp_path / f"{name}{suffix}").read_bytes() for name in "xy"]
-    assert suffix == ".glb" or data[0] == data[1]
+    assert data[0] == data[1]
     whole = b.load(tmp_path / f"x{suffix}")
     assert whole.volume == pytest.approx(made.to_solid().volume)
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_instances_of_a_named_part_may_have_no_name(tmp_path: Path, suffix: str) -> None:
+    cube = b.cube(1)
+    b.Assembly("a", [b.Assembly("wheel", cube), cube]).save(tmp_path / f"x{suffix}")
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert [part.path for part in again] == ["a/wheel", "a/part"]
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+def test_the_deepest_assembly_can_be_saved(tmp_path: Path, suffix: str) -> None:
+    cube = b.cube(1)
+    made = b.Assembly("0", [b.Assembly("a", cube), b.Assembly("b", cube).translate(3, 0, 0)])
+    for depth in range(1, 63):
+        made = b.Assembly(str(depth), [made])
+    with pytest.raises(b.InvalidParameterError):
+        b.Assembly("", [made])
+    made.save(tmp_path / f"x{suffix}")
+    again = b.Assembly.load(tmp_path / f"x{suffix}")
+    assert [part.path for part in again] == [part.path for part in made]
+    assert b.load(tmp_path / f"x{suffix}").volume == 2
+
+
+def test_materials_called_after_their_colours_can_be_saved_again(tmp_path: Path) -> None:
+    near = (1.0, 0.0, 0.0, 0.9999)
+    parts = [b.Assembly("x", b.cube(1)), b.Assembly("y", b.cube(1).translate(3, 0, 0), color=near)]
+    b.Assembly("a", parts, color=RED).save(tmp_path / "x.glb")
+    again = b.Assembly("b", [b.load(tmp_path / "x.glb"), b.Assembly.load(tmp_path / "x.glb")])
+    again.save(tmp_path / "y.glb")
+    found = [part.color for part in b.Assembly.load(tmp_path / "y.glb")]
+    assert found == [None, RED, near]
+    b.Assembly("c", [b.load(tmp_path / "x.glb") & b.cube(2)]).save(tmp_path / "z.glb")
+    assert b.Assembly.load(tmp_path / "z.glb").parts[0].color == RED
 
 
 @pytest.mark.parametrize("suffix", [".3mf", ".glb"])
@@ -167,8 +225,9 @@ def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: st
     gone = b.Assembly("gone", [b.cube(1) - b.cube(1)])
     made = b.Assembly("a\x01\ud800b", [b.cube(1), gone])
     assert [part.path for part in made] == ["a\x01\ud800b/part", "a\x01\ud800b/gone/part"]
-    (finding,) = made.save(tmp_path / f"x{suffix}")
+    finding, *others = made.save(tmp_path / f"x{suffix}")
     assert (finding.code, finding.count) == ("empty_parts", 1)
+    assert codes_of(others) == UNITS[suffix]
     again = b.Assembly.load(tmp_path / f"x{suffix}")
     assert [part.solid.volume for part in again] == [1]
     with pytest.raises(b.FormatError) as caught:
@@ -184,7 +243,9 @@ def test_empty_parts_and_names_that_files_cannot_hold(tmp_path: Path, suffix: st
 def test_parts_of_which_single_precision_leaves_nothing_are_said(tmp_path: Path) -> None:
     slab = b.box((1e-9, 1, 1)).translate(1, 0, 0)
     made = b.Assembly("both", [b.Assembly("slab", slab), b.Assembly("twin", slab), b.cube(1)])
-    (finding,) = made.save(tmp_path / "x.glb")
+    findings = made.save(tmp_path / "x.glb")
+    assert codes_of(findings) == codes_of(b.save(slab, tmp_path / "slab.glb"))
+    finding = findings[-1]
     assert (finding.code, finding.count) == ("thickened_in_single", 12)
     assert finding.message.startswith("“slab”: all of this is thinner than single precision")
     parts = b.Assembly.load(tmp_path / "x.glb")
@@ -225,7 +286,7 @@ def test_textures_and_colours_travel_with_parts(tmp_path: Path, suffix: str) -> 
     parts = [top, top.translate(3, 0, 0), b.Assembly("side", other)]
     parts += [b.Assembly("plate", said(face_attributes={"color": colors}))]
     made = b.Assembly("desk", [*parts, b.Assembly("leg", b.cube(1), color=RED)])
-    assert made.save(tmp_path / f"x{suffix}") == ()
+    assert codes_of(made.save(tmp_path / f"x{suffix}")) == UNITS[suffix]
     again = b.Assembly.load(tmp_path / f"x{suffix}")
     assert again.parts[0].shape is again.parts[1].shape and again["desk/leg"].color == RED
     found = again["desk/top"].solid.to_mesh()
@@ -246,6 +307,17 @@ def test_what_parts_say_that_3mf_cannot_hold_is_named(tmp_path: Path) -> None:
     warm = b.Solid(mesh.vertices, mesh.faces, vertex_attributes={"heat": np.arange(8.0)})
     (finding,) = b.Assembly("stove", [b.Assembly("top", warm)]).save(tmp_path / "x.3mf")
     assert finding.code == "attributes_left_out" and "“heat”" in finding.message
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb", ".csg", ".obj"])
+def test_what_files_cannot_hold_of_assemblies_is_named(tmp_path: Path, suffix: str) -> None:
+    third = b.cube(1 / 3).tagged(layer=1)
+    path = tmp_path / f"x{suffix}"
+    part = b.Assembly("", third)
+    found = codes_of(b.Assembly("", [part, part.translate(3, 0, 0)], density=2).save(path))
+    assert sorted(found) == sorted([*codes_of(b.save(third, path)), "densities_left_out"])
+    assert "attributes_left_out" in found
+    assert ("single_precision" in found) == (suffix == ".glb")
 
 
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:

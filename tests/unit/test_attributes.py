@@ -219,6 +219,30 @@ def test_different_shapes_under_one_name_are_refused_when_asked_for() -> None:
         _ = (one | text).to_mesh().face_attributes
 
 
+@pytest.mark.parametrize("kind", ["vertex", "face"])
+def test_colours_of_operands_come_in_one_form(kind: str) -> None:
+    count = {"vertex": 8, "face": 12}[kind]
+
+    def painted(rows: list[Any], at: float, dtype: Any) -> b.Solid:
+        colors = np.tile(np.array(rows, dtype), (count, 1))
+        said: dict[str, Any] = {f"{kind}_attributes": {"color": colors}}
+        return cube(at=at, **said)
+
+    def colors(*solids: b.Solid) -> npt.NDArray[Any]:
+        found = b.union(solids).to_mesh().attributes.at_corners("color")
+        return np.unique(found.reshape(-1, found.shape[2]), axis=0)
+
+    floats, few = painted([0, 0.5, 1], 0, "f4"), painted([51, 102, 0], 4, "u1")
+    mixed = colors(floats, few)
+    assert mixed.dtype == np.float32
+    assert np.array_equal(mixed, np.array([[0, 0.5, 1], [0.2, 0.4, 0]], "f4"))
+    four = painted([51, 102, 0, 51], 8, "u1")
+    assert colors(few, four).tolist() == [[51, 102, 0, 51], [51, 102, 0, 255]]
+    assert np.allclose(
+        colors(floats, four), [[0, 0.5, 1, 1], [0.2, 0.4, 0, 0.2]], rtol=1e-7, atol=0
+    )
+
+
 @pytest.mark.parametrize(
     "options",
     [

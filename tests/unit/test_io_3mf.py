@@ -1,5 +1,6 @@
 """3MF: units, transforms, components, and what is refused."""
 
+import re
 import zipfile
 from pathlib import Path
 
@@ -351,3 +352,68 @@ def test_objects_without_triangles_are_told(tmp_path: Path) -> None:
     assert [found.message for found in raw.findings] == [
         "1 objects without triangles were ignored."
     ]
+
+
+def painted(bases: str) -> str:
+    """Return a cube of two base materials by turns."""
+    told = CUBE
+    for k in range(12):
+        told = told.replace('"/><triangle', f'" pid="9" p1="{k % 2}" /><triangle', 1)
+    told = told.replace('"/></triangles>', '" pid="9" p1="1"/></triangles>')
+    return f'<basematerials id="9">{bases}</basematerials>' + told
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (("PLA", "PLA"), ["PLA", "PLA (1)"]),
+        (("", ""), ["material 0", "material 1"]),
+        (("", "material 0"), ["material 0 (0)", "material 0"]),
+    ],
+)
+def test_materials_of_one_name_stay_apart(
+    tmp_path: Path, names: tuple[str, str], expected: list[str]
+) -> None:
+    red, blue = (
+        f'<base name="{name}" displaycolor="#{color}"/>'
+        for name, color in zip(names, ("FF0000", "0000FF"), strict=True)
+    )
+    path = package(tmp_path / "x.3mf", model(painted(red + blue), ITEM))
+    write(read(path), path)
+    said = held(read(path).attributes, "the attributes")
+    assert said.face["material"].tolist() == expected * 6
+    colors = [said.materials[name].color for name in expected]
+    assert colors == [(1, 0, 0, 1), (0, 0, 1, 1)]
+
+
+FLAT = '<item objectid="2" transform="0 0 0 0 0 0 0 0 0 5 0 0"/>'
+
+
+@pytest.mark.parametrize(
+    ("kind", "item"),
+    [("support", '<item objectid="2"/>'), ("surface", '<item objectid="2"/>'), ("model", FLAT)],
+)
+def test_assemblies_pass_by_what_loading_does(tmp_path: Path, kind: str, item: str) -> None:
+    other = CUBE.replace('id="1"', f'id="2" type="{kind}"')
+    if kind == "surface":
+        other = re.sub("<triangle [^>]*/>", "", other, count=1)
+    path = package(tmp_path / "x.3mf", model(CUBE + other, ITEM + item))
+    assert b.load(path).volume == 1
+    assert [part.solid.volume for part in b.Assembly.load(path)] == [1]
+    package(path, model(other, item))
+    for load in (b.load, b.Assembly.load):
+        with pytest.raises(b.InvalidMeshError) as caught:
+            load(path)
+        assert caught.value.code == "empty_mesh"
+
+
+def test_elements_of_other_namespaces_are_passed_by(tmp_path: Path) -> None:
+    space = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07"
+    slices = (
+        f'<s:slicestack xmlns:s="{space}" id="7" zbottom="0"><s:slice ztop="1"><s:vertices>'
+        '<s:vertex x="0" y="0"/></s:vertices></s:slice></s:slicestack>'
+    )
+    path = package(tmp_path / "x.3mf", model(slices + CUBE, ITEM))
+    assert b.load(path).volume == 1
+    package(path, model(CUBE + slices, ITEM))
+    assert b.load(path).volume == 1

@@ -399,3 +399,74 @@ def test_a_wrong_property_of_3mf_is_refused(tmp_path: Path) -> None:
             archive.writestr("3D/3dmodel.model", model.replace(b'p1="0"', wrong, 1))
         with pytest.raises(b.FormatError):
             read(tmp_path / "y.3mf")
+
+
+@pytest.mark.parametrize("texture", [None, PIXEL])
+@pytest.mark.parametrize("suffix", [".glb", ".3mf"])
+def test_names_of_materials_are_fit_for_files(
+    tmp_path: Path, suffix: str, texture: bytes | None
+) -> None:
+    bad = "a\ud800"
+    fit = "a?" if suffix == ".glb" else "a\ufffd"
+    mesh = b.cube(1).to_mesh()
+    colored = b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        corner_attributes={"uv": np.zeros((12, 3, 2))},
+        face_attributes={"material": np.repeat([bad, fit, "x\x01y"], 4)},
+        materials={bad: b.Material(texture=texture), "x\x01y": b.Material((0, 0, 1))},
+    )
+    for save in (colored.save, b.Assembly("all", [colored]).save):
+        save(tmp_path / f"x{suffix}")
+        again = b.load(tmp_path / f"x{suffix}").to_mesh()
+        third = "x\x01y" if suffix == ".glb" else "x\ufffdy"
+        names = [f"{fit} (2)", fit, third]
+        assert again.face_attributes["material"].tolist() == np.repeat(names, 4).tolist()
+        assert again.materials[names[0]].texture == texture
+        assert again.materials[third].color == (0, 0, 1, 1)
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".3mf"])
+def test_faces_without_any_material_have_their_colours(tmp_path: Path, suffix: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    bare = {"material": np.full(12, "")}
+    colors = np.full((12, 4), 51, "u1")
+    both = b.Solid(mesh.vertices, mesh.faces, face_attributes={**bare, "color": colors})
+    both.save(tmp_path / f"x{suffix}")
+    assert (of(b.load(tmp_path / f"x{suffix}").to_mesh(), "color") == 51).all()
+    plain = b.Solid(mesh.vertices, mesh.faces, face_attributes=bare)
+    plain.save(tmp_path / f"x{suffix}")
+    blue = (0.0, 0.0, 1.0, 1.0)
+    b.Assembly("blue", [plain], color=blue).save(tmp_path / f"y{suffix}")
+    assert b.Assembly.load(tmp_path / f"y{suffix}").parts[0].color == blue
+
+
+def test_a_picture_fit_for_a_part_has_no_name_of_another_material(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    said = b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        corner_attributes={"uv": np.zeros((12, 3, 2))},
+        face_attributes={"material": np.repeat(["a/b", "a_b"], 6)},
+        materials={"a/b": b.Material(texture=PIXEL), "a_b": b.Material((1, 0, 0))},
+    )
+    said.save(tmp_path / "x.3mf")
+    again = b.load(tmp_path / "x.3mf").to_mesh()
+    assert again.face_attributes["material"].tolist() == ["a_b_"] * 6 + ["a_b"] * 6
+    assert again.materials["a_b_"].texture == PIXEL and again.materials["a_b"].texture is None
+
+
+@pytest.mark.parametrize(
+    "name", ["color", "normal", "uv", "NORMAL", "COLOR_0", "_", "material", "x\ud800", "x\x01"]
+)
+def test_floats_of_any_name_are_held_or_left_out(tmp_path: Path, name: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    values = np.linspace(0, 1, len(mesh.vertices), dtype="f4")
+    named = b.Solid(mesh.vertices, mesh.faces, vertex_attributes={name: values})
+    codes = [one.code for one in b.save(named, tmp_path / "x.glb")]
+    again = b.load(tmp_path / "x.glb").to_mesh()
+    held = {} if again.carried is None else again.vertex_attributes
+    assert list(held) == ([] if "attributes_left_out" in codes else [name])
+    assert ("attributes_left_out" in codes) == (
+        name in ("color", "normal", "uv", "material", "x\ud800")
+    )

@@ -1,5 +1,6 @@
 """GLB of other programs: numbers in few bytes or replaced one by one, a mesh at many places."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 import bspcsg as b
 from bspcsg.errors import FormatError
 from bspcsg.io import RawMesh, read
+from corpus.broken import glb_of
 from support.glb import Numbers, Scene
 from support.io import refusal
 from support.shapes import cube
@@ -108,9 +110,44 @@ def test_shapes_that_it_could_take_are_dropped_by_name(tmp_path: Path) -> None:
     scene.primitive["targets"] = [{"POSITION": 2}]
     mesh = read_back(scene, tmp_path)
     assert volume(mesh) == pytest.approx(8) and mesh.dropped == ("morph targets",)
+
+
+def test_what_has_no_data_is_zeros_but_for_what_replaces_them(tmp_path: Path) -> None:
+    scene = scene_of()
+    points = np.asarray(cube(2.0)[0], "f4")
+    places = np.flatnonzero(points.any(axis=1)).tolist()
+    scene.tree["accessors"].append({"componentType": 5126, "count": 8, "type": "VEC3"})
+    scene.replace(2, places, points[places])
     scene.primitive["attributes"]["POSITION"] = 2
-    said = refusal(tmp_path / "x.glb", scene.bytes(), "unsupported")
+    assert volume(read_back(scene, tmp_path)) == 8
+    scene.tree["accessors"][2] |= {"count": 1 << 40}
+    said = refusal(tmp_path / "x.glb", scene.bytes(), "too_large")
     assert "accessor 2" in said
+    scene.tree["accessors"][2] |= {"count": -1}
+    refusal(tmp_path / "x.glb", scene.bytes(), "syntax")
+
+
+@pytest.mark.parametrize(
+    ("extension", "is_read"),
+    [("KHR_materials_unlit", True), ("KHR_texture_basisu", True), ("CESIUM_RTC", False)],
+)
+def test_a_file_that_needs_an_extension(tmp_path: Path, extension: str, is_read: bool) -> None:
+    scene = scene_of()
+    scene.tree["extensionsRequired"] = [extension]
+    if is_read:
+        assert volume(read_back(scene, tmp_path)) == pytest.approx(8)
+    else:
+        assert extension in refusal(tmp_path / "x.glb", scene.bytes(), "unsupported")
+
+
+def test_data_written_as_text_is_refused_as_such(tmp_path: Path) -> None:
+    scene = scene_of()
+    data = scene.bytes()
+    path = tmp_path / "x.glb"
+    text = json.dumps(scene.tree | {"buffers": [{"byteLength": 3, "uri": "data:;base64,AAAA"}]})
+    assert "as text" in refusal(path, glb_of(text.encode(), scene.data), "unsupported")
+    path.write_bytes(data)
+    assert volume(read(path)) == pytest.approx(8)
 
 
 def test_a_mesh_at_many_places(tmp_path: Path) -> None:
@@ -194,3 +231,31 @@ def test_a_compressed_mesh_is_refused(tmp_path: Path) -> None:
     scene.tree["extensionsRequired"] = ["EXT_meshopt_compression"]
     with pytest.raises(FormatError, match="EXT_meshopt_compression"):
         read_back(scene, tmp_path)
+
+
+def test_colours_of_a_mesh_come_in_one_form(tmp_path: Path) -> None:
+    scene = scene_of()
+    scene.primitive["attributes"]["COLOR_0"] = scene.add(
+        np.full((8, 4), 255, "u1"), normalized=True
+    )
+    other = dict(scene.primitive["attributes"], COLOR_0=scene.add(np.full((8, 3), 0.5, "f4")))
+    other["POSITION"] = scene.add(np.asarray(cube(2.0)[0] + 5, "f4"))
+    scene.tree["meshes"][0]["primitives"].append(scene.primitive | {"attributes": other})
+    said = read_back(scene, tmp_path).attributes
+    assert said is not None
+    colors = said.at_corners("color")
+    assert colors.dtype == np.float32
+    assert np.allclose(colors[0, 0], 1, rtol=0, atol=1e-6)
+    assert np.allclose(colors[-1, 0], [0.7353570] * 3 + [1], rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("is_flat", [False, True])
+def test_assemblies_pass_by_lines_and_what_is_flat(tmp_path: Path, is_flat: bool) -> None:
+    scene = scene_of()
+    primitive = scene.primitive if is_flat else scene.primitive | {"mode": 1}
+    scene.tree["meshes"].append({"primitives": [primitive]})
+    scene.tree["nodes"].append({"mesh": 1, "scale": [1, 1, int(not is_flat)]})
+    path = tmp_path / "x.glb"
+    path.write_bytes(scene.bytes())
+    assert b.load(path).volume == 8e9
+    assert [part.solid.volume for part in b.Assembly.load(path)] == [8e9]

@@ -13,6 +13,8 @@ from .container import COMPONENTS, ELEMENTS, Container
 def stored(container: Container, number: int) -> Values:
     """Return the (count, k) numbers of an accessor as they are in the file; in place, if they are.
 
+    Where there are only some that are replaced, the others are zeros.
+
     Raises
     ------
     IndexError
@@ -21,7 +23,10 @@ def stored(container: Container, number: int) -> Values:
     accessor = container.tree["accessors"][number]
     count, item = accessor["count"], np.dtype(COMPONENTS[accessor["componentType"]])
     width = ELEMENTS[accessor["type"]]
-    values = _rows(container, accessor, count, width, item)
+    if "bufferView" in accessor:
+        values = _rows(container, accessor, count, width, item)
+    else:
+        values = np.zeros((count, width), item)
     if "sparse" not in accessor:
         return values
     sparse = accessor["sparse"]

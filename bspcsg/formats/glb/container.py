@@ -20,11 +20,13 @@ ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, 
 _MOST_TRIANGLES = 1 << 27
 _DEEPEST = 64
 
-#: Extensions that change what the triangles are, and which are not decoded here.
-_GEOMETRIC = ("draco", "meshopt")
-
 #: Shows the mesh of a node several times, at places that accessors tell.
 _INSTANCES = "EXT_mesh_gpu_instancing"
+
+#: Extensions that are read here, and beginnings of the names of those that are about looks alone:
+#: a file may say that it needs others to be understood.
+_READ = (_INSTANCES, "KHR_mesh_quantization")
+_LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")
 
 #: Attributes of vertices that are not read, by the beginnings of their names.
 _ATTRIBUTES = {
@@ -131,12 +133,14 @@ class _Claims:
     def check(self) -> None:
         """Check everything that decoding relies on."""
         for extension in self._tree.get("extensionsRequired", []):
-            if any(word in extension.lower() for word in _GEOMETRIC):
+            if extension not in _READ and not extension.startswith(_LOOKS):
                 message = f"the file needs the extension {extension}, which cannot be read here."
                 raise self._source.error(message, "unsupported")
         for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
-                message = "the data lies in another file; only self-contained GLB can be read."
+                is_text = str(buffer["uri"]).startswith("data:")
+                where = "as text in the description" if is_text else "in another file"
+                message = f"data lies {where}; only GLB with all of it in its binary chunk is read."
                 raise self._source.error(message, "unsupported")
             if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
                 message = f"buffer {number} promises more than the {self._held} bytes of data."
@@ -154,7 +158,7 @@ class _Claims:
         return entries[index]
 
     def _check_accessor(self, number: int, accessor: dict[str, Any]) -> None:
-        """Check where the elements lie; those that lie nowhere are refused where they are used."""
+        """Check where the elements lie; those that lie nowhere are checked where they are used."""
         count, element = accessor["count"], _bytes_of(accessor)
         if "bufferView" in accessor:
             self._check_elements(number, accessor, count, element)
@@ -184,11 +188,19 @@ class _Claims:
             raise self._source.error(message, "truncated")
 
     def _used(self, number: Any) -> dict[str, Any]:
-        """Return an accessor whose elements will be read."""
+        """Return an accessor whose elements will be read: zeros where only some are replaced."""
         accessor = self._entry("accessors", number)
-        if "bufferView" not in accessor:
-            message = f"accessor {number} has no data but what is sparse, which cannot be read."
+        if "bufferView" in accessor:
+            return accessor
+        if "sparse" not in accessor:
+            # Extensions that compress leave it so, too.
+            message = f"accessor {number} has no data that can be read here."
             raise self._source.error(message, "unsupported")
+        zeros = accessor["count"] * _bytes_of(accessor)
+        if not 0 <= zeros <= self._held:
+            # Nothing else bounds them.
+            message = f"accessor {number} has {zeros} bytes of zeros, more than the file has data."
+            raise self._source.error(message, "too_large")
         return accessor
 
     def _check_nodes(self, nodes: list[dict[str, Any]]) -> None:

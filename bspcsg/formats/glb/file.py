@@ -24,7 +24,7 @@ from ..said import said_of
 from ..source import Source
 from .container import container_of
 from .nodes import Shown, shown
-from .said import Pictures, columns_of
+from .said import Pictures, called, columns_of
 
 #: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
 TO_METRES = np.array(
@@ -94,11 +94,6 @@ def _hidden(count: int) -> tuple[Finding, ...]:
 def _unit() -> Finding:
     message = "GLB is in metres with y upwards; it was read in millimetres with z upwards."
     return Finding("unit", "note", message, (), 1)
-
-
-def called(name: str) -> str:
-    """Return a name without lone surrogates, which are no text."""
-    return name.encode("utf-8", "replace").decode("utf-8")
 
 
 def most_bytes(mesh: Mesh | RawMesh) -> int:

@@ -30,18 +30,24 @@ _KNOWN = {"NORMAL": "normal", "TEXCOORD_0": "uv", "COLOR_0": "color"}
 _OWN = "_"
 
 
+def called(name: str) -> str:
+    """Return a name without lone surrogates, which are no text."""
+    return name.encode("utf-8", "replace").decode("utf-8")
+
+
 def kept(said: Attributes, vertices: FloatArray) -> Attributes:
     """Return what GLB holds of attributes, in single precision.
 
     Normals and texture coordinates of corners, colours, materials of faces, and other floats of
     vertices and corners, up to four for each. Where normals are missing, those of the faces are.
     """
-    held = chosen(_with_all_normals(said, vertices), _kept)
+    told = _with_all_normals(said.without_empty_material(), vertices)
+    held = chosen(told, _kept).with_materials_called(called)
     names = held.face.get("material")
     if names is None:
         return Attributes(held.faces, held.vertex, held.corner, held.face)
     used = [name for name in np.unique(names).tolist() if name]
-    given = {name: said.materials.get(name, Material()) for name in used}
+    given = {name: held.materials.get(name, Material()) for name in used}
     materials = {name: replace(one, color=as_read(one.color)) for name, one in given.items()}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
 
@@ -78,8 +84,9 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
     if name == "normal":
         is_whole = shape == (3,) and not np.isnan(single).any()
         return single if is_whole else None
-    # A file must hold no NaN.
-    return None if name in _KNOWN or np.isnan(single).any() else single
+    # A file must hold no NaN, and no name that is no text.
+    is_fit = name not in _KNOWN.values() and called(name) == name
+    return single if is_fit and not np.isnan(single).any() else None
 
 
 def _color(values: Values) -> Values:

@@ -13,10 +13,10 @@ from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
 from .container import Container, container_of, instances_of
-from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, called, container
+from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, container
 from .light import as_read
 from .nodes import local_matrix, places_of, triangles_of
-from .said import Pictures, kept, materials_of
+from .said import Pictures, called, kept, materials_of
 
 _IDENTITY = np.eye(4)
 
@@ -73,6 +73,8 @@ class _Reading:
         children = tuple(self._node(child, _IDENTITY) for child in told.get("children", []))
         matrix = outer @ local_matrix(told)
         name = str(told.get("name") or (mesh.name if mesh is not None else ""))
+        if mesh is not None and len(mesh.faces) == 0:
+            mesh = None
         if mesh is None or not (children or instances_of(told)):
             return SceneNode(name, matrix, *_painted(mesh), children)
         places = places_of(self._held, told)
@@ -91,25 +93,49 @@ class _Reading:
         return self._meshes[number]
 
 
-def as_written(node: SceneNode) -> SceneNode:
-    """Return a tree with the colours that are read after it was written."""
-    color = node.color and as_read(node.color)
-    children = tuple(map(as_written, node.children))
-    return SceneNode(node.name, node.matrix, node.mesh, color, children)
+def as_written(root: SceneNode) -> SceneNode:
+    """Return a tree with the colours and attributes that are read after it was written."""
+    return _Holding().node(root)
+
+
+class _Holding:
+    """A tree as GLB holds it; what nodes share stays shared."""
+
+    def __init__(self) -> None:
+        self._meshes: dict[int, tuple[RawMesh, tuple[float, ...] | None]] = {}
+
+    def node(self, node: SceneNode) -> SceneNode:
+        """Return a node as it is held."""
+        mesh, painted = (None, None) if node.mesh is None else self._mesh(node.mesh)
+        color = painted if node.color is None else as_read(node.color)
+        return SceneNode(node.name, node.matrix, mesh, color, tuple(map(self.node, node.children)))
+
+    def _mesh(self, mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
+        if id(mesh) not in self._meshes:
+            held = None if mesh.attributes is None else kept(mesh.attributes, mesh.vertices)
+            said = None if held is None or held.is_empty else held
+            one = replace(mesh, attributes=said)
+            self._meshes[id(mesh)] = one, _painted(one)[1]
+        return self._meshes[id(mesh)]
 
 
 def _painted(mesh: RawMesh | None) -> tuple[RawMesh | None, tuple[float, ...] | None]:
-    """Return a mesh and the colour that it was written with, if it has one and nothing else."""
+    """Return a mesh and the colour that its one material is called after, if it says no more."""
     said = None if mesh is None else mesh.attributes
     if mesh is None or said is None or said.names != ("material",):
         return mesh, None
     names = np.unique(said.face["material"]).tolist()
     color = said.materials.get(names[0], Material()).color
-    return mesh, color if names == [_name_of(color)] else None
+    # Colours that are the same in bytes have names that differ in a number behind them.
+    is_named = len(names) == 1 and names[0].partition(" ")[0] == _name_of(color)
+    return mesh, color if is_named else None
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:
-    """Yield the file of a tree; what is at several nodes is there once."""
+    """Yield the file of a tree as `as_written` returns it; what is at several nodes is once there.
+
+    Meshes have no names, for those of the nodes are all there is.
+    """
     nodes: list[dict[str, Any]] = [{"matrix": TO_METRES.T.ravel().tolist()}]
     described = SceneDescription(nodes)
     taken: dict[str, Material] = {}
@@ -130,20 +156,17 @@ def encode(root: SceneNode) -> Iterator[bytes]:
         waiting.extend((child, number) for child in reversed(node.children))
     pictures = Pictures(taken, described.append)
     for _, said, mesh in meshes.values():
-        described.add_object(
-            mesh.name, described.append_mesh(mesh.vertices, mesh.faces, said, pictures)
-        )
+        described.add_object("", described.append_mesh(mesh.vertices, mesh.faces, said, pictures))
     further = pictures.described()
     yield from container(described.text(further), described.blocks)
 
 
 def _said(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
     said = Attributes(mesh.faces) if mesh.attributes is None else mesh.attributes
-    held = kept(said, mesh.vertices)
-    if color is None or {"color", "material"}.intersection(held.names):
-        return held
+    if color is None or {"color", "material"}.intersection(said.names):
+        return said
     names = np.full(len(mesh.faces), _name_of(color))
-    return replace(held, face={"material": names}, materials={_name_of(color): Material(color)})
+    return replace(said, face={"material": names}, materials={_name_of(color): Material(color)})
 
 
 def _name_of(color: tuple[float, ...]) -> str:

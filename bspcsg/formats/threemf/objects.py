@@ -17,7 +17,7 @@ from ...solid.solid import Solid, combine, solid_with
 from ..raw import RawMesh
 from ..said import said_of
 from .package import Package
-from .part import Object, PlacedObject
+from .part import INSTANCE, Object, PlacedObject
 from .properties import properties_of
 
 #: Most objects that a build may place, and most that may lie in one another.
@@ -61,9 +61,12 @@ class Objects:
             here, placed, outer = waiting.pop()
             visited += 1
             transforms: tuple[FloatArray, ...] = (placed.transform, *outer)
-            if visited > _MOST_PLACED or len(transforms) > _DEEPEST:
-                raise self._too_deep()
             path, known = self._named(here, placed)
+            # An assembly's parts of two names lie in objects of their own.
+            deepest = _DEEPEST + (known.part_number == INSTANCE)
+            is_deep = bool(known.components) and len(transforms) >= deepest
+            if visited > _MOST_PLACED or is_deep:
+                raise self._too_deep()
             if not known.components:
                 found.append((path, placed.item, transforms))
             waiting.extend((path, inner, transforms) for inner in reversed(known.components))

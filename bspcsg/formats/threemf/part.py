@@ -21,6 +21,9 @@ MILLIMETRES = {
     "meter": 1000.0,
 }
 
+#: The part number of an object that only gives its component another name.
+INSTANCE = "bspcsg:instance"
+
 #: Elements about what a mesh of triangles has no room for.
 _DROPPED = {
     "composite": "materials",
@@ -40,6 +43,9 @@ _READ = (
 
 #: Attributes of a triangle that has no properties.
 _BARE = 3
+
+#: The name of a base material, and its colour in bytes.
+Base: TypeAlias = tuple[str, tuple[int, ...]]
 
 Start: TypeAlias = Callable[[str, dict[str, str]], None]
 
@@ -118,7 +124,7 @@ class ModelPart:
     items: list[PlacedObject] = field(default_factory=list)
     dropped: set[str] = field(default_factory=set)
     colors: dict[str, list[tuple[int, ...]]] = field(default_factory=dict)
-    bases: dict[str, list[tuple[str, tuple[int, ...]]]] = field(default_factory=dict)
+    bases: dict[str, list[Base]] = field(default_factory=dict)
     textures: dict[str, str] = field(default_factory=dict)
     coordinates: dict[str, tuple[str, list[tuple[float, float]]]] = field(default_factory=dict)
 
@@ -127,6 +133,9 @@ def parse_xml(
     source: Source, chunks: Iterable[bytes], start: Start, spaces: dict[str, str] | None = None
 ) -> None:
     """Call `start` with the name (without namespace) and attributes of each element.
+
+    Elements of a namespace that is neither that of the root nor of an extension that is read are
+    passed by: their names are words of others.
 
     Parameters
     ----------
@@ -145,14 +154,19 @@ def parse_xml(
     """
     parser = expat.ParserCreate(namespace_separator=" ")
 
+    known: dict[str, bool] = {}
+
     def begin(tag: str, attributes: dict[str, str]) -> None:
+        space, _, element = tag.rpartition(" ")
+        if space not in known:
+            known[space] = not known or any(word in space for word in _READ)
+        if not known[space]:
+            return
         named = {name.rpartition(" ")[2]: value for name, value in attributes.items()}
         try:
-            start(tag.rpartition(" ")[2], named)
+            start(element, named)
         except (KeyError, ValueError, OverflowError) as error:
-            message = (
-                f"the element {quoted(tag.rpartition(' ')[2].encode())} is not valid: {error}."
-            )
+            message = f"the element {quoted(element.encode())} is not valid: {error}."
             raise source.error(message, line=parser.CurrentLineNumber) from None
 
     def refuse(*_: object) -> None:

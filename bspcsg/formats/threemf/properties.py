@@ -15,8 +15,9 @@ from ...attributes.attributes import Attributes, Kind, Values
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
-from .part import ModelPart, Object
+from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
+from .write import called
 
 _Entry = TypeVar("_Entry")
 
@@ -65,8 +66,10 @@ class _Reading:
         self._materials: dict[str, Material] = {}
         self._textures: dict[str, str] = {}
         self._has_colors = False
-        bases = [name for group in part.bases.values() for name, _ in group]
-        self._taken = Counter([*bases, *map(named_after, part.textures.values())])
+        bases = [base for group in part.bases.values() for base in group]
+        pictures = [*map(named_after, part.textures.values())]
+        self._base_names = _names_of_bases(bases, pictures)
+        self._taken = Counter([*(name for name, _ in bases), *pictures])
 
     def take(self, k: int, group: str, numbers: tuple[int, ...]) -> None:
         """Note what one triangle says."""
@@ -75,8 +78,9 @@ class _Reading:
             self._colors[k] = [_entry(part.colors[group], number) for number in numbers]
             self._has_colors = True
         elif group in part.bases:
-            self._names[k], color = _entry(part.bases[group], numbers[0])
-            self._materials[self._names[k]] = _plain(color)
+            base = _entry(part.bases[group], numbers[0])
+            self._names[k] = self._base_names[base]
+            self._materials[self._names[k]] = _plain(base[1])
         elif group in part.coordinates:
             texture, places = part.coordinates[group]
             self._names[k] = self._textures.setdefault(texture, self._called(texture))
@@ -102,6 +106,24 @@ class _Reading:
         return Attributes(faces, {}, corner, face, materials) if corner or face else None
 
 
+def _names_of_bases(bases: list[Base], pictures: list[str]) -> dict[Base, str]:
+    """Return the names of base materials, each of which stands for one colour and no picture.
+
+    A name that stands for another already gets a number behind it; no name is that of no material.
+    """
+    taken = {*(name for name, _ in bases), *pictures}
+    found: dict[Base, str] = {}
+    seen = {""}
+    for number, (name, color) in enumerate(dict.fromkeys(bases)):
+        free = name
+        while name in seen and free in taken:
+            free = f"{free} ({number})" if free else f"material {number}"
+        seen.add(name)
+        taken.add(free)
+        found[name, color] = free
+    return found
+
+
 @lru_cache(maxsize=256)
 def _plain(color: tuple[int, ...]) -> Material:
     """Return the material of a colour in bytes, which many triangles have in common."""
@@ -123,9 +145,10 @@ def _entry(group: list[_Entry], number: int) -> _Entry:
 
 def kept(said: Attributes) -> Attributes:
     """Return what 3MF holds of attributes: materials of faces, or else colours, both in bytes."""
+    said = said.without_empty_material()
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
-        return _kept_materials(said, names)
+        return _kept_materials(said.with_materials_called(called))
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):
@@ -138,19 +161,20 @@ def kept(said: Attributes) -> Attributes:
     return Attributes(said.faces, *_kinds(chosen(said, keep)))
 
 
-def _kept_materials(said: Attributes, names: Values) -> Attributes:
+def _kept_materials(said: Attributes) -> Attributes:
+    names = said.face["material"]
     used = [name for name in np.unique(names).tolist() if name]
     given = {name: said.materials.get(name, Material()) for name in used}
     is_pair = _has_places(said)
     textured = [name for name, one in given.items() if one.texture is not None and is_pair]
-    called = fit_for_parts(textured)
+    fit = fit_for_parts(textured, used)
     materials = {
-        called.get(name, name): Material(texture=one.texture) if name in called else _in_bytes(one)
+        fit.get(name, name): Material(texture=one.texture) if name in fit else _in_bytes(one)
         for name, one in given.items()
     }
-    if not called:
+    if not fit:
         return Attributes(said.faces, {}, {}, {"material": names}, materials)
-    renamed = np.array([called.get(name, name) for name in names.tolist()])
+    renamed = np.array([fit.get(name, name) for name in names.tolist()])
     places = np.nan_to_num(said.at_corners("uv").astype(np.float64))
     places[~np.isin(names, textured)] = np.nan
     return Attributes(said.faces, {}, {"uv": places}, {"material": renamed}, materials)

@@ -3,7 +3,7 @@
 A leaf whose name is not that of its mesh is an object of one component; its part number says so.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from xml.sax.saxutils import quoteattr
 
@@ -15,12 +15,9 @@ from ..scene import SceneNode
 from ..source import Source
 from .objects import Objects
 from .package import Package, opened
-from .part import MILLIMETRES, ModelPart, Object, PlacedObject
+from .part import INSTANCE, MILLIMETRES, ModelPart, Object, PlacedObject
 from .textures import Resources
 from .write import beginning, called, hex_of, mesh_object, packed, properties
-
-#: The part number of an object that only gives its component another name.
-_INSTANCE = "bspcsg:instance"
 
 _IDENTITY = np.eye(4)
 
@@ -50,24 +47,31 @@ class _Reading:
         part = self._package.part(self._root)
         # This also refuses what is too deep or too often there.
         self._objects.placed(self._root, part.items)
-        found = tuple(self._node(self._root, item) for item in part.items)
+        found = self._nodes(self._root, part.items)
         scale = MILLIMETRES[part.unit]
         if len(found) == 1 and scale == 1:
             return found[0]
         matrix = np.diag([scale, scale, scale, 1.0])
-        return SceneNode("", matrix, children=tuple(one for one in found))
+        return SceneNode("", matrix, children=found)
 
-    def _node(self, here: str, placed: PlacedObject) -> SceneNode:
+    def _nodes(self, here: str, placed: Iterable[PlacedObject]) -> tuple[SceneNode, ...]:
+        found = (self._node(here, one) for one in placed)
+        return tuple(node for node in found if node is not None)
+
+    def _node(self, here: str, placed: PlacedObject) -> SceneNode | None:
+        """Return a placed object, or None for a shape that is no model but support or surface."""
         path = placed.path or here
         part = self._package.part(path)
         told = part.objects[placed.item]
         matrix = _IDENTITY.copy()
         matrix[:3] = placed.transform.T
         if told.is_body:
+            if told.kind != "model":
+                return None
             mesh = self._mesh(path, part, placed.item)
             return SceneNode(told.name, matrix, mesh, _color(part, told))
-        children = tuple(self._node(path, one) for one in told.components)
-        if told.part_number == _INSTANCE and len(children) == 1:
+        children = self._nodes(path, told.components)
+        if told.part_number == INSTANCE and len(children) == 1:
             return SceneNode(told.name, matrix, children[0].mesh, children[0].color)
         return SceneNode(told.name, matrix, None, None, children)
 
@@ -149,7 +153,7 @@ class _Writing:
         number, name = self._numbers[key]
         if name == node.name:
             return number
-        return self._components(node.name, [(number, _IDENTITY)], _INSTANCE)
+        return self._components(node.name, [(number, _IDENTITY)], INSTANCE)
 
     def _components(self, name: str, inner: list[tuple[int, FloatArray]], mark: str) -> int:
         number = self._resources.free()

@@ -89,13 +89,13 @@ def named_after(path: str) -> str:
     return unquote(last.rpartition(".")[0] or last)
 
 
-def fit_for_parts(names: list[str]) -> dict[str, str]:
-    """Return what materials with pictures are called in files, by their names."""
+def fit_for_parts(names: list[str], others: list[str]) -> dict[str, str]:
+    """Return what materials with pictures are called in files beside others, by their names."""
     found: dict[str, str] = {}
     for name in names:
         rest = name.lstrip(".").translate(_SLASHES)
         fit = rest.rjust(len(name), "_")
-        while fit != name and fit in {*names, *found.values()}:
+        while fit != name and fit in {*names, *others, *found.values()}:
             fit += "_"
         found[name] = fit
     return found
