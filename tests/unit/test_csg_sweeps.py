@@ -181,6 +181,7 @@ def test_round_pens_have_openscads_corners(tmp_path: Path) -> None:
 def test_children_of_the_other_dimension_may_come_first(text: str, size: float) -> None:
     with pytest.warns(csg.CsgWarning) as told:
         made = csg.evaluate(csg.parse(text))
+    assert made is not None
     assert size == (made.volume if isinstance(made, b.Solid) else made.area)
     assert len(told) == 1
 

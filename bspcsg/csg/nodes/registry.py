@@ -65,14 +65,14 @@ class Evaluation:
 
     def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
         """Return the children of a node that takes plane figures; solids are left out and told."""
-        figures = [child for child in children if not isinstance(child, Solid)]
+        figures: list[Geometry] = [child for child in children if not isinstance(child, Solid)]
         if len(figures) < len(children):
             self.warn(owner, "its children that are solids are ignored")
         return figures
 
     def solids(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
         """Return the children of a node that takes solids; plane figures are left out and told."""
-        solids = [child for child in children if not isinstance(child, Region)]
+        solids: list[Geometry] = [child for child in children if not isinstance(child, Region)]
         if len(solids) < len(children):
             self.warn(owner, "its children that are plane figures are ignored")
         return solids
