@@ -1,6 +1,7 @@
 """Meshes with coordinates of fewer digits."""
 
 from dataclasses import replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -8,8 +9,10 @@ from ..errors import Finding
 from ..mesh.mesh import Mesh
 from .raw import RawMesh
 
+_Kind = TypeVar("_Kind", bound=Mesh | RawMesh)
 
-def rounded(mesh: Mesh | RawMesh, digits: int) -> tuple[Mesh | RawMesh, tuple[Finding, ...]]:
+
+def rounded(mesh: _Kind, digits: int) -> tuple[_Kind, tuple[Finding, ...]]:
     """Return a mesh whose coordinates have so many significant digits, and how far that moved them.
 
     Faces may cross, or lose their area, where they come closer to each other than that.

@@ -158,3 +158,11 @@ def test_what_single_precision_destroys_is_told(folder: Path, capsys: Capture) -
     codes = [finding["code"] for finding in json.loads(out)["findings"]]
     assert code == 0 and {"single_precision", "flattened_by_rounding"} <= set(codes)
     assert "takes the area of" in err
+
+
+def test_an_input_that_is_not_read_yet_stays(folder: Path, capsys: Capture) -> None:
+    Path("x-a.off").write_bytes(Path("a.off").read_bytes())
+    code, _, err = ran(capsys, "convert", "a.off", "x-a.off", "-o", "x-%.off")
+    assert code == 2 and "is an input, too" in err
+    # A file may take its own place.
+    assert ran(capsys, "convert", "a.off", "x-a.off", "-o", "%.off")[0] == 0

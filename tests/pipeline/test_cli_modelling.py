@@ -128,3 +128,12 @@ def test_nobody_is_in_the_way(folder: Path, capsys: Capture) -> None:
     assert (code, out) == (0, "1 pair of files, none clashes.\n")
     code, out, _ = ran(capsys, "clash", "a.off", "far.off", "--clearance", "3", "--json")
     assert code == 0 and json.loads(out)["clashes"] == []
+
+
+def test_repair_judges_what_it_writes(folder: Path, capsys: Capture) -> None:
+    small = (b.cube(0.3).translate(1, 1, 1)).to_mesh()
+    b.save(b.Solid(small.vertices, small.faces), "dig.ply")
+    assert ran(capsys, "repair", "dig.ply", "-o", "kept.ply")[0] == 0
+    # All corners become (1, 1, 1).
+    assert ran(capsys, "repair", "dig.ply", "-o", "dig1.ply", "--digits", "1")[0] == 1
+    assert ran(capsys, "check", "dig1.ply")[0] == 1

@@ -110,3 +110,11 @@ def test_bad_questions() -> None:
         bsp.Intervals([(0, 1)]).scale(0)
     with pytest.raises(b.LimitError):
         bsp.Intervals([(0, 1e9)], pitch=-9)
+
+
+def test_the_centroid_of_a_short_interval_far_out_lies_in_it() -> None:
+    for low, width in ((5e6, 1e-6), (100.0, 1e-6), (-5e6, 1e-9)):
+        short = bsp.Intervals([(low, low + width)])
+        assert short.centroid == pytest.approx(low + width / 2, rel=2e-16)
+        line = bsp.SubHyperplane((0, 1), 0, short)
+        assert abs(line.centroid[0]) == abs(short.centroid)

@@ -422,3 +422,12 @@ def test_scenes_far_away_and_rays_from_afar() -> None:
     assert ground.first_hit(above, [0, 0, -1]).facet.tolist() == list(range(100))
     assert ground.first_hit([-1, 0, 0], [1, 0, 0]).facet.tolist() == [0]
     assert len(ground.all_hits([-1, 0, 0], [1, 0, 0]).hits) == 100
+
+
+def test_lengths_of_rays_do_not_mix() -> None:
+    across, along = [[5, 1, 1], [1, 1, 1]], [[1.0, 0, 0], [0, 1, 0]]
+    endless = bsp.RayCaster(~b.cube(2)).intervals(across, along)
+    assert endless.lengths().tolist() == [np.inf, np.inf]
+    short = [[1e-17, 0, 0], [1.0, 0, 0], [1.0, 0, 0]]
+    spans = bsp.RayCaster(b.cube(2)).intervals([[1, 1, 1], [9, 1, 1], [-1, 1, 1]], short)
+    assert spans.lengths().tolist() == [1e17, 0, 2]

@@ -230,3 +230,12 @@ def test_ends_that_do_not_meet_are_told(tmp_path: Path) -> None:
 def test_pieces_may_be_shorter_than_what_is_joined(tmp_path: Path) -> None:
     corners = [(0, 0), (100, 0), (100, 1e-5), (100, 100), (0, 100)]
     assert region_of(tmp_path, lambda space: sides(space, corners, 0)).area == 10_000
+
+
+@pytest.mark.parametrize("start", [0, 1, -math.pi, math.pi / 2, math.tau])
+def test_full_ellipses_begin_anywhere(tmp_path: Path, start: float) -> None:
+    found = region_of(
+        tmp_path, lambda space: space.add_ellipse((1, 2), (5, 0), 0.5, start, start + math.tau)
+    )
+    assert found.area == pytest.approx(12.5 * math.pi, rel=1e-2)
+    np.testing.assert_allclose(found.centroid, (1, 2), atol=1e-6)

@@ -89,9 +89,10 @@ def _chain(entity: Any, chord: float) -> FloatArray:
     kind = entity.dxftype()
     if kind == "LINE":
         return _flat([entity.dxf.start, entity.dxf.end])
+    if kind == "ELLIPSE" and _is_full(entity):
+        return _closed(_flat(_from_its_axis(entity).flattening(chord)))
     if kind in ("ELLIPSE", "SPLINE"):
-        points = _flat(entity.flattening(chord))
-        return _closed(points) if kind == "ELLIPSE" and _is_full(entity) else points
+        return _flat(entity.flattening(chord))
     if kind == "LWPOLYLINE":
         return _polyline(entity, np.array(entity.get_points("xyb")), entity.closed, chord)
     if kind == "POLYLINE":
@@ -110,6 +111,13 @@ def _closed(points: FloatArray) -> FloatArray:
 def _is_full(ellipse: Any) -> bool:
     turn = ellipse.dxf.end_param - ellipse.dxf.start_param
     return math.isclose(abs(turn), math.tau, rel_tol=1e-9)
+
+
+def _from_its_axis(ellipse: Any) -> Any:
+    """Return a full ellipse that begins at its axis; ezdxf takes others for points."""
+    full = ellipse.construction_tool()
+    full.start_param, full.end_param = 0.0, math.tau
+    return full
 
 
 def _arc(entity: Any, chord: float) -> FloatArray:

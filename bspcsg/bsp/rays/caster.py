@@ -129,8 +129,10 @@ class InsideSpans:
 
     def lengths(self) -> FloatArray:
         """Return how far each ray runs inside, in lengths of its direction, (n,)."""
-        sums = np.concatenate([[0.0], np.cumsum(self.t[:, 1] - self.t[:, 0])])
-        return np.asarray(sums[self.offsets[1:]] - sums[self.offsets[:-1]])
+        rays = np.repeat(np.arange(len(self)), np.diff(self.offsets))
+        lengths = np.zeros(len(self))
+        np.add.at(lengths, rays, self.t[:, 1] - self.t[:, 0])
+        return lengths
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,11 +107,14 @@ class Intervals(FlatSet):
     @property
     def centroid(self) -> float:
         """Middle of the length; NaN for the empty set."""
-        total = self.measure
-        if total == 0:
+        if self.measure == 0:
             return float("nan")
-        moment = sum((Fraction(b) ** 2 - Fraction(a) ** 2) / 2 for a, b in self.pairs.tolist())
-        return float(moment / total)
+        step = Fraction(10) ** self.pitch
+        ends = [[round(Fraction(end) / step) for end in pair] for pair in self.pairs.tolist()]
+        total = sum(b - a for a, b in ends)
+        # Beyond 2^52 steps doubles do not tell all ends apart.
+        middle = Fraction(sum(b * b - a * a for a, b in ends), 2 * total) if total else ends[0][0]
+        return float(middle * step)
 
     @property
     def bounds(self) -> tuple[float, float] | None:

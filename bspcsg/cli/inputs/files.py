@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from ...formats.raw import RawMesh
     from ...mesh.mesh import Mesh
     from ...solid.solid import Solid
+
+_Kind = TypeVar("_Kind", bound="Mesh | RawMesh")
 
 #: The name that stands for standard input or standard output.
 STREAM = "-"
@@ -293,7 +295,7 @@ class Target:
 
         return form_of(f"mesh{self.suffix}", self.text).is_single
 
-    def rounded(self, mesh: "Mesh | RawMesh") -> "tuple[Mesh | RawMesh, tuple[Finding, ...]]":
+    def rounded(self, mesh: "_Kind") -> "tuple[_Kind, tuple[Finding, ...]]":
         """Return the mesh with the digits asked for, and what that did."""
         from ...formats.rounding import rounded
 

@@ -252,7 +252,11 @@ def _stem(path: Path) -> str:
 
 def _refuse_twins(pairs: list[tuple[Path, Path]]) -> None:
     seen: dict[Path, Path] = {}
+    inputs = {path.resolve(): path for path, _ in pairs if str(path) != STREAM}
     for path, where in pairs:
+        other = inputs.get(where.resolve(), path)
+        if other.resolve() != path.resolve():
+            raise click.UsageError(f"{path} would be written to {where}, which is an input, too.")
         if where in seen:
             raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
         seen[where] = path

@@ -95,7 +95,7 @@ class _Repairing:
         self._inputs.tell(self._file, raw.findings)
         before = diagnose(raw)
         made = repaired(raw, steps, **limits)
-        after = diagnose(made.mesh)
+        after = diagnose(self._target.rounded(made.mesh)[0])
         lost = self._target.write(made.mesh)
         for finding in lost:
             self._out.finding(shown(self._target.path), finding)
