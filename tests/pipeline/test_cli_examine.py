@@ -252,3 +252,21 @@ def test_doctor_fails_without_what_is_required(
     monkeypatch.setattr("bspcsg.cli.verbs.doctor.find_spec", lambda name: name != "rich" or None)
     code, out, _ = ran(capsys, "doctor", "--json")
     assert code == 6 and not json.loads(out)["complete"]
+
+
+def test_check_of_a_bad_script_tells_of_the_others(folder: Path, capsys: Capture) -> None:
+    Path("bad.csg").write_text('import("open.stl");')
+    b.save(b.cube(1), "good.stl")
+    whole = Path("good.stl").read_bytes()
+    # Its twelfth triangle is missing.
+    Path("open.stl").write_bytes(whole[:80] + (11).to_bytes(4, "little") + whole[84 : 84 + 11 * 50])
+    code, out, _ = ran(capsys, "check", "good.stl", "bad.csg", "good.stl", "--json")
+    files = json.loads(out)["files"]
+    assert code != 0
+    assert [one["verdict"] for one in files] == ["solid", "unreadable", "solid"]
+    assert files[1]["error"]["code"] == "not_closed"
+
+
+def test_no_command_behind_two_hyphens(capsys: Capture) -> None:
+    code, _, err = ran(capsys, "--")
+    assert code == 2 and "Missing command" in err

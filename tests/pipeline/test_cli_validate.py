@@ -299,6 +299,10 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
         (["--junit", "-"], "--junit takes the name of a file, not a stream."),
         (["--markdown", "./a.off"], "--markdown would overwrite a.off, which is to be read."),
         (["--results", "c.stl"], "--results would overwrite c.stl, which is to be read."),
+        (
+            ["--results", "r.jsonl", "--junit", "./r.jsonl"],
+            "--junit would overwrite r.jsonl, which --results writes.",
+        ),
         (["-"], "validate reads files, not standard input."),
     ],
 )

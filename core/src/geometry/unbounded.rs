@@ -5,6 +5,7 @@ use num_bigint::{BigInt, Sign};
 use crate::arith::Int;
 
 /// The integer without a bound on its width.
+#[allow(clippy::cast_possible_truncation)]
 pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
     let size = value.abs();
     let digits: Vec<u32> = size

@@ -77,10 +77,10 @@ impl Parted {
     }
 
     /// The entries of operands of the first, and of the second.
-    pub fn divide<T>(&self, entries: Vec<(u32, T)>) -> (Vec<(u32, T)>, Vec<(u32, T)>) {
+    pub fn divide<T>(&self, entries: Vec<(u32, T)>) -> [Vec<(u32, T)>; 2] {
         let [ours, _] = self.operands();
         let is_ours = |entry: &(u32, T)| ours.binary_search(&entry.0).is_ok();
-        entries.into_iter().partition(is_ours)
+        entries.into_iter().partition::<Vec<_>, _>(is_ours).into()
     }
 
     /// Return whether the second is one argument of a symmetric difference.

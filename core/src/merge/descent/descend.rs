@@ -419,7 +419,7 @@ impl<'a> Descent<'a> {
         }
         let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
         let operands = parted.operands();
-        let (first, second) = parted.divide(states);
+        let [first, second] = parted.divide(states);
         let [left, right] = parted.halves;
         let results = both_in_turn(
             worth(total),
@@ -437,7 +437,7 @@ impl<'a> Descent<'a> {
         let left = loop {
             poll();
             let last;
-            (first, last) = parted.divide(first);
+            [first, last] = parted.divide(first);
             let [left, right] = parted.halves;
             steps.push((right, last, parted.whole));
             let next = left.parted().filter(Parted::takes_one_by_one);
