@@ -3,8 +3,8 @@
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::spaces::dim2::{Dim2, Point2, Segment2, Square};
 use bspcsg::geometry::spaces::space::Space;
+use bspcsg::geometry::unbounded::big;
 use bspcsg::merge::{merge, SetOp};
-use bspcsg::query::exact::big;
 use bspcsg::tree::partition::{
     autopartition, boundary, check, classify, owned_boundary, winding_tree, Facet, Label, Location,
     PartitionTree, PivotPolicy,
