@@ -198,6 +198,16 @@ def test_json_holds_numbers_that_json_has_not() -> None:
             ' [{"node": "a", "arguments": [{"value": {"x": 1}}]}]}',
             "arguments[0].value must be",
         ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes":'
+            ' [{"node": "a", "arguments": [{"value": {"number": []}}]}]}',
+            "arguments[0].value must be",
+        ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes":'
+            ' [{"node": "a", "arguments": [{"name": "undef", "value": 1}]}]}',
+            "arguments[0].name must be",
+        ),
         # Half of a character, which no text can hold.
         (
             '{"format": "bspcsg-csg", "version": 1, "nodes":'
