@@ -70,6 +70,15 @@ def test_matrices() -> None:
     assert region(f"{flat} square(2);").area == 4
 
 
+def test_matrices_of_whole_numbers() -> None:
+    rows = ((2, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 5), (0, 0, 0, 1))
+    node = csg.Node("multmatrix", (csg.Argument("m", rows),), csg.parse("cube(1);").nodes)
+    for polish in (False, True):
+        body = csg.evaluate(csg.CsgTree((node,)), polish=polish)
+        assert isinstance(body, b.Solid)
+        assert body.equals(b.cube((2, 1, 1)).translate(0, 0, 5))
+
+
 # Polyhedra
 
 
