@@ -20,7 +20,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ..errors import BspcsgError, FormatError, invalid_parameter
+from ..errors import BspcsgError, FormatError, invalid_parameter, words_of
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
 from ..parameters import file_path, seconds, texts, values_by_name
@@ -196,7 +196,7 @@ def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
         exec(code, vars(program))
     except SystemExit as end:
         if end.code not in (None, 0):
-            told = f"code {end.code}" if isinstance(end.code, int) else end.code
+            told = f"code {end.code}" if isinstance(end.code, int) else words_of(end)
             message = f"the script ended with {told}."
             raise FormatError(message, "script_failed").with_traceback(end.__traceback__) from end
 
@@ -221,7 +221,7 @@ def _with_operation(result: Solid) -> _Made:
 
 def _located(error: Exception, name: str) -> BspcsgError:
     """Return the error with the line of the script in which it arose."""
-    detail = str(error)
+    detail = words_of(error) if str(error) else ""
     if isinstance(error, SyntaxError) and error.filename == name:
         line, detail = error.lineno, error.msg
     else:

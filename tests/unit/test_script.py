@@ -169,6 +169,14 @@ def test_scripts_that_give_up(tmp_path: Path, code: str, says: str) -> None:
     assert failed.value.code == "script_failed"
 
 
+@pytest.mark.parametrize("end", ["sys.exit({})", "raise ValueError({})"])
+def test_errors_of_scripts_are_one_line(tmp_path: Path, end: str) -> None:
+    for words in ("'first\\n  \\x1b[3msecond'", "''"):
+        with pytest.raises(b.FormatError, match=r"part.py:2: .*\w") as failed:
+            b.run_script(script(tmp_path, f"import sys\n{end.format(words)}\n"))
+        assert failed.value.message.isprintable()
+
+
 def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) -> None:
     Path(tmp_path, "broken.py").write_text("x = 1\n\n\ndef f(:\n    pass\n")
     with pytest.raises(b.FormatError, match=r"part.py:2: SyntaxError.*broken.py, line 4"):
