@@ -58,7 +58,7 @@ class Evaluation:
     in_hull : bool
         True while a child of a hull is made, of which only the corners count.
     loose : dict
-        What stands for meshes in hulls that bound nothing by its `id`, each with their corners.
+        Empty solids for meshes in hulls that bound nothing by their `id`, each with its corners.
     """
 
     script: str = "<csg>"
