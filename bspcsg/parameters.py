@@ -7,7 +7,7 @@ names the parameter. Truth values and texts are no numbers here.
 import math
 import operator
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._core import set_threads as _set_threads
@@ -77,6 +77,12 @@ def not_negative(value: Any, name: str) -> float:
     if result < 0:
         raise invalid_parameter(f"{name} must not be below 0, but is {result:g}.")
     return result
+
+
+def seconds(value: Any, name: str) -> float | None:
+    """Return a time above 0; None, as infinity does, stands for ever."""
+    forever = value is None or (isinstance(value, float) and value == math.inf)
+    return None if forever else positive(value, name)
 
 
 def at_least(least: int, value: Any, name: str) -> int:
@@ -161,6 +167,22 @@ def text_value(value: Any, name: str) -> str:
     if isinstance(value, str):
         return str(value)
     raise invalid_parameter(f"{name} must be a text, not {shown(value)}.")
+
+
+def texts(value: Any, name: str) -> list[str]:
+    """Return a list of texts; one alone is no list."""
+    if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
+        raise invalid_parameter(f"{name} must be a list of texts, not {shown(value)}.")
+    return [text_value(entry, f"each of {name}") for entry in value]
+
+
+def values_by_name(value: Any, name: str) -> dict[str, Any]:
+    """Return a dict whose keys are texts; None stands for an empty one."""
+    if value is None:
+        return {}
+    if not isinstance(value, Mapping):
+        raise invalid_parameter(f"{name} must be a dict of values by name, not {shown(value)}.")
+    return {text_value(key, f"each name in {name}"): entry for key, entry in value.items()}
 
 
 def word(known: Iterable[str], value: Any, name: str) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 from .. import csg
 from ..csg import CsgTree, Node
 from ..csg.from_solid import lost_attributes, tree_of
+from ..csg.scope import Scope, inherited
 from ..csg.syntax.tree import Argument
 from ..errors import Finding, InvalidMeshError
 from ..solid.solid import Solid
@@ -23,7 +24,7 @@ _DEEPEST = 60
 def load(path: str | os.PathLike[str], name: str, **options: Any) -> Assembly:
     """Return the assembly of a script; what is neither united, coloured nor moved is a part."""
     reading = _Reading(csg.read_tree(path), options)
-    return Assembly(name, reading.assemblies(reading.tree.roots(), None, 0))
+    return Assembly(name, reading.assemblies(reading.tree.roots(), None, (), 0))
 
 
 class _Reading:
@@ -34,21 +35,24 @@ class _Reading:
         self._options = options
 
     def assemblies(
-        self, nodes: Iterable[Node], color: tuple[float, ...] | None, depth: int
+        self, nodes: Iterable[Node], color: tuple[float, ...] | None, scope: Scope, depth: int
     ) -> list[Assembly]:
         """Return what is there of some nodes."""
-        found = (self._assembly(node, color, depth) for node in nodes if not node.is_ignored)
+        there = (node for node in nodes if not node.is_ignored)
+        found = (self._assembly(node, color, scope, depth) for node in there)
         return [made for made in found if made is not None]
 
-    def _assembly(self, node: Node, color: tuple[float, ...] | None, depth: int) -> Assembly | None:
+    def _assembly(
+        self, node: Node, color: tuple[float, ...] | None, scope: Scope, depth: int
+    ) -> Assembly | None:
         """Return a node as a tree; of colours in one another the outermost counts."""
         is_moving = node.name == "multmatrix" and len(node.arguments) > 0
         if depth > _DEEPEST or not (node.name in _UNITING or is_moving):
-            one = CsgTree((node,), self.tree.name, self.tree.folder)
+            one = CsgTree((Node("group", scope, (node,)),), self.tree.name, self.tree.folder)
             body = csg.evaluate(one, **self._options)
             return Assembly(node.name, body, color=color) if isinstance(body, Solid) else None
         own = _color(node) if node.name == "color" and color is None else color
-        found = self.assemblies(node.children, own, depth + 1)
+        found = self.assemblies(node.children, own, inherited(scope, node), depth + 1)
         made = found[0] if len(found) == 1 else Assembly("", found)
         return made.transform(node.arguments[0].value) if is_moving else made
 

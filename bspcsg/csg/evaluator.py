@@ -67,7 +67,8 @@ def evaluate(
         Is told which lattice that was and how far corners moved, as a `Polish`.
     on_invalid : {"error", "warn", "repair"}
         The treatment of polyhedra and imported meshes that are not closed: they are errors, or left
-        out with a warning, as OpenSCAD does, or closed by `bspcsg.repair` with one.
+        out with a warning, as OpenSCAD does, or closed by `bspcsg.repair` with one. Right inside of
+        ``hull`` they need not be closed: their corners count.
     allow_paths : iterable of path
         Folders that ``import`` and ``surface`` may read beside the script's own. Links are
         followed before it is decided where a file lies.
@@ -170,26 +171,28 @@ class _Cache:
 
     def geometry(self, root: Node) -> Geometry:
         """Return what a node stands for; nodes may nest to any depth."""
-        waiting: list[tuple[Node, Scope | None, bool]] = [(root, (), True)]
+        waiting: list[tuple[Node, Scope | None, bool, bool]] = [(root, (), True, False)]
         done: list[int] = []
         while waiting:
-            node, scope, outer = waiting.pop()
+            node, scope, outer, in_hull = waiting.pop()
             combines = outer and node.name in COMBINING
             children = [child for child in node.children if not child.is_ignored]
             if scope is not None:
                 inner = inherited(scope, node)
-                waiting.append((with_scope(node, scope), None, outer))
-                waiting.extend((child, inner, combines) for child in reversed(children))
+                waiting.append((with_scope(node, scope), None, outer, in_hull))
+                is_hull = node.name == "hull"
+                waiting.extend((child, inner, combines, is_hull) for child in reversed(children))
                 continue
             first = len(done) - len(children)
             numbers = tuple(done[first:])
             del done[first:]
+            self.run.in_hull = in_hull
             done.append(self._number(node, numbers, outer and not combines))
         return self.made[done[0]]
 
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the number of the node's geometry, made if it is new."""
-        key = (node.name, node.arguments, children, is_part)
+        key = (node.name, node.arguments, children, is_part, self.run.in_hull)
         if key in self.numbers:
             return self.numbers[key]
         number = len(self.made)

@@ -17,7 +17,7 @@ from .from_solid import tree_of
 from .making.polish import Polish
 from .nodes.registry import Geometry, OnInvalid
 from .openscad import read_scad
-from .syntax.json_form import from_json
+from .syntax.json_form import from_json, to_json
 from .syntax.parser import parse
 from .syntax.tree import CsgTree
 from .syntax.writer import written
@@ -184,9 +184,31 @@ def dumps(model: Solid | CsgTree, *, flat: bool = False) -> str:
     >>> csg.loads(csg.dumps(part)).equals(part)
     True
     """
-    return written(model if isinstance(model, CsgTree) else tree_of(model, flat=flat))
+    return written(_tree(model, flat))
+
+
+def _tree(model: Solid | CsgTree, flat: bool) -> CsgTree:
+    return model if isinstance(model, CsgTree) else tree_of(model, flat=flat)
 
 
 def dump(model: Solid | CsgTree, path: str | os.PathLike[str], *, flat: bool = False) -> None:
-    """Write a `.csg` file (see `dumps`); it appears complete or not at all."""
-    write_file(path, [dumps(model, flat=flat).encode()])
+    """Write a `.csg` file (see `dumps`), or the same as JSON if the name ends in `.json`.
+
+    It appears complete or not at all.
+
+    Raises
+    ------
+    FormatError
+        If the file cannot be written, or texts of the tree are none (code ``"bad_argument"``).
+    UnboundedError
+        If the solid reaches to infinity.
+    """
+    name, tree = file_path(path), _tree(model, flat)
+    is_json = Path(name).suffix.lower() == ".json"
+    text = to_json(tree, indent=1) + "\n" if is_json else written(tree)
+    try:
+        data = text.encode()
+    except UnicodeEncodeError as error:
+        message = f"{name}: a text in the tree holds half of a character; leave that out."
+        raise FormatError(message, "bad_argument") from error
+    write_file(name, [data])

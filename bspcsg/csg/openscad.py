@@ -7,8 +7,11 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from ..errors import FormatError
+from ..errors import FormatError, invalid_parameter
+from ..parameters import file_path, seconds, shown, values_by_name
+from .syntax.arguments import is_number
 from .syntax.intermediate import Intermediate
 from .syntax.parser import parse
 from .syntax.tree import CsgTree, Value
@@ -19,17 +22,20 @@ TIMEOUT = 300.0
 
 
 def read_scad(
-    path: Path, *, defines: Mapping[str, Value] | None = None, timeout: float = TIMEOUT
+    path: str | os.PathLike[str],
+    *,
+    defines: Mapping[str, Value] | None = None,
+    timeout: float | None = TIMEOUT,
 ) -> CsgTree:
     """Return the tree of a `.scad` file, which openscad evaluates to a `.csg` file.
 
     Parameters
     ----------
-    path : Path
+    path : path
     defines : mapping of str to value, optional
         Variables of the script, as ``openscad -D name=value`` sets them.
-    timeout : float
-        In seconds.
+    timeout : float, optional
+        In seconds; None, as infinity does, waits for ever.
 
     Raises
     ------
@@ -38,22 +44,24 @@ def read_scad(
         refuses the file; the message ends in what it said. Errors in what it made of the file
         quote the line of that, and name the script's own where only one can be meant.
     """
-    name = os.fspath(path)
-    if not path.is_file():
+    name, limit = file_path(path), seconds(timeout, "timeout")
+    values = values_by_name(defines, "defines")
+    _refuse_no_values(tuple(values.values()))
+    if not os.path.isfile(name):
         raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
         output = Path(folder, "model.csg")
-        _convert(path, output, defines or {}, timeout)
+        _convert(Path(name), output, values, limit)
         text = output.read_text(encoding="utf-8")
-    made = Intermediate(name, path.read_text(encoding="utf-8", errors="replace"), text)
+    made = Intermediate(name, Path(name).read_text(encoding="utf-8", errors="replace"), text)
     try:
-        tree = parse(text, made.name, path.parent)
+        tree = parse(text, made.name, Path(name).parent)
     except FormatError as error:
         raise made.explained(error) from error
     return replace(tree, name=name, intermediate=made)
 
 
-def _convert(path: Path, output: Path, defines: Mapping[str, Value], timeout: float) -> None:
+def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | None) -> None:
     program = shutil.which("openscad")
     if program is None:
         message = (
@@ -61,7 +69,7 @@ def _convert(path: Path, output: Path, defines: Mapping[str, Value], timeout: fl
             " Install it (apt install openscad), or give a .csg file."
         )
         raise FormatError(message, "missing_program")
-    options = [f"-D{name}={value_text(value)}" for name, value in defines.items()]
+    options = [f"-D{name}={value_text(value)}" for name, value in values.items()]
     # A shape to be kept is no preview, which scripts can ask for.
     command = [program, "--render", "-o", str(output), *options, "--", str(path.absolute())]
     try:
@@ -79,6 +87,19 @@ def _convert(path: Path, output: Path, defines: Mapping[str, Value], timeout: fl
         raise FormatError(message, "timeout") from error
     if done.returncode != 0 or not output.is_file():
         raise FormatError(f"{path}: openscad refused it: {_complaint(done.stderr)}", "refused")
+
+
+def _refuse_no_values(found: tuple[Any, ...]) -> None:
+    """Raise `InvalidParameterError` if no variable of a script can be one of these."""
+    for one in found:
+        if isinstance(one, tuple):
+            _refuse_no_values(one)
+        elif not (one is None or isinstance(one, (str, bool)) or is_number(one)):
+            message = (
+                "defines must hold numbers, texts, truth values, None and tuples of such,"
+                f" not {shown(one)}."
+            )
+            raise invalid_parameter(message)
 
 
 def _complaint(text: str) -> str:

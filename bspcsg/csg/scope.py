@@ -7,12 +7,10 @@ script written by hand a node without them takes those of the nodes around it.
 from dataclasses import replace
 from typing import TypeAlias
 
-from .syntax.tree import Argument, Node
+from .syntax.tree import SPECIAL, Argument, Node
 
 #: The special variables that hold inside a node, at most one argument of each name.
 Scope: TypeAlias = tuple[Argument, ...]
-
-_SPECIAL = ("$fn", "$fa", "$fs")
 
 #: Nodes whose number of sides depends on them.
 _SIDED = frozenset(
@@ -22,7 +20,7 @@ _SIDED = frozenset(
 
 def inherited(scope: Scope, node: Node) -> Scope:
     """Return what holds inside a node that stands where `scope` holds."""
-    own = tuple(argument for argument in node.arguments if argument.name in _SPECIAL)
+    own = tuple(argument for argument in node.arguments if argument.name in SPECIAL)
     return own + _missing(scope, node) if own else scope
 
 

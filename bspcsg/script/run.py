@@ -20,10 +20,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ..errors import BspcsgError, FormatError
+from ..errors import BspcsgError, FormatError, invalid_parameter, words_of
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
-from ..parameters import file_path
+from ..parameters import file_path, seconds, texts, values_by_name
 from ..solid.counting import counted, uncounted
 from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
@@ -83,7 +83,7 @@ def run_script(
         Values of variables by their names. Each takes the place of what the script assigns to the
         variable at its top level, wherever it does; lines keep their numbers.
     timeout : float, optional
-        In seconds; None waits for ever.
+        In seconds; None, as infinity does, waits for ever.
 
     Returns
     -------
@@ -98,13 +98,13 @@ def run_script(
         and line), ends its process ("script_died"), takes too long ("timeout"), leaves no solid
         ("no_result") or assigns no variable of a name in `defines` ("unknown_name").
     """
-    name = file_path(path)
-    if not Path(path).is_file():
+    name, limit = file_path(path), seconds(timeout, "timeout")
+    words, values = texts(arguments, "arguments"), values_by_name(defines, "defines")
+    if not os.path.isfile(name):
         raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
         answer = Path(folder, "answer")
-        task = pickle.dumps((name, list(arguments), dict(defines or {}), str(answer)))
-        code = _run_child(task, name, timeout)
+        code = _run_child(_pickled((name, words, values, str(answer))), name, limit)
         if not answer.is_file():
             message = f"{name}: the script ended its process with code {code}."
             raise FormatError(message, "script_died")
@@ -112,6 +112,14 @@ def run_script(
     if isinstance(answered, BspcsgError):
         raise answered
     return answered if isinstance(answered, Solid) else with_record(*answered)
+
+
+def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
+    try:
+        return pickle.dumps(task)
+    except Exception as error:  # whatever the values do when they are asked
+        message = f"defines must hold values that another process can be sent: {error}."
+        raise invalid_parameter(message) from error
 
 
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
@@ -188,7 +196,7 @@ def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
         exec(code, vars(program))
     except SystemExit as end:
         if end.code not in (None, 0):
-            told = f"code {end.code}" if isinstance(end.code, int) else end.code
+            told = f"code {end.code}" if isinstance(end.code, int) else words_of(end)
             message = f"the script ended with {told}."
             raise FormatError(message, "script_failed").with_traceback(end.__traceback__) from end
 
@@ -213,7 +221,7 @@ def _with_operation(result: Solid) -> _Made:
 
 def _located(error: Exception, name: str) -> BspcsgError:
     """Return the error with the line of the script in which it arose."""
-    detail = str(error)
+    detail = words_of(error) if str(error) else ""
     if isinstance(error, SyntaxError) and error.filename == name:
         line, detail = error.lineno, error.msg
     else:

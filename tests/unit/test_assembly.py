@@ -371,6 +371,12 @@ def test_tags_are_said_by_every_face() -> None:
     assert (b.half_space((0, 0, 1), 1).tagged(x=1) & b.cube(2)).volume == 4
 
 
+def test_parts_of_scripts_keep_the_variables_around_them(tmp_path: Path) -> None:
+    (tmp_path / "x.csg").write_text("group($fn = 4) { color([1, 0, 0]) sphere(1); cube(1); }")
+    made = b.Assembly.load(tmp_path / "x.csg")
+    assert made.to_solid() == b.load(tmp_path / "x.csg")
+
+
 def test_colours_of_scripts_are_those_of_parts(tmp_path: Path) -> None:
     (tmp_path / "x.csg").write_text(
         "group() { color([1, 0, 0, 1]) { cube(size = 2); color([0, 1, 0, 1]) cylinder(h = 1,"

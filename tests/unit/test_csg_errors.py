@@ -183,3 +183,10 @@ def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
         assert csg.loads(text).volume == 125
         simplified = csg.simplified(csg.parse(text))
         assert csg.loads(csg.dumps(simplified)).volume == 125
+
+
+def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:
+    tree = csg.parse("union($fn = 40) { group($fn = 4) { cube(9); !sphere(1); } }")
+    alone = csg.loads("sphere(1, $fn = 4);")
+    for one in (tree, csg.simplified(tree)):
+        assert csg.loads(csg.dumps(one)).equals(alone)

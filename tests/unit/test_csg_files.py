@@ -10,6 +10,7 @@ import bspcsg as b
 from bspcsg import csg
 from bspcsg.bsp import Region
 from bspcsg.csg.making import drawings
+from bspcsg.csg.syntax import arguments
 
 # Files
 
@@ -62,6 +63,12 @@ def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
     for name in ("part.stl", "part.off"):
         (tmp_path / "all.csg").write_text(f'import(file = "{name}", layer = "", timestamp = 1);')
         assert b.load(tmp_path / "all.csg").volume == 8
+
+
+def test_names_that_no_file_can_have(tmp_path: Path) -> None:
+    for name in ("a" * 300 + ".stl", "a" * 5000 + ".stl"):
+        with pytest.warns(csg.CsgWarning, match="there is no file"):
+            assert csg.loads(f'cube(1); import("{name}");', folder=tmp_path).volume == 1
 
 
 def inside_and_outside(folder: Path) -> Path:
@@ -159,6 +166,26 @@ def test_blocks_of_drawings_have_a_bound(tmp_path: Path, monkeypatch: pytest.Mon
     assert csg.loads(text.format("good"), folder=tmp_path).volume == 2
     with pytest.raises(b.FormatError, match="hold too much"):
         csg.loads(text.format("bomb"), folder=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("sides", "most"), [(70_000, 4_000_000), (1_000_000_000, 4_000_000), (9, 40)]
+)
+def test_arcs_of_drawings_have_a_bound(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sides: int, most: int
+) -> None:
+    monkeypatch.setattr(arguments, "MOST_CORNERS", most)
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new()
+    for place in range(4):
+        document.modelspace().add_circle((5 * place, 0), 1)
+    document.modelspace().add_ellipse((0, 9), (2, 0), 0.5)
+    document.saveas(tmp_path / "a.dxf")
+    text = 'linear_extrude(1) import("a.dxf", $fn = {});'
+    assert csg.loads(text.format(4), folder=tmp_path).volume == pytest.approx(12)
+    with pytest.raises(b.FormatError, match="this drawing") as caught:
+        csg.loads(text.format(sides), folder=tmp_path)
+    assert caught.value.code == "too_large"
 
 
 def test_extrusions_that_name_their_drawing(tmp_path: Path) -> None:

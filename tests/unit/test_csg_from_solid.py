@@ -142,3 +142,19 @@ def test_saving_by_suffix(tmp_path: Path) -> None:
     (tmp_path / "part.json").write_text(csg.to_json(tree))
     for name in ("part.csg", "part.json"):
         assert b.load(tmp_path / name).equals(part)
+
+
+def test_trees_are_written_by_suffix(tmp_path: Path) -> None:
+    part = b.cube(2) - b.cube(1)
+    for name in ("part.csg", "part.json", "PART.JSON"):
+        csg.dump(part, tmp_path / name)
+        assert csg.read_tree(tmp_path / name) == csg.tree_of(part)
+    assert (tmp_path / "part.json").read_text("utf-8").startswith("{")
+
+
+@pytest.mark.parametrize("name", ["part.csg", "part.json"])
+def test_halves_of_characters_are_not_written(tmp_path: Path, name: str) -> None:
+    tree = csg.CsgTree((csg.Node("text", (csg.Argument("text", "a\ud800"),)),))
+    with pytest.raises(b.FormatError, match="half of a character"):
+        csg.dump(tree, tmp_path / name)
+    assert not list(tmp_path.iterdir())

@@ -70,6 +70,15 @@ def test_matrices() -> None:
     assert region(f"{flat} square(2);").area == 4
 
 
+def test_matrices_of_whole_numbers() -> None:
+    rows = ((2, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 5), (0, 0, 0, 1))
+    node = csg.Node("multmatrix", (csg.Argument("m", rows),), csg.parse("cube(1);").nodes)
+    for polish in (False, True):
+        body = csg.evaluate(csg.CsgTree((node,)), polish=polish)
+        assert isinstance(body, b.Solid)
+        assert body.equals(b.cube((2, 1, 1)).translate(0, 0, 5))
+
+
 # Polyhedra
 
 
@@ -86,6 +95,30 @@ def test_open_polyhedra_are_errors_or_left_out() -> None:
         csg.loads(text)
     with pytest.warns(csg.CsgWarning, match="left out"):
         assert volume(text, on_invalid="warn") == 1
+
+
+@pytest.mark.parametrize("faces", ["[[0, 1, 2, 3]]", "[[0, 1, 2], [3, 0, 1]]"])
+def test_hulls_take_the_corners_of_meshes_that_are_not_closed(faces: str) -> None:
+    open_one = f"polyhedron({TETRAHEDRON}, faces = {faces});"
+    for treatment in ("error", "warn", "repair"):
+        assert volume(f"hull() {open_one}", on_invalid=treatment) == pytest.approx(1)
+    for text in (f"hull() {open_one} {open_one}", f"{open_one} hull() {open_one}"):
+        # One of them stands beside the hull.
+        with pytest.raises(b.InvalidMeshError, match="not closed"):
+            csg.loads(text)
+
+
+def test_hulls_take_the_corners_of_files_that_are_not_closed(tmp_path: Path) -> None:
+    (tmp_path / "open.off").write_text("OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n")
+    text = f'hull() {{ import("open.off"); {moved(0, 0, 4)} cube(1); }}'
+    assert csg.loads(text, folder=tmp_path).volume == 5
+
+
+def test_hulls_take_the_corners_of_flat_meshes() -> None:
+    sheet = "polyhedron([[0,0,0],[3,0,0],[0,3,0]], faces = [[0,1,2],[2,1,0]]);"
+    tip = f"{moved(0, 0, 2)} cube(1);"
+    both = b.hull(b.cube(1).translate(0, 0, 2), [[0, 0, 0], [3, 0, 0], [0, 3, 0]])
+    assert csg.loads(f"hull() {{ {sheet} {tip} }}").equals(both)
 
 
 def test_equal_points_are_one() -> None:

@@ -1,12 +1,14 @@
 import math
 import os
 from pathlib import Path
+from typing import Any
 
 import hypothesis.strategies as st
+import numpy as np
 import pytest
 from hypothesis import given
 
-from bspcsg import BspcsgError, FormatError, csg
+from bspcsg import BspcsgError, FormatError, InvalidParameterError, csg
 from bspcsg.csg import Argument, CsgTree, Node
 
 DEEP = 100_000
@@ -198,6 +200,16 @@ def test_json_holds_numbers_that_json_has_not() -> None:
             ' [{"node": "a", "arguments": [{"value": {"x": 1}}]}]}',
             "arguments[0].value must be",
         ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes":'
+            ' [{"node": "a", "arguments": [{"value": {"number": []}}]}]}',
+            "arguments[0].value must be",
+        ),
+        (
+            '{"format": "bspcsg-csg", "version": 1, "nodes":'
+            ' [{"node": "a", "arguments": [{"name": "undef", "value": 1}]}]}',
+            "arguments[0].name must be",
+        ),
         # Half of a character, which no text can hold.
         (
             '{"format": "bspcsg-csg", "version": 1, "nodes":'
@@ -254,6 +266,27 @@ def test_scad_goes_through_openscad(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     stand_in(tmp_path, "exec sleep 5", monkeypatch)
     with pytest.raises(FormatError, match=r"longer than 0\.2 seconds"):
         csg.read_scad(tmp_path / "part.scad", timeout=0.2)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")
+def test_scad_takes_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "part.scad"
+    path.write_text("cube(w);")
+    stand_in(tmp_path, 'echo "cube(3);" > "$3"', monkeypatch)
+    assert csg.read_scad(str(path), timeout=None) == csg.parse("cube(3);")
+    with pytest.raises(FormatError, match="no such file"):
+        csg.read_scad("a" * 300)
+    wrong: list[dict[str, Any]] = [
+        {"timeout": "5"}, {"defines": "w=4"}, {"defines": {"w": [1, 2]}}, {"defines": {1: 2}}
+    ]  # fmt: skip
+    for one in wrong:
+        with pytest.raises(InvalidParameterError, match=next(iter(one))):
+            csg.read_scad(path, **one)
+
+
+def test_numbers_of_numpy_are_written_as_numbers() -> None:
+    node = csg.Node("cube", (csg.Argument("size", np.float64(0.5)),))
+    assert csg.dumps(CsgTree((node,))) == "cube(size = 0.5);\n"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs a POSIX shell")

@@ -99,7 +99,12 @@ def test_sizes() -> None:
     assert volume("resize(newsize = [4, 0, 0]) cube(2);") == 16
     assert volume("resize(newsize = [4, 0, 0], auto = [0, 1, 0]) cube(2);") == 32
     assert volume("resize(newsize = [4, 0, 6], auto = true) cube(2);") == 4 * 6 * 6
+    assert volume("resize(newsize = [2, 0, 0], auto = [1, 1, 1, 1]) cube(1);") == 8
+
+
+def test_sizes_in_the_plane_are_two() -> None:
     assert region("resize(newsize = [4, 6, 9]) square(2);").area == 24
+    assert region("resize(newsize = [4, 0, 9], auto = true) square(2);").area == 16
 
 
 def test_projections() -> None:

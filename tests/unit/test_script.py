@@ -1,4 +1,6 @@
+import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -167,7 +169,39 @@ def test_scripts_that_give_up(tmp_path: Path, code: str, says: str) -> None:
     assert failed.value.code == "script_failed"
 
 
+@pytest.mark.parametrize("end", ["sys.exit({})", "raise ValueError({})"])
+def test_errors_of_scripts_are_one_line(tmp_path: Path, end: str) -> None:
+    for words in ("'first\\n  \\x1b[3msecond'", "''"):
+        with pytest.raises(b.FormatError, match=r"part.py:2: .*\w") as failed:
+            b.run_script(script(tmp_path, f"import sys\n{end.format(words)}\n"))
+        assert failed.value.message.isprintable()
+
+
 def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) -> None:
     Path(tmp_path, "broken.py").write_text("x = 1\n\n\ndef f(:\n    pass\n")
     with pytest.raises(b.FormatError, match=r"part.py:2: SyntaxError.*broken.py, line 4"):
         b.run_script(script(tmp_path, "x = 1\nimport broken\n"))
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        *({"timeout": value} for value in ("5", math.nan, 0, -1, True)),
+        *({"arguments": value} for value in (5, "abc", [5], None)),
+        *({"defines": value} for value in ("size=4", {4: 4}, {"size": lambda: 4})),
+    ],
+)
+def test_parameters_that_make_no_sense(tmp_path: Path, wrong: dict[str, Any]) -> None:
+    with pytest.raises(b.InvalidParameterError, match=next(iter(wrong))):
+        b.run_script(script(tmp_path, "size = 3\n"), **wrong)
+
+
+def test_times_without_end(tmp_path: Path) -> None:
+    path = script(tmp_path, "import bspcsg\nresult = bspcsg.cube(2)\n")
+    for timeout in (None, math.inf):
+        assert b.run_script(path, timeout=timeout).volume == 8
+
+
+def test_names_too_long_for_a_script() -> None:
+    with pytest.raises(b.FormatError, match="no such file"):
+        b.run_script("a" * 300)

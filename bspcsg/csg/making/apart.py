@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..syntax.arguments import is_number
 from ..syntax.tree import Node, Value
 
 #: Nodes that combine their children where they stand.
@@ -62,6 +63,6 @@ def _keeps_axes(node: Node) -> bool:
 
 def _rows(value: Value) -> list[list[float]] | None:
     rows = [row for row in value if isinstance(row, tuple)] if isinstance(value, tuple) else []
-    numbers = [[entry for entry in row if isinstance(entry, float)] for row in rows]
+    numbers = [[entry for entry in row if is_number(entry)] for row in rows]
     is_matrix = isinstance(value, tuple) and len(value) == len(numbers) and len(numbers) in (3, 4)
     return numbers if is_matrix and all(len(row) == 4 for row in numbers) else None

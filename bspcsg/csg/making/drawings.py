@@ -1,7 +1,7 @@
 """Drawings as OpenSCAD imports them: arcs in as many chords as circles get."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
 from ...bsp.drawings.dxf_curves import MOST_IN_BLOCKS
 from ...errors import format_errors
+from ..syntax.arguments import Arguments
 from .tessellation import Fineness
 
 #: Blocks in blocks in blocks: deeper ones are left out.
@@ -22,7 +23,7 @@ _JOINED = 2.0**-10
 
 
 def dxf_region(
-    path: Path, layer: str, origin: FloatArray, scale: float, fineness: Fineness
+    path: Path, layer: str, origin: FloatArray, scale: float, arguments: Arguments
 ) -> Region:
     """Return what the outlines of a DXF file surround, by the even-odd rule.
 
@@ -38,20 +39,20 @@ def dxf_region(
         Subtracted first.
     scale : float
         Multiplied then.
-    fineness : Fineness
+    arguments : Arguments
+        Those of the node, which say how fine arcs are.
 
     Raises
     ------
     FormatError
-        If the file is no DXF.
+        If the file is no DXF, or the drawing would have too many corners; code ``"too_large"``.
     """
     document = read_document(path)
     with format_errors(str(path), "DXF"):
         entities = [e for e in document.modelspace() if not layer or e.dxf.layer == layer]
         chains = [
             (np.array(chain, dtype=np.float64) - origin) * scale
-            for entity in _flat(iter(entities))
-            for chain in _chains(entity, fineness, abs(scale))
+            for chain in _limited(_flat(iter(entities)), arguments, abs(scale))
         ]
     proper = [chain for chain in chains if len(chain) > 1]
     loops = [loop for loop in _joined(proper) if len(np.unique(loop, axis=0)) >= 3]
@@ -128,7 +129,16 @@ def _flat(entities: Iterator[Any]) -> Iterator[Any]:
             waiting.append(iter(entity.virtual_entities()))
 
 
-def _chains(entity: Any, fineness: Fineness, scale: float) -> Iterator[Any]:
+def _limited(entities: Iterable[Any], arguments: Arguments, scale: float) -> Iterator[Any]:
+    """Yield the chains of all entities, as long as they are not too many corners together."""
+    corners = 0
+    for entity in entities:
+        for chain in _chains(entity, arguments, scale):
+            corners = arguments.limited(corners + len(chain), "this drawing")
+            yield chain
+
+
+def _chains(entity: Any, arguments: Arguments, scale: float) -> Iterator[Any]:
     kind = entity.dxftype()
     if kind == "LINE":
         yield [entity.dxf.start.vec2, entity.dxf.end.vec2]
@@ -136,28 +146,32 @@ def _chains(entity: Any, fineness: Fineness, scale: float) -> Iterator[Any]:
         corners = [corner[:2] for corner in entity.get_points()]
         yield corners + corners[:1] if entity.closed else corners
     elif kind in ("CIRCLE", "ARC"):
-        yield _arc(entity, fineness, scale)
+        yield _arc(entity, arguments, scale)
     elif kind == "ELLIPSE":
-        yield _ellipse(entity, fineness, scale)
+        yield _ellipse(entity, arguments, scale)
 
 
-def _arc(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
+def _arc(entity: Any, arguments: Arguments, scale: float) -> FloatArray:
     center, radius = np.array(entity.dxf.center.vec2), entity.dxf.radius
     full = entity.dxftype() == "CIRCLE"
     start = 0.0 if full else entity.dxf.start_angle
     stop = 360.0 if full else entity.dxf.end_angle
     sweep = stop - start if stop >= start else (stop - start) % 360
-    count = math.ceil(fineness.fragments(radius * scale) * sweep / 360)
+    count = math.ceil(_sides(radius * scale, arguments) * sweep / 360)
     angles = np.radians(start + sweep * np.arange(count + 1) / max(count, 1))
     points = center + radius * np.column_stack([np.cos(angles), np.sin(angles)])
     return np.concatenate([points[:-1], points[:1]]) if full else points
 
 
-def _ellipse(entity: Any, fineness: Fineness, scale: float) -> FloatArray:
+def _sides(radius: float, arguments: Arguments) -> int:
+    return arguments.sides(Fineness.of(arguments).fragments(radius), "an arc of this drawing")
+
+
+def _ellipse(entity: Any, arguments: Arguments, scale: float) -> FloatArray:
     center, axis = np.array(entity.dxf.center.vec2), np.array(entity.dxf.major_axis.vec2)
     start, stop = entity.dxf.start_param, entity.dxf.end_param
     sweep = stop - start if stop >= start else (stop - start) % math.tau
-    sides = fineness.fragments(float(np.hypot(*axis)) * scale)
+    sides = _sides(float(np.hypot(*axis)) * scale, arguments)
     count = math.ceil(sides * sweep / math.tau - 1e-9)
     angles = start + sweep * np.arange(count + 1) / max(count, 1)
     other = np.array([-axis[1], axis[0]]) * entity.dxf.ratio

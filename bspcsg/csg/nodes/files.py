@@ -1,5 +1,6 @@
 """Shapes from files: import and surface."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,6 @@ from ...modelling.making.heights import (
 from ...solid.solid import Solid
 from ..making.drawings import dxf_region
 from ..making.paper import svg_region
-from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
@@ -53,7 +53,7 @@ def drawing_of(arguments: Arguments, run: Evaluation) -> Region:
 def _dxf(path: Path, arguments: Arguments, scale: float) -> Region:
     origin = arguments.vector("origin", 2, (0.0, 0.0))
     layer = arguments.text("layer", "")
-    return dxf_region(path, layer, np.array(origin), scale, Fineness.of(arguments))
+    return dxf_region(path, layer, np.array(origin), scale, arguments)
 
 
 @node("surface")
@@ -81,7 +81,8 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
             " allow_paths) names further folders that may be read."
         )
         raise arguments.error(message, "forbidden_path")
-    if not name or "\0" in name or not path.is_file():
+    # Names that no file can have, for they are too long, are no files either.
+    if not name or not os.path.isfile(path):
         message = f"there is no file “{name}”; names are relative to the script's folder."
         raise arguments.error(message, "missing_file")
     return path

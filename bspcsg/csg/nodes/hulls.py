@@ -16,10 +16,14 @@ _Shape = TypeVar("_Shape", Solid, Region)
 
 @node("hull")
 def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Return the convex hull of all children together."""
+    """Return the convex hull of all children together.
+
+    Meshes among them need not be closed: the corners count, as in OpenSCAD.
+    """
     solids, regions = run.same_kind(owner, children)
     if solids:
-        return hulls.hull(*solids)
+        body: Solid = hulls.hull(*map(run.corners_or, solids))
+        return body
     return hulls.hull(*regions) if regions else None
 
 

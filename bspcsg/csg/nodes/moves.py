@@ -11,7 +11,7 @@ from ...errors import invalid_parameter
 from ...geometry.transform import determinant_sign
 from ...solid.solid import Solid
 from ..making.polish import polished_matrix
-from ..syntax.arguments import LARGEST, Arguments
+from ..syntax.arguments import LARGEST, Arguments, is_number
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
@@ -51,10 +51,10 @@ def _matrix(arguments: Arguments) -> FloatArray | None:
     """Return the (4, 4) matrix with 1 in its last place, None if it is not finite."""
     value = arguments.value("m")
     rows = value if isinstance(value, tuple) else ()
-    if not 3 <= len(rows) <= 4 or not all(_is_row(row) for row in rows):
+    if not 3 <= len(rows) <= 4 or not all(map(_is_row, rows)):
         raise arguments.error("its argument must be a matrix of 4 rows of 4 numbers.")
     matrix = np.eye(4)
-    matrix[: len(rows)] = [list(_numbers(row)) for row in rows]
+    matrix[: len(rows)] = rows
     if not np.isfinite(matrix).all():
         return None
     if matrix[3, :3].any() or matrix[3, 3] == 0:
@@ -67,31 +67,30 @@ def _matrix(arguments: Arguments) -> FloatArray | None:
 
 
 def _is_row(row: object) -> bool:
-    return isinstance(row, tuple) and len(row) == 4 and len(_numbers(row)) == 4
-
-
-def _numbers(row: object) -> list[float]:
-    entries = row if isinstance(row, tuple) else ()
-    return [entry for entry in entries if isinstance(entry, float)]
+    return isinstance(row, tuple) and len(row) == 4 and all(map(is_number, row))
 
 
 @node("resize", makes_corners=False)
 def resize(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Scale the children to new sizes along the axes; 0 keeps one, unless `auto` scales it too."""
+    """Scale the children to new sizes along the axes; 0 keeps one, unless `auto` scales it too.
+
+    In the plane only the sizes along x and y count.
+    """
     arguments = run.arguments(owner, ("newsize", "auto"))
     body = union_of(owner, children, run)
     sizes = arguments.vector("newsize", 3, (0.0, 0.0, 0.0))
     bounds = None if body is None else _bounds(body)
     if body is None or bounds is None:
         return body
-    factors = _factors(sizes, _auto(arguments), np.ptp(bounds, axis=0).tolist())
-    return _moved(owner, body, np.diag([*factors, 1.0]), run)
+    old = np.ptp(bounds, axis=0).tolist()
+    factors = _factors(sizes[: len(old)], _auto(arguments)[: len(old)], old)
+    return _moved(owner, body, np.diag([*factors, 1.0, 1.0][:4]), run)
 
 
 def _auto(arguments: Arguments) -> list[bool]:
     value = arguments.value("auto")
     flags = value if isinstance(value, tuple) else (value,) * 3
-    return [bool(flag) for flag in flags] + [False] * (3 - len(flags))
+    return [bool(flag) for flag in (*flags, False, False, False)[:3]]
 
 
 def _bounds(body: Solid | Region) -> FloatArray | None:
@@ -101,7 +100,6 @@ def _bounds(body: Solid | Region) -> FloatArray | None:
 
 
 def _factors(sizes: Sequence[float], auto: Sequence[bool], old: Sequence[float]) -> list[float]:
-    old = [*old, 0.0][:3]
     factors = [
         new / length if new > 0 and length > 0 else 1.0
         for new, length in zip(sizes, old, strict=True)

@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
 
+import numpy as np
+
+from ..._types import FloatArray
 from ...bsp import Region
 from ...errors import InvalidMeshError
 from ...formats.raw import RawMesh
@@ -19,6 +22,10 @@ Geometry: TypeAlias = Solid | Region | None
 
 
 OnInvalid: TypeAlias = Literal["error", "warn", "repair"]
+
+
+#: Codes of meshes without an inside.
+_BOUND_NOTHING = frozenset({"not_closed", "empty_mesh"})
 
 
 class CsgWarning(UserWarning):
@@ -48,6 +55,10 @@ class Evaluation:
         Adds to a message that begins with a place what is known about that.
     united : dict
         Unions of plane figures by their `id`, each with the figures that it is made of.
+    in_hull : bool
+        True while a child of a hull is made, of which only the corners count.
+    loose : dict
+        Empty solids for meshes in hulls that bound nothing by their `id`, each with its corners.
     """
 
     script: str = "<csg>"
@@ -58,6 +69,8 @@ class Evaluation:
     lenient: bool = False
     explained: Callable[[str], str] = str
     united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
+    in_hull: bool = False
+    loose: dict[int, tuple[Solid, FloatArray]] = field(default_factory=dict)
 
     def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
         """Return the arguments of a node."""
@@ -81,6 +94,10 @@ class Evaluation:
         """Return the figures whose union a figure is; itself if it is none."""
         return self.united[id(figure)][1] if id(figure) in self.united else [figure]
 
+    def corners_or(self, solid: Solid) -> Solid | FloatArray:
+        """Return the corners of a mesh in a hull that bounds nothing, or the solid that it is."""
+        return self.loose[id(solid)][1] if id(solid) in self.loose else solid
+
     def warn(self, node: Node, message: str) -> None:
         """Tell the caller what was left out."""
         place = node.place
@@ -93,11 +110,15 @@ class Evaluation:
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from outside, whichever way round it is oriented.
 
-        One that is not closed is an error, or left out or closed with a warning.
+        One that is not closed is an error, or left out or closed with a warning; in a hull its
+        corners are kept.
         """
         try:
-            return Solid(vertices, faces, winding="nonzero")
+            solid = Solid(vertices, faces, winding="nonzero")
+            return self._loose(vertices, faces) if self.in_hull and solid.is_empty else solid
         except InvalidMeshError as error:
+            if self.in_hull and error.code in _BOUND_NOTHING:
+                return self._loose(vertices, faces)
             if self.on_invalid == "error" or error.code != "not_closed":
                 raise
             if self.on_invalid == "repair":
@@ -106,6 +127,11 @@ class Evaluation:
                 return Solid(made.vertices, made.faces, winding="nonzero")
             self.warn(node, f"{error.message} It is left out.")
             return None
+
+    def _loose(self, vertices: Any, faces: Any) -> Solid:
+        stand_in = Solid.empty()
+        self.loose[id(stand_in)] = stand_in, np.asarray(vertices)[np.unique(faces)]
+        return stand_in
 
     def same_kind(
         self, node: Node, children: Sequence[Geometry]

@@ -1,7 +1,7 @@
 """A node's arguments, checked as they are asked for; errors name line and column."""
 
 import math
-from typing import Any
+from typing import Any, TypeGuard
 
 from ...errors import FormatError
 from ...parameters import MOST_CORNERS, MOST_SEGMENTS
@@ -56,7 +56,7 @@ class Arguments:
     def number(self, name: str, default: float | None = None) -> float:
         """Return a number, finite and not absurdly large."""
         value = self._given(name, default)
-        if not _is_number(value) or not _is_usable(value):
+        if not is_number(value) or not _is_usable(value):
             raise self._wrong(name, "a number within ±1e100", value)
         return float(value)
 
@@ -79,7 +79,7 @@ class Arguments:
     ) -> tuple[float, ...]:
         """Return `size` such numbers; one number stands for equal ones."""
         value = self._given(name, default)
-        if _is_number(value):
+        if is_number(value):
             value = (value,) * size
         if not isinstance(value, tuple) or len(value) < size or not _all_usable(value[:size]):
             raise self._wrong(name, f"{size} numbers within ±1e100", value)
@@ -98,7 +98,7 @@ class Arguments:
     def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
         """Return lists of whole numbers from 0 up to below `count`; maybe a `single` one alone."""
         value = self._given(name, None)
-        if single and isinstance(value, tuple) and value and _is_number(value[0]):
+        if single and isinstance(value, tuple) and value and is_number(value[0]):
             value = (value,)
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of lists of point numbers", value)
@@ -108,7 +108,7 @@ class Arguments:
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of point numbers", value)
         for entry in value:
-            if not _is_number(entry) or not 0 <= entry < count or entry != int(entry):
+            if not is_number(entry) or not 0 <= entry < count or entry != int(entry):
                 raise self._wrong(name, f"whole numbers from 0 to {count - 1}", value)
         return [int(entry) for entry in value]
 
@@ -139,7 +139,8 @@ class Arguments:
         return self.error(f"{name} must be {expected}, not {shown}.", code)
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> TypeGuard[float]:
+    """Say whether a value is a number; true and false are none."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
@@ -160,4 +161,4 @@ def _is_usable(value: float) -> bool:
 
 
 def _all_usable(values: tuple[Any, ...]) -> bool:
-    return all(_is_number(value) and _is_usable(value) for value in values)
+    return all(is_number(value) and _is_usable(value) for value in values)

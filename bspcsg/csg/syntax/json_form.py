@@ -14,7 +14,7 @@ from typing import Any, TypeGuard
 
 from ...errors import FormatError
 from ...parameters import at_least, file_path, of_kind, text_value
-from .parser import DEEPEST_VECTOR
+from .parser import DEEPEST_VECTOR, WORDS
 from .tokens import WORD
 from .tree import Argument, CsgTree, Node, Value
 
@@ -123,6 +123,8 @@ def _argument(data: Any, where: str, name: str) -> Argument:
     named = data.get("name") if isinstance(data, dict) else None
     if not isinstance(data, dict) or "value" not in data or not (named is None or _is_name(named)):
         raise _wrong(name, where, "an argument with a value")
+    if named in WORDS:
+        raise _wrong(name, f"{where}.name", f"a name, and {named} is a value")
     return Argument(named, _value(data["value"], f"{where}.value", name, 1))
 
 
@@ -131,7 +133,7 @@ def _value(data: Any, where: str, name: str, depth: int) -> Value:
         return tuple(
             _value(entry, f"{where}[{k}]", name, depth + 1) for k, entry in enumerate(data)
         )
-    if isinstance(data, dict) and data.get("number") in _ODD:
+    if isinstance(data, dict) and isinstance(data.get("number"), str) and data["number"] in _ODD:
         return _ODD[data["number"]]
     if isinstance(data, bool) or data is None or _is_text(data):
         return data

@@ -26,7 +26,8 @@ from .tree import Argument, CsgTree, Node, Place, Value
 #: Deepest vector in a vector; OpenSCAD writes two, for matrices and paths.
 DEEPEST_VECTOR = 64
 
-_WORDS: dict[str, Value] = {
+#: Names that are values, so that no argument has them.
+WORDS: dict[str, Value] = {
     "true": True,
     "false": False,
     "undef": None,
@@ -171,7 +172,7 @@ class _Parser:
         return tuple(found)
 
     def _argument(self) -> Argument:
-        if self._next.kind != "name" or self._next.text in _WORDS:
+        if self._next.kind != "name" or self._next.text in WORDS:
             return Argument(None, self._value())
         name = self._take().text
         self._expect("=", f"after {name}")
@@ -223,8 +224,8 @@ class _Parser:
             return sign * (math.inf if word.text == "inf" else math.nan)
         if signed is word and word.kind == "string":
             return unquoted(word.text)
-        if signed is word and word.text in _WORDS:
-            return _WORDS[word.text]
+        if signed is word and word.text in WORDS:
+            return WORDS[word.text]
         raise self._error(f"expected a value, found {word}.", word)
 
     def _number(self, word: Token) -> float:

@@ -20,6 +20,9 @@ class Place(NamedTuple):
 
 NOWHERE = Place(0, 0)
 
+#: The special variables, which hold in the nodes inside of the one that has them, too.
+SPECIAL = ("$fn", "$fa", "$fs")
+
 
 def _are_same(one: "Value", other: "Value") -> bool:
     """Say whether values are equal; true is not 1, though Python's are."""
@@ -107,14 +110,16 @@ class CsgTree:
     def roots(self) -> tuple[Node, ...]:
         """Return the nodes that count: the first one marked ``!``, else all top nodes.
 
-        A node marked ``*`` does not exist, and neither do those in it.
+        A node marked ``*`` does not exist, and neither do those in it. One marked ``!`` stands in
+        a group with the special variables that hold where it is, if there are such.
         """
-        waiting = list(reversed(self.nodes))
+        waiting: list[tuple[Node, dict[str, Argument]]] = [(node, {}) for node in self.nodes[::-1]]
         while waiting:
-            node = waiting.pop()
+            node, scope = waiting.pop()
             if "*" in node.modifiers:
                 continue
             if "!" in node.modifiers:
-                return (node,)
-            waiting.extend(reversed(node.children))
+                return (Node("group", tuple(scope.values()), (node,)),) if scope else (node,)
+            inner = scope | {a.name: a for a in node.arguments if a.name in SPECIAL}
+            waiting.extend((child, inner) for child in reversed(node.children))
         return self.nodes

@@ -72,6 +72,6 @@ def value_text(value: Value, odd: Mapping[float, str] = _IN_CSG) -> str:
 def number_text(value: float, odd: Mapping[float, str] = _IN_CSG) -> str:
     """Return a number in as few digits as give the same double again."""
     if math.isfinite(value):
-        return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(value)
+        return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
     # Not a number is not equal to itself, so it is no key to be found.
     return odd[math.nan if math.isnan(value) else value]
