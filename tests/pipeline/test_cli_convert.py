@@ -66,6 +66,16 @@ def test_many_files(folder: Path, capsys: Capture) -> None:
     assert sorted(os.listdir("out"))[1::2] == ["a.ply", "c.ply"]
 
 
+def test_no_output_replaces_another_input(folder: Path, capsys: Capture) -> None:
+    put("a.ply", cube(1))
+    put("x-a.ply", cube(2))
+    code, _, err = ran(capsys, "convert", "a.ply", "./x-a.ply", "-o", "x-%.ply")
+    assert code == 2 and "a.ply would be written over x-a.ply" in err
+    assert b.load("x-a.ply").volume == 8
+    # A file may be replaced by itself.
+    assert ran(capsys, "convert", "a.ply", "x-a.ply", "--to", "ply", "--outdir", ".")[0] == 0
+
+
 def test_one_bad_file_of_many(folder: Path, capsys: Capture) -> None:
     Path("bad.stl").write_text("nothing")
     code, out, err = ran(capsys, "convert", "bad.stl", "a.off", "--to", "ply", "--outdir", ".")

@@ -1,5 +1,6 @@
 """The verb that changes formats: convert."""
 
+import os
 import sys
 import time
 from collections.abc import Iterator
@@ -244,6 +245,7 @@ def _targets(
     else:
         pairs = [(path, expanded(target, _stem(path))) for path in files]
     _refuse_twins(pairs)
+    _refuse_inputs(pairs)
     return pairs
 
 
@@ -257,6 +259,17 @@ def _refuse_twins(pairs: list[tuple[Path, Path]]) -> None:
         if where in seen:
             raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
         seen[where] = path
+
+
+def _refuse_inputs(pairs: list[tuple[Path, Path]]) -> None:
+    """Refuse targets that are other inputs, which may not have been read by then."""
+    inputs = {os.path.realpath(path): path for path, _ in pairs}
+    for path, where in pairs:
+        other = inputs.get(os.path.realpath(where), path)
+        if os.path.realpath(other) != os.path.realpath(path):
+            raise click.UsageError(
+                f"{path} would be written over {other}, which is to be read; name another output."
+            )
 
 
 @contextmanager
