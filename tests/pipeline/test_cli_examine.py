@@ -187,6 +187,13 @@ def test_repair_as_json(folder: Path, capsys: Capture) -> None:
     assert verdicts == ("inside out", "solid")
 
 
+def test_repairs_are_judged_as_they_are_rounded(folder: Path, capsys: Capture) -> None:
+    put("small.off", cuboid((1, 1, 1), (1.3, 1.3, 1.3)))
+    code, out, err = ran(capsys, "repair", "small.off", "-o", "x.ply", "--digits", "1")
+    assert code == 1 and "x.ply: still no solid" in out and "rounding to 1 digits" in err
+    assert ran(capsys, "check", "x.ply")[0] == 1
+
+
 def test_what_cannot_be_repaired_is_code_1(folder: Path, capsys: Capture) -> None:
     put("open.off", (cube(2)[0], cube(2)[1][1:]))
     code, out, _ = ran(capsys, "repair", "open.off", "-o", "x.off", "--steps", "weld,orient")

@@ -1,5 +1,6 @@
 """The verb that closes meshes: repair."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -95,7 +96,9 @@ class _Repairing:
         self._inputs.tell(self._file, raw.findings)
         before = diagnose(raw)
         made = repaired(raw, steps, **limits)
-        after = diagnose(made.mesh)
+        # Rounding may make flat or crossing triangles: the verdict is about what is written.
+        written, _ = self._target.rounded(made.mesh)
+        after = diagnose(replace(made.mesh, vertices=written.vertices))
         lost = self._target.write(made.mesh)
         for finding in lost:
             self._out.finding(shown(self._target.path), finding)
