@@ -299,6 +299,8 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
         (["--junit", "-"], "--junit takes the name of a file, not a stream."),
         (["--markdown", "./a.off"], "--markdown would overwrite a.off, which is to be read."),
         (["--results", "c.stl"], "--results would overwrite c.stl, which is to be read."),
+        (["--results", "r", "--junit", "./r"], "--results and --junit would both write r."),
+        (["--junit", "r", "--markdown", "r"], "--junit and --markdown would both write r."),
         (["-"], "validate reads files, not standard input."),
     ],
 )

@@ -15,7 +15,7 @@ from ...parameters import SET_OPS
 from ..console import output, status
 from ..console.output import Output, counted
 from ..console.tables import table_text
-from ..inputs.files import STREAM, is_among, refuse_folder, shown
+from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
 from ..options.campaign import (
     POSES,
     as_bytes,
@@ -185,6 +185,7 @@ class _Validation:
         return output.FOUND if any(map(is_failure, records)) else output.DONE
 
     def _refuse_early(self) -> None:
+        taken: dict[str, str] = {}
         for name in ("results", "junit", "markdown"):
             path: Path | None = self._settings[name]
             if path is None:
@@ -194,6 +195,9 @@ class _Validation:
             refuse_folder(path)
             if is_among(path, self._paths):
                 raise click.UsageError(f"--{name} would overwrite {path}, which is to be read.")
+            other = taken.setdefault(os.path.realpath(path), name)
+            if other != name and not is_dropped(path):
+                raise click.UsageError(f"--{other} and --{name} would both write {path}.")
         if Path(STREAM) in self._paths:
             raise click.UsageError("validate reads files, not standard input.")
 
