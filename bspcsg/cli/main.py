@@ -201,7 +201,7 @@ def _invoked(arguments: list[str]) -> int:
     quiet = bool({"-q", "--quiet"}.intersection(arguments))
     with (
         commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context,
-        status.watched(arguments[0], quiet),
+        status.watched("".join(arguments[:1]), quiet),
     ):
         code = commands.invoke(context)
     return code if isinstance(code, int) else output.DONE

@@ -293,6 +293,7 @@ def test_check_as_json(folder: Path, capsys: Capture) -> None:
         ["union", "a.off", "c.stl", "-o", "x.off", "--threads", "-1"],
         ["check"],
         ["--nonsense"],
+        ["--"],
     ],
 )
 def test_wrong_usage(folder: Path, capsys: Capture, arguments: list[str]) -> None:
