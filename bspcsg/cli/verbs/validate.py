@@ -333,7 +333,7 @@ class _Validation:
             def notice(record: "CaseRecord") -> None:
                 bar.advance(task)
                 if is_failure(record) or self._out.verbosity > 0:
-                    bar.console.print(_line(record), markup=False, highlight=False)
+                    bar.console.print(_line(record), markup=False, emoji=False, highlight=False)
 
             yield notice
 
