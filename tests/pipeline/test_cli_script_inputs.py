@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from support.cli import Capture, ran
+from support.cli import Capture, put, ran
+from support.shapes import cube
 
 #: A plate with a square hole, of volume 48, and a ball of Python that stands on it.
 PLATE = """difference() {
@@ -68,6 +69,16 @@ def test_what_a_script_leaves_out_is_told(folder: Path, capsys: Capture) -> None
     Path("odd.csg").write_text('cube(1); import("none.stl");')
     code, out, err = ran(capsys, "info", "odd.csg", "--json")
     assert code == 0 and "none.stl" in err and json.loads(out)["files"][0]["triangles"] == 12
+
+
+def test_a_script_of_an_open_file_keeps_no_other_file(folder: Path, capsys: Capture) -> None:
+    put("open.off", (cube()[0], cube()[1][1:]))
+    Path("bad.csg").write_text('import("open.off");')
+    code, out, err = ran(capsys, "check", "a.off", "bad.csg", "c.stl", "--json")
+    found = json.loads(out)["files"]
+    assert code == 4 and "bad.csg:1:1: import()" in err
+    assert [entry["verdict"] for entry in found] == ["solid", "unreadable", "solid"]
+    assert found[1]["error"]["code"] == "not_closed"
 
 
 def test_scripts_that_fail_name_their_place(folder: Path, capsys: Capture) -> None:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...errors import BspcsgError, FormatError, MissingPartError
+from ...errors import BspcsgError
 from ..console import output, terminal
 from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
@@ -94,7 +94,7 @@ def _examined(inputs: Inputs, path: Path) -> tuple[Path, "Diagnosis | BspcsgErro
     try:
         inputs.refuse_early([path])
         return path, diagnose(inputs.raw(path))
-    except (FormatError, MissingPartError) as error:
+    except BspcsgError as error:
         return path, error
 
 
