@@ -74,7 +74,7 @@ def test_what_a_script_leaves_out_is_told(folder: Path, capsys: Capture) -> None
 def test_a_script_of_an_open_file_keeps_no_other_file(folder: Path, capsys: Capture) -> None:
     put("open.off", (cube()[0], cube()[1][1:]))
     Path("bad.csg").write_text('import("open.off");')
-    code, out, err = ran(capsys, "check", "a.off", "bad.csg", "c.stl", "--json")
+    code, out, err = ran(capsys, "check", "plate.csg", "bad.csg", "plug.py", "--json")
     found = json.loads(out)["files"]
     assert code == 4 and "bad.csg:1:1: import()" in err
     assert [entry["verdict"] for entry in found] == ["solid", "unreadable", "solid"]

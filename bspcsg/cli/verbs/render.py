@@ -160,7 +160,9 @@ class _Rendering(Drawing):
         super().__init__(files[0], *paths, **settings)
         refuse_contradictions(settings)
         if self.suffix == ".gif" and settings["seconds"] > _LONGEST * settings["frames"]:
-            message = f"--seconds: a GIF shows a picture for {_LONGEST} s at most; say more --frames."
+            message = (
+                f"--seconds: a GIF shows a picture for {_LONGEST} s at most; say more --frames."
+            )
             raise click.UsageError(message)
         self._files = files
 
