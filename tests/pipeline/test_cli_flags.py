@@ -183,6 +183,31 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
     assert ran(capsys, *command)[0] == 0 and Path("new.mtl").is_file()
 
 
+# Numbers
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "compare a.off c.stl --tol nan",
+        "repair a.off -o x.ply --timeout nan",
+        "repair a.off -o x.ply --timeout inf",
+        "repair a.off -o x.ply --timeout 1e10",
+        "repair a.off -o x.ply --weld nan",
+        "render a.off -o x.gif --frames 2 --seconds inf",
+        "render a.off -o x.gif --frames 2 --seconds 2000",
+        "render a.off -o x.svg --azimuth nan",
+        "validate a.off c.stl --timeout nan",
+        "bench --memory inf",
+        "bench --limit nan",
+        "bench --budget inf",
+    ],
+)
+def test_numbers_that_make_no_sense(folder: Path, capsys: Capture, line: str) -> None:
+    code, out, err = ran(capsys, *line.split())
+    assert (code, out) == (2, "") and line.split()[-2] in err
+
+
 # --up
 
 

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 import bspcsg as b
-from bspcsg.formats.files import read
+from bspcsg.io import RawMesh, read, write
 from support.cli import Capture, put, ran
-from support.shapes import cuboid
+from support.shapes import cuboid, joined
 
 
 @pytest.fixture
@@ -67,6 +67,14 @@ def test_the_set_is_what_it_was(files: Path, capsys: Capture) -> None:
 def test_files_without_names_stay_one_object(files: Path, capsys: Capture) -> None:
     assert ran(capsys, "union", "a.off", "c.stl", "-o", "x.3mf")[0] == 0
     assert [name for name, _ in read("x.3mf").objects] == [""]
+
+
+def test_parts_of_repaired_files_are_called_as_the_file(files: Path, capsys: Capture) -> None:
+    vertices, faces = joined(cuboid((0, 0, 4), (1, 1, 5)), cuboid((0, 0, 7), (1, 1, 8)))
+    write(RawMesh(vertices, faces[1:], objects=(("left", 11), ("right", 12))), "open.obj")
+    line = ["union", "open.obj", "cover.3mf", "-o", "x.3mf", "--on-invalid", "repair"]
+    assert ran(capsys, *line)[0] == 0
+    assert sorted(name for name, _ in read("x.3mf").objects) == ["lid", "open", "open"]
 
 
 def test_hulls_have_no_names(files: Path, capsys: Capture) -> None:

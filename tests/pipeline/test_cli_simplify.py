@@ -1,11 +1,15 @@
 """The option --simplify: lengths, what is told, and which verbs take it."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg.attributes.attributes import Attributes
+from bspcsg.io import read, write
 from support.cli import Capture, ran
 
 MODEL = "near.off"
@@ -64,6 +68,24 @@ def test_as_json(near: Path, capsys: Capture) -> None:
 def test_nothing_to_remove(near: Path, capsys: Capture, verb: tuple[str, ...]) -> None:
     code, out, err = ran(capsys, *verb, "-o", "x.off", "--simplify", "0.01um")
     assert code == 0 and "--simplify changed nothing" in err and "28 triangles" in out
+
+
+def test_attributes_of_simplified_meshes_are_lost(near: Path, capsys: Capture) -> None:
+    raw = read(MODEL)
+    colours = Attributes(raw.faces, face={"color": np.ones((len(raw.faces), 3))})
+    write(replace(raw, attributes=colours), "x.ply")
+    line = ["convert", "x.ply", "-o", "y.ply", "--simplify", "1um", "--fail-on-loss"]
+    code, out, err = ran(capsys, *line)
+    assert code == 1 and "20 triangles  lost: attributes: “color”" in out, err
+    assert b.load("y.ply").equals(b.cube(1))
+
+
+def test_names_of_objects_that_became_one_are_lost(near: Path, capsys: Capture) -> None:
+    raw = read(MODEL)
+    write(replace(raw, objects=(("bump", 10), ("rest", len(raw.faces) - 10))), "x.obj")
+    line = ["convert", "x.obj", "-o", "y.obj", "--simplify", "1um", "--fail-on-loss"]
+    code, out, _ = ran(capsys, *line)
+    assert code == 1 and "lost: names gone: “rest”" in out
 
 
 def test_open_meshes_are_refused(folder: Path, capsys: Capture) -> None:

@@ -99,6 +99,17 @@ def test_streams(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch)
     assert code == 3 and "byte 0 is no UTF-8" in err
 
 
+def test_scripts_do_not_steer_the_terminal(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = 'text("\x1b[31mred\x1b]0;title\x07");\n'
+    Path("red.csg").write_text(text)
+    assert ran(capsys, "tree", "red.csg", "--to", "csg")[1] == text
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    out = ran(capsys, "tree", "red.csg", "--to", "csg")[1]
+    assert out == 'text("\ufffd[31mred\ufffd]0;title\ufffd");\n'
+
+
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="needs openscad")
 def test_the_language_of_openscad(folder: Path, capsys: Capture) -> None:
     Path("a.scad").write_text("for (k = [1, 2]) translate([k, 0, 0]) cube(k);")

@@ -176,6 +176,14 @@ def test_tables_fit_the_terminal(columns: int, monkeypatch: pytest.MonkeyPatch) 
     assert " ".join(lines).split().count("words") == 1
 
 
+def test_tables_show_names_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [["a:x:b.obj", "1"], ["部品" * 9, "2"]]
+    piped = table_text(["file", "count"], rows)
+    at_terminal(monkeypatch, 80)
+    for text in (piped, table_text(["file", "count"], rows)):
+        assert "a:x:b.obj " in text and "部品" * 9 in text
+
+
 def test_tables_without_room_become_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     at_terminal(monkeypatch, 40)
     names = ["one", "another", "a third", "the fourth", "number five"]

@@ -93,5 +93,9 @@ def test_errors_point_at_the_place(text: str, column: int, words: str) -> None:
     assert caught.value.column == column and words in caught.value.message
 
 
+def test_values_of_long_chains() -> None:
+    assert value(" | ".join(["a", "b", "c - a"] * 1000)) == {1, 2, 3, 4, 5, 6, 8}
+
+
 def test_a_long_chain_is_no_deep_one() -> None:
     assert value(" | ".join(["a"] * 300)) == SETS["a"]

@@ -26,11 +26,13 @@ def table_text(
     right : sequence of str
         Columns to align at the right.
     """
+    from rich.cells import cell_len
+
     columns, *listed = [[terminal.harmless(entry) for entry in row] for row in (columns, *rows)]
     entries = list(zip(columns, *listed, strict=True))
     width = terminal.width()
     # A table in a pipe or a log must not lose letters.
-    widths = [max(map(len, column)) for column in entries]
+    widths = [max(map(cell_len, column)) for column in entries]
     if width is None:
         whole = sum(widths) + _MARGIN * len(columns)
         return _drawn(columns, listed, right, widths, whole).replace(_RULE, _PLAIN_RULE)
@@ -41,8 +43,10 @@ def table_text(
 
 
 def _longest_word(text: str) -> int:
+    from rich.cells import cell_len
+
     # Not at blanks that do not break, which keep the digits of a number together.
-    return max(map(len, text.split(" ")))
+    return max(map(cell_len, text.split(" ")))
 
 
 def _stacked(columns: Sequence[str], row: Sequence[str]) -> str:
@@ -73,5 +77,7 @@ def _drawn(
     for row in rows:
         table.add_row(*row)
     drawn = StringIO()
-    Console(file=drawn, width=width, highlight=False, markup=False).print(table)
+    # A name between colons is a name, not that of a picture.
+    console = Console(file=drawn, width=width, highlight=False, markup=False, emoji=False)
+    console.print(table)
     return "\n".join(line.rstrip() for line in drawn.getvalue().splitlines() if line.strip())

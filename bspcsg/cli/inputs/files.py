@@ -168,7 +168,6 @@ class Inputs:
         solid = self.as_solid(raw, path)
         noticed = [Finding.from_core(found) for found in solid.tree.findings]
         self.noticed.extend(noticed)
-        self.objects.note(solid, raw, path.stem)
         self.tell(path, (*raw.findings, *noticed))
         self.out.detail(f"{shown(path)}: {counted(len(raw.faces), 'triangle')}")
         return solid
@@ -190,7 +189,9 @@ class Inputs:
     def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":
         from ...formats.solids import solid_of
 
-        return solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
+        solid = solid_of(raw, shown(path), winding=self.winding, pitch=self.pitch)
+        self.objects.note(solid, raw, path.stem)
+        return solid
 
     def _left_out(self, error: InvalidMeshError) -> "Solid":
         from ...solid.solid import Solid

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ...errors import BspcsgError
-from .shared import finite_numbers, numbers
+from .shared import FiniteRange, finite_numbers, numbers
 
 if TYPE_CHECKING:
     from ..._types import FloatArray
@@ -48,13 +48,13 @@ _SEEING = [
     click.option(
         "--azimuth",
         metavar="DEGREES",
-        type=click.FloatRange(-360, 360),
+        type=FiniteRange(-360, 360),
         help="From where around z: 0 from the front, 90 from the right.",
     ),
     click.option(
         "--elevation",
         metavar="DEGREES",
-        type=click.FloatRange(-90, 90),
+        type=FiniteRange(-90, 90),
         help="From how high: 0 from the side, 90 from the top.",
     ),
     click.option("--eye", metavar="X,Y,Z", callback=_as_point, help="Where the viewer is."),
@@ -77,7 +77,7 @@ _SEEING = [
         metavar="[=DEGREES]",
         is_flag=False,
         flag_value=_FIELD_OF_VIEW,
-        type=click.FloatRange(0, 180, min_open=True, max_open=True),
+        type=FiniteRange(0, 180, min_open=True, max_open=True),
         help="Near things are larger, in a field of view of so many degrees, or 35; what --eye does"
         " by itself.",
     ),

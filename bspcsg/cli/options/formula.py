@@ -121,10 +121,16 @@ def evaluated(
     combine: Callable[[str, list[_Value]], _Value],
 ) -> _Value:
     """Return the value of a formula, given that of its files and what its operations do."""
-    if isinstance(formula, File):
-        return leaf(formula)
-    values = [evaluated(operand, leaf, combine) for operand in formula.operands]
-    return combine(formula.name, values)
+    # Chains lean to the left, and may be longer than calls may lie in one another.
+    leaning: list[NamedOperation] = []
+    while isinstance(formula, NamedOperation):
+        leaning.append(formula)
+        formula = formula.operands[0]
+    value = leaf(formula)
+    for node in reversed(leaning):
+        others = [evaluated(operand, leaf, combine) for operand in node.operands[1:]]
+        value = combine(node.name, [value, *others])
+    return value
 
 
 def _tokens(text: str) -> list[_Token]:

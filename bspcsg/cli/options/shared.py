@@ -17,6 +17,26 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 #: is found out by reading: click would call a forbidden file wrong usage.
 PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
 
+#: Seconds that may be asked for, some twelve days: a call of the system takes no more than 2**31
+#: milliseconds.
+_MOST_SECONDS = 10**6
+
+
+class FiniteRange(click.FloatRange):
+    """Finite numbers within bounds."""
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        """Return the number of a text."""
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{number} is not finite.", param, ctx)
+        return number
+
+
+SECONDS = FiniteRange(0, _MOST_SECONDS, min_open=True)
+
 _THREADS = click.option(
     "-j",
     "--jobs",
@@ -193,7 +213,7 @@ SIMPLIFY = click.option(
 TIMEOUT = click.option(
     "--timeout",
     metavar="SECONDS",
-    type=click.FloatRange(min=0, min_open=True),
+    type=SECONDS,
     help="Seconds to give it.",
 )
 

@@ -13,6 +13,7 @@ from ...errors import FormatError
 from ..console import output, status
 from ..console.tables import table_text
 from ..inputs.files import STREAM, refuse_folder
+from ..options.shared import SECONDS, FiniteRange
 
 if TYPE_CHECKING:
     from ...bench.runner import Settings
@@ -28,6 +29,9 @@ Examples:
 """
 
 _PATH = click.Path(path_type=Path, dir_okay=False)
+
+#: GiB that may be asked for: a bound in bytes is a number of 64 bits.
+_MOST_MEMORY = 2**20
 
 
 def _as_engines(
@@ -93,13 +97,13 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 @click.option(
     "--limit",
     metavar="SECONDS",
-    type=click.FloatRange(0, min_open=True),
+    type=SECONDS,
     help="Seconds after which a call is stopped; by default 120 to 900.",
 )
 @click.option(
     "--budget",
     metavar="SECONDS",
-    type=click.FloatRange(0, min_open=True),
+    type=SECONDS,
     default=150.0,
     show_default=True,
     help="Seconds for all runs of an engine; slow ones are timed fewer times.",
@@ -114,7 +118,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     "--memory",
     "memory_gb",
     metavar="GIB",
-    type=click.FloatRange(0),
+    type=FiniteRange(0, _MOST_MEMORY),
     default=12.0,
     show_default=True,
     help="GiB of addresses beyond which an engine gets none; 0 for no bound.",

@@ -10,7 +10,7 @@ from ..console.output import Output, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, shown
 from ..options.patterns import file_argument
-from ..options.shared import common, reading, sets
+from ..options.shared import FiniteRange, common, reading, sets
 from ..pages.written import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ Examples:
 @click.option(
     "--tol",
     metavar="DISTANCE",
-    type=click.FloatRange(min=0),
+    type=FiniteRange(min=0),
     default=0.0,
     help="Distance of the surfaces, in model units, up to which they count as the same.",
 )

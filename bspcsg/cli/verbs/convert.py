@@ -142,10 +142,12 @@ class _Conversion:
         from ...verify.roundtrip import losses_between
 
         began = time.perf_counter()
-        raw = self._turned(path, target)
+        raw = meant = self._turned(path, target)
         self._inputs.tell(path, raw.findings)
         if self._settings["tolerance"]:
             raw = self._simplified(raw, path)
+            # Only the shape was to be simplified: all else that the file said counts as lost.
+            meant = replace(meant, vertices=raw.vertices, faces=raw.faces)
         shortened, _ = target.rounded(raw)
         made = encoded(shortened, shown(target.path), target.suffix, target.text)
         found: list[Losses] = []
@@ -154,7 +156,7 @@ class _Conversion:
             made.prove(file)
             file.seek(0)
             again = decoded(shown(target.path), file.read(), target.suffix, made.files)
-            found.append(losses_between(raw, again))
+            found.append(losses_between(meant, again))
 
         target.put(made, compare)
         lost = found[0]
@@ -174,7 +176,7 @@ class _Conversion:
         return document, lost.any
 
     def _simplified(self, raw: "RawMesh", path: Path) -> "RawMesh":
-        """Return a mesh without short edges and slivers; its objects become one."""
+        """Return a mesh without short edges and slivers, of one object and without attributes."""
         solid = self._inputs.as_solid(raw, path)
         simple = solid.simplify(self._settings["tolerance"])
         if simple is solid:
@@ -182,7 +184,8 @@ class _Conversion:
             return raw
         mesh = simple.normalized().to_mesh()
         self._inputs.tell(path, simple.normalized().findings)
-        return replace(raw, vertices=mesh.vertices, faces=mesh.faces, findings=(), objects=())
+        bare = replace(raw, findings=(), objects=(), attributes=None)
+        return replace(bare, vertices=mesh.vertices, faces=mesh.faces)
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
         """Read a file, turned so that the axis asked for is up in the output."""

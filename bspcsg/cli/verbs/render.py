@@ -11,7 +11,7 @@ from ..console.output import counted
 from ..drawing import Drawing
 from ..options.camera import camera_of, refuse_contradictions, seeing
 from ..options.patterns import files_argument
-from ..options.shared import common, drawing, numbers, reading
+from ..options.shared import SECONDS, common, drawing, numbers, reading
 from ..pages.seen import layers_of
 
 if TYPE_CHECKING:
@@ -36,6 +36,9 @@ _TRANSPARENT = "none"
 
 #: Pictures of one turn at most, and how many there are unless that is said.
 _MOST_FRAMES, _FRAMES = 360, 36
+
+#: Seconds for which a GIF can show a picture: two bytes of hundredths.
+_LONGEST = 655
 
 #: Points of the circle that a turning corner runs through.
 _AROUND = 72
@@ -134,7 +137,7 @@ def _as_colours(context: click.Context, option: click.Parameter, value: str | No
 @click.option(
     "--seconds",
     metavar="T",
-    type=click.FloatRange(0, min_open=True),
+    type=SECONDS,
     default=4.0,
     show_default=True,
     help="How long one turn takes, in a GIF.",
@@ -156,6 +159,11 @@ class _Rendering(Drawing):
     def __init__(self, files: tuple[Path, ...], *paths: Any, **settings: Any) -> None:
         super().__init__(files[0], *paths, **settings)
         refuse_contradictions(settings)
+        if self.suffix == ".gif" and settings["seconds"] > _LONGEST * settings["frames"]:
+            message = (
+                f"--seconds: a GIF shows a picture for {_LONGEST} s at most; say more --frames."
+            )
+            raise click.UsageError(message)
         self._files = files
 
     def sources(self) -> tuple[Path, ...]:

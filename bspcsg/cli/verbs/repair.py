@@ -10,7 +10,7 @@ from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, Target, shown
 from ..options.patterns import file_argument
-from ..options.shared import OUTPUT, TIMEOUT, common, reading, writing
+from ..options.shared import OUTPUT, TIMEOUT, FiniteRange, common, reading, writing
 
 if TYPE_CHECKING:
     from ...errors import Finding
@@ -46,7 +46,7 @@ _DEFECTS = {
 @click.option(
     "--weld",
     metavar="DISTANCE",
-    type=click.FloatRange(min=0),
+    type=FiniteRange(min=0),
     default=0.0,
     help="Join vertices up to this distance, in model units; equal ones are joined anyway.",
 )

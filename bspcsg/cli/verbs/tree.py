@@ -1,5 +1,6 @@
 """The verb that shows and converts scripts: tree."""
 
+import sys
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from ..console import output
+from ..console import output, terminal
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
 from ..options.patterns import file_argument
@@ -122,7 +123,9 @@ class _Showing:
         if self._target and self._to_file:
             put(self._target, [text.encode()], self._settings["overwrite"])
         elif not self._out.as_json:
-            click.echo(text, nl=False)
+            # In pipes click would leave out what is a colour to a terminal.
+            said = terminal.harmless(text) if sys.stdout.isatty() else text
+            click.echo(said, nl=False, color=True)
 
     def _tell(self, kinds: "Counter[str]") -> None:
         from ...csg import node_names

@@ -25,7 +25,7 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import telling
+from ..options.shared import SECONDS, telling
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
@@ -108,7 +108,7 @@ _FILE = click.Path(path_type=Path, readable=False)
 @click.option(
     "--timeout",
     metavar="SECONDS",
-    type=click.FloatRange(min=0, min_open=True),
+    type=SECONDS,
     default=300.0,
     show_default=True,
     help="Seconds for a case, after which its process is killed.",
@@ -333,7 +333,7 @@ class _Validation:
             def notice(record: "CaseRecord") -> None:
                 bar.advance(task)
                 if is_failure(record) or self._out.verbosity > 0:
-                    bar.console.print(_line(record), markup=False, highlight=False)
+                    bar.console.print(_line(record), markup=False, emoji=False, highlight=False)
 
             yield notice
 
