@@ -230,3 +230,11 @@ def test_ends_that_do_not_meet_are_told(tmp_path: Path) -> None:
 def test_pieces_may_be_shorter_than_what_is_joined(tmp_path: Path) -> None:
     corners = [(0, 0), (100, 0), (100, 1e-5), (100, 100), (0, 100)]
     assert region_of(tmp_path, lambda space: sides(space, corners, 0)).area == 10_000
+
+
+@pytest.mark.parametrize("start", [0, -math.pi, math.pi, 1, -1e-17])
+def test_full_ellipses_may_begin_anywhere(tmp_path: Path, start: float) -> None:
+    def draw(space: Any) -> None:
+        space.add_ellipse((0, 0), (5, 0), 0.5, start, start + 2 * math.pi)
+
+    assert region_of(tmp_path, draw).area == pytest.approx(5 * 2.5 * math.pi, rel=0.01)

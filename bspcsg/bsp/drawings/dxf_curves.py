@@ -23,6 +23,9 @@ MOST_IN_BLOCKS = 1 << 17
 _DEEPEST_BLOCK = 64
 _MOST_CHORDS = 1 << 20
 
+#: Chords of a full ellipse, at least.
+_LEAST_CHORDS = 8
+
 #: The layer of a block's entities that are to lie on the layer of each of its insertions.
 _ANY_LAYER = "0"
 
@@ -89,9 +92,10 @@ def _chain(entity: Any, chord: float) -> FloatArray:
     kind = entity.dxftype()
     if kind == "LINE":
         return _flat([entity.dxf.start, entity.dxf.end])
+    if kind == "ELLIPSE" and _is_full(entity):
+        return _full_ellipse(entity, chord)
     if kind in ("ELLIPSE", "SPLINE"):
-        points = _flat(entity.flattening(chord))
-        return _closed(points) if kind == "ELLIPSE" and _is_full(entity) else points
+        return _flat(entity.flattening(chord))
     if kind == "LWPOLYLINE":
         return _polyline(entity, np.array(entity.get_points("xyb")), entity.closed, chord)
     if kind == "POLYLINE":
@@ -110,6 +114,14 @@ def _closed(points: FloatArray) -> FloatArray:
 def _is_full(ellipse: Any) -> bool:
     turn = ellipse.dxf.end_param - ellipse.dxf.start_param
     return math.isclose(abs(turn), math.tau, rel_tol=1e-9)
+
+
+def _full_ellipse(entity: Any, chord: float) -> FloatArray:
+    """Return the corners of a full ellipse, from the end of its major axis."""
+    tool = entity.construction_tool()
+    # ezdxf takes ends that are one point for no curve, unless they are these.
+    tool.start_param, tool.end_param = 0.0, math.tau
+    return _closed(_flat(tool.flattening(chord, _LEAST_CHORDS)))
 
 
 def _arc(entity: Any, chord: float) -> FloatArray:
