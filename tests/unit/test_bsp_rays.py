@@ -422,3 +422,13 @@ def test_scenes_far_away_and_rays_from_afar() -> None:
     assert ground.first_hit(above, [0, 0, -1]).facet.tolist() == list(range(100))
     assert ground.first_hit([-1, 0, 0], [1, 0, 0]).facet.tolist() == [0]
     assert len(ground.all_hits([-1, 0, 0], [1, 0, 0]).hits) == 100
+
+
+def test_lengths_of_one_ray_leave_those_of_others_alone() -> None:
+    outside = bsp.RayCaster(~b.cube(2)).intervals([[5, 1, 1], [1, 1, 1]], [[1.0, 0, 0], [0, 1, 0]])
+    assert outside.lengths().tolist() == [np.inf, np.inf]
+    cube = bsp.RayCaster(b.cube(2))
+    starts = [[1, 1, 1], [9, 9, 9], [-1, 1, 1]]
+    within = cube.intervals(starts, [[1e-17, 0, 0], [1, 0, 0], [1, 0, 0]])
+    assert within.lengths().tolist() == [pytest.approx(1e17), 0, 2]
+    assert cube.intervals(np.zeros((0, 3)), np.zeros((0, 3))).lengths().tolist() == []

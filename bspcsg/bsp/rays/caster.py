@@ -129,8 +129,9 @@ class InsideSpans:
 
     def lengths(self) -> FloatArray:
         """Return how far each ray runs inside, in lengths of its direction, (n,)."""
-        sums = np.concatenate([[0.0], np.cumsum(self.t[:, 1] - self.t[:, 0])])
-        return np.asarray(sums[self.offsets[1:]] - sums[self.offsets[:-1]])
+        rays = np.repeat(np.arange(len(self)), np.diff(self.offsets))
+        stretches = self.t[:, 1] - self.t[:, 0]
+        return np.bincount(rays, weights=stretches, minlength=len(self))
 
 
 @dataclass(frozen=True, eq=False)
