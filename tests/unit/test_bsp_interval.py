@@ -110,3 +110,11 @@ def test_bad_questions() -> None:
         bsp.Intervals([(0, 1)]).scale(0)
     with pytest.raises(b.LimitError):
         bsp.Intervals([(0, 1e9)], pitch=-9)
+
+
+def test_short_intervals_far_out_have_their_middle() -> None:
+    far = bsp.Intervals([(5e6, 5e6 + 1e-6)])
+    assert far.centroid == pytest.approx(5e6, abs=1e-5)
+    assert bsp.SubHyperplane((0, 1), 0, far).centroid == pytest.approx([-5e6, 0], abs=1e-5)
+    two = bsp.Intervals([(1e6, 1e6 + 1e-6), (3e6, 3e6 + 1e-6)])
+    assert two.centroid == pytest.approx(2e6, abs=1e-5)

@@ -110,8 +110,15 @@ class Intervals(FlatSet):
         total = self.measure
         if total == 0:
             return float("nan")
-        moment = sum((Fraction(b) ** 2 - Fraction(a) ** 2) / 2 for a, b in self.pairs.tolist())
+        ends = self._exact_ends()
+        moment = sum(b**2 - a**2 for a, b in zip(ends[::2], ends[1::2], strict=True)) / 2
         return float(moment / total)
+
+    def _exact_ends(self) -> list[Fraction]:
+        """Return the finite ends, in order, as no double need be."""
+        rows, step = self.tree.nodes.coefficients, Fraction(10) ** self.pitch
+        owners = self.tree.boundary().owner.tolist()
+        return sorted(Fraction(rows[owner][1], rows[owner][0]) * step for owner in owners)
 
     @property
     def bounds(self) -> tuple[float, float] | None:
