@@ -139,3 +139,14 @@ def test_refused_parallel_projections(change: dict[str, Any], text: str) -> None
 def test_refused_views(change: dict[str, Any], text: str) -> None:
     with pytest.raises(InvalidMeshError, match=text):
         bsp.Camera.named(**{"view": "iso", "points": BOX, **change})
+
+
+def test_cameras_keep_copies_that_nobody_writes_into() -> None:
+    eye, target = np.array([0.0, -10, 0]), np.array([0.0, 0, 0])
+    cameras = [bsp.Camera.perspective(eye, target), bsp.Camera.orthographic((0, 1, 0), target=eye)]
+    eye[0] = 100
+    for camera in cameras:
+        assert camera.origin.tolist() == [0, -10, 0]
+        for array in (camera.origin, camera.axes, camera.direction):
+            with pytest.raises(ValueError, match="read-only"):
+                array[:] = 7

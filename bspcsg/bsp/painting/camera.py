@@ -54,6 +54,13 @@ class Camera:
     half_height: float
     is_perspective: bool
 
+    def __post_init__(self) -> None:
+        """Keep copies that nobody writes into."""
+        for name in ("axes", "origin"):
+            own = np.array(getattr(self, name), dtype=np.float64)
+            own.flags.writeable = False
+            object.__setattr__(self, name, own)
+
     @classmethod
     def perspective(
         cls, eye: Any, target: Any, up: Any = None, field_of_view: float = 35.0
