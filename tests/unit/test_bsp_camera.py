@@ -150,3 +150,13 @@ def test_cameras_keep_copies_that_nobody_writes_into() -> None:
         for array in (camera.origin, camera.axes, camera.direction):
             with pytest.raises(ValueError, match="read-only"):
                 array[:] = 7
+
+
+@pytest.mark.parametrize(
+    "points", [[(0, -2, 0), (5, 3, 0), (-5, 3, 0), (0, 3, 5)], [(0, -1, 0), (0, 1, 0), (0, 0, 0)]]
+)
+def test_points_on_the_axis_of_a_fitted_perspective_are_in_the_picture(points: Any) -> None:
+    camera = bsp.Camera.named("front", points, field_of_view=90)
+    image, depth = camera.project(points)
+    assert depth.min() > 0
+    assert np.abs(image / (4 / 3, 1)).max() <= 1
