@@ -218,3 +218,18 @@ class TestValues:
     def test_it_says_what_it_is(self) -> None:
         shown = repr(SubHyperplane((0, 2), 4, Intervals([(-4, 0)])))
         assert shown == "SubHyperplane((0, 1), 2, Intervals((-4, 0)))"
+
+
+@pytest.mark.parametrize("normal", [(1, 4), (1, 2, 3), (0, 3, 1), (0.3, 0.7)])
+def test_set_operations_keep_the_hyperplane(normal: tuple[float, ...]) -> None:
+    part = SubHyperplane(normal, 3)
+    assert (part | part) == part == ~~part
+    assert part.reversed().reversed() == part
+    assert hash(part & part) == hash(part)
+
+
+def test_a_far_hyperplane_that_coincides_divides_nothing() -> None:
+    far = 1e6 + 0.1
+    square = SubHyperplane((3, 1, 2), far, Region.rectangle(1))
+    assert [side.is_empty for side in square.split((9, 3, 6), 3 * far)] == [True, True]
+    assert [side.is_empty for side in square.split((9, 3, 6), 3 * far + 1)] == [False, True]
