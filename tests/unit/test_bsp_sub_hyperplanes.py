@@ -1,6 +1,7 @@
 """Parts of hyperplanes as values, and the connected paths of boundaries."""
 
 import math
+import operator
 from itertools import pairwise
 from typing import Any
 
@@ -233,3 +234,22 @@ def test_a_far_hyperplane_that_coincides_divides_nothing() -> None:
     square = SubHyperplane((3, 1, 2), far, Region.rectangle(1))
     assert [side.is_empty for side in square.split((9, 3, 6), 3 * far)] == [True, True]
     assert [side.is_empty for side in square.split((9, 3, 6), 3 * far + 1)] == [False, True]
+
+
+PARTS = [
+    (SubHyperplane((1, 4), 3), SubHyperplane((1, 4), 3, Intervals.empty())),
+    (b.bsp.SphericalRegion.hemisphere([0, 0, 1]), b.bsp.SphericalRegion.empty()),
+]
+
+
+@pytest.mark.parametrize(("full", "empty"), PARTS)
+def test_parts_of_nothing_are_false(full: Any, empty: Any) -> None:
+    assert bool(full) and not bool(empty)
+
+
+@pytest.mark.parametrize("part", [pair[0] for pair in PARTS])
+@pytest.mark.parametrize("operation", [operator.or_, operator.and_, operator.sub, operator.xor])
+@pytest.mark.parametrize("other", [3, None, UP])
+def test_parts_combine_with_their_like_only(part: Any, operation: Any, other: Any) -> None:
+    with pytest.raises(TypeError, match="unsupported operand"):
+        operation(part, other)

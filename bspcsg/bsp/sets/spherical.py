@@ -6,7 +6,8 @@ for directions of the plane, in space for those of space.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+import operator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
@@ -110,21 +111,26 @@ class SphericalRegion:
 
     # Set operations
 
-    def __or__(self, other: "SphericalRegion") -> Self:
+    def __or__(self, other: object) -> Self:
         """Union."""
-        return type(self)(self._cone | other._cone)
+        return self._combined(other, operator.or_)
 
-    def __and__(self, other: "SphericalRegion") -> Self:
+    def __and__(self, other: object) -> Self:
         """Intersection."""
-        return type(self)(self._cone & other._cone)
+        return self._combined(other, operator.and_)
 
-    def __sub__(self, other: "SphericalRegion") -> Self:
+    def __sub__(self, other: object) -> Self:
         """Difference."""
-        return type(self)(self._cone - other._cone)
+        return self._combined(other, operator.sub)
 
-    def __xor__(self, other: "SphericalRegion") -> Self:
+    def __xor__(self, other: object) -> Self:
         """Symmetric difference."""
-        return type(self)(self._cone ^ other._cone)
+        return self._combined(other, operator.xor)
+
+    def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
+        if not isinstance(other, SphericalRegion):
+            return NotImplemented
+        return type(self)(operation(self._cone, other._cone))
 
     def __invert__(self) -> Self:
         """Complement."""
@@ -141,6 +147,10 @@ class SphericalRegion:
     def __reduce__(self) -> tuple[Any, tuple[ObjectTree]]:
         """Pickle the cone."""
         return type(self), (self._cone,)
+
+    def __bool__(self) -> bool:
+        """Say whether anything is in it."""
+        return not self.is_empty
 
     def __repr__(self) -> str:
         """Say how much of the circle or sphere it is."""

@@ -3,7 +3,8 @@
 It is a hyperplane, and in it a set of one dimension less: intervals of a line, a region of a plane.
 """
 
-from collections.abc import Iterable, Iterator
+import operator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Self, TypeAlias
 
 import numpy as np
@@ -231,21 +232,26 @@ class SubHyperplane:
 
     # Set operations
 
-    def __or__(self, other: "SubHyperplane") -> Self:
+    def __or__(self, other: object) -> Self:
         """Union."""
-        return self._with(self._part | self._beside(other))
+        return self._combined(other, operator.or_)
 
-    def __and__(self, other: "SubHyperplane") -> Self:
+    def __and__(self, other: object) -> Self:
         """Intersection."""
-        return self._with(self._part & self._beside(other))
+        return self._combined(other, operator.and_)
 
-    def __sub__(self, other: "SubHyperplane") -> Self:
+    def __sub__(self, other: object) -> Self:
         """Difference."""
-        return self._with(self._part - self._beside(other))
+        return self._combined(other, operator.sub)
 
-    def __xor__(self, other: "SubHyperplane") -> Self:
+    def __xor__(self, other: object) -> Self:
         """Symmetric difference."""
-        return self._with(self._part ^ self._beside(other))
+        return self._combined(other, operator.xor)
+
+    def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
+        if not isinstance(other, SubHyperplane):
+            return NotImplemented
+        return self._with(operation(self._part, self._beside(other)))
 
     def __invert__(self) -> Self:
         """Complement within the hyperplane."""
@@ -331,6 +337,10 @@ class SubHyperplane:
     def __hash__(self) -> int:
         """Hash the hyperplane."""
         return hash((*self._normal.tolist(), self._offset))
+
+    def __bool__(self) -> bool:
+        """Say whether anything is in it."""
+        return not self.is_empty
 
     def __repr__(self) -> str:
         """Show the hyperplane and what lies in it."""
