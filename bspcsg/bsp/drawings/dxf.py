@@ -74,7 +74,8 @@ def _wanted(names: set[str], document: Any, file: str) -> set[str]:
     A layer need not be declared: what lies on it is enough.
     """
     declared = [layer.dxf.name for layer in document.layers]
-    used = [entity.dxf.layer for entity in document.chain_layouts_and_blocks()]
+    entities = document.chain_layouts_and_blocks()
+    used = [entity.dxf.layer for entity in entities if entity.dxf.hasattr("layer")]
     there = {name.casefold(): name for name in [*used, *declared]}
     unknown = sorted(name for name in names if name.casefold() not in there)
     if unknown:
