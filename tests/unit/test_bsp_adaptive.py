@@ -233,3 +233,11 @@ def test_nothing_to_hit() -> None:
     found = single.test_ray([[0.0]] * 9, [1.0])
     assert float(Fraction(2)) == found.hits.t[-1]
     assert len(single) == 1
+
+
+@pytest.mark.parametrize(("shape", "size"), [((0,), 2), ((0, 2, 2), 4), ((0, 3, 3), 6)])
+def test_regions_of_trees_without_facets(shape: tuple[int, ...], size: int) -> None:
+    for tree in (bsp.AdaptiveTree(np.zeros(shape)), bsp.StaticTree(np.zeros(shape))):
+        region = tree.region(0)
+        assert len(region) == size
+        assert np.abs(np.array(region)).max() == pytest.approx(1)
