@@ -82,7 +82,7 @@ class SphericalRegion:
         Raises
         ------
         InvalidParameterError
-            If the polygon is not convex, or runs clockwise.
+            If the polygon is not convex, runs clockwise, or has one corner again and again.
         """
         whole = [_whole(corner) for corner in _listed(corners)]
         if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
@@ -90,6 +90,8 @@ class SphericalRegion:
         sides = [_cross(a, b) for a, b in pairwise([*whole, whole[0]])]
         if any(_dot(side, corner) < 0 for side in sides for corner in whole):
             raise invalid_parameter("The corners are not convex and counterclockwise.")
+        if not any(map(any, sides)):
+            raise invalid_parameter("The corners of a polygon are not all in one direction.")
         return cls._inside(side for side in sides if any(side))
 
     @classmethod
