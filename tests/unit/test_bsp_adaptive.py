@@ -241,3 +241,11 @@ def test_regions_of_trees_without_facets(shape: tuple[int, ...], size: int) -> N
         region = tree.region(0)
         assert len(region) == size
         assert np.abs(np.array(region)).max() == pytest.approx(1)
+
+
+@pytest.mark.parametrize("order", [[0.9, 1.9], [0.0, 0.5], [False, True], [0, np.nan], [0, 2**70]])
+def test_orders_are_of_whole_numbers(order: object) -> None:
+    facets = [[[0, 0], [1, 0]], [[0, 1], [1, 1]]]
+    with pytest.raises(b.InvalidParameterError, match=r"^The order must be"):
+        bsp.StaticTree(facets, order=order)
+    assert len(bsp.StaticTree(facets, order=[1.0, 0.0])) == 3
