@@ -287,7 +287,13 @@ class TestVisibility:
             bsp.visibility_polygon([[[-1, 0], [1, 0]]], (0, 0), (-2, -2), (2, 2))
 
 
-BAD_BOXES = [((math.nan, 0), (1, 1)), ((1, 1), (0, 0)), ((0, 1), (1, 0)), ((0, 0), (1,)), (3, (1, 1))]
+BAD_BOXES = [
+    ((math.nan, 0), (1, 1)),
+    ((1, 1), (0, 0)),
+    ((0, 1), (1, 0)),
+    ((0, 0), (1,)),
+    (3, (1, 1)),
+]
 
 
 @pytest.mark.parametrize(("low", "high"), BAD_BOXES)

@@ -131,7 +131,8 @@ class InsideSpans:
         """Return how far each ray runs inside, in lengths of its direction, (n,)."""
         rays = np.repeat(np.arange(len(self)), np.diff(self.offsets))
         stretches = self.t[:, 1] - self.t[:, 0]
-        return np.bincount(rays, weights=stretches, minlength=len(self))
+        sums = np.bincount(rays, weights=stretches, minlength=len(self))
+        return np.asarray(sums, dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)

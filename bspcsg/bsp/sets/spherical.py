@@ -130,9 +130,10 @@ class SphericalRegion:
         return self._combined(other, operator.xor)
 
     def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
-        if not isinstance(other, SphericalRegion):
-            return NotImplemented
-        return type(self)(operation(self._cone, other._cone))
+        made: Self = NotImplemented
+        if isinstance(other, SphericalRegion):
+            made = type(self)(operation(self._cone, other._cone))
+        return made
 
     def __invert__(self) -> Self:
         """Complement."""

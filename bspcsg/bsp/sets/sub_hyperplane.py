@@ -249,9 +249,10 @@ class SubHyperplane:
         return self._combined(other, operator.xor)
 
     def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
-        if not isinstance(other, SubHyperplane):
-            return NotImplemented
-        return self._with(operation(self._part, self._beside(other)))
+        made: Self = NotImplemented
+        if isinstance(other, SubHyperplane):
+            made = self._with(operation(self._part, self._beside(other)))
+        return made
 
     def __invert__(self) -> Self:
         """Complement within the hyperplane."""

@@ -68,9 +68,12 @@ class LabelledRegion(Generic[Label]):
     def measure_within(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> float:
         """Return the length, area or volume of the part inside a box, given as for `within`."""
         part = self._clipped(low, high)
-        return 0.0 if part is None else float(part.measure) * 10.0 ** (self.pitch * np.size(low))
+        if part is None:
+            return 0.0
+        return float(part.measure) * 10.0 ** (self.pitch * part.dimension)
 
-    def _clipped(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> Polytope | None:
+    def _clipped(self, low: Any, high: Any) -> Polytope | None:
+        # The whole space as a region does not tell its dimension.
         dimension = len(self.sides[0][0]) - 1 if self.sides else max(np.size(low), 1)
         least, most = box_corners(low, high, dimension)
         part: Polytope | None = Polytope.box(_steps(least, self.pitch), _steps(most, self.pitch))
