@@ -229,11 +229,12 @@ def test_set_operations_keep_the_hyperplane(normal: tuple[float, ...]) -> None:
     assert hash(part & part) == hash(part)
 
 
-def test_a_far_hyperplane_that_coincides_divides_nothing() -> None:
-    far = 1e6 + 0.1
-    square = SubHyperplane((3, 1, 2), far, Region.rectangle(1))
-    assert [side.is_empty for side in square.split((9, 3, 6), 3 * far)] == [True, True]
-    assert [side.is_empty for side in square.split((9, 3, 6), 3 * far + 1)] == [False, True]
+@pytest.mark.parametrize("normal", [(3, 1, 2), (0, 3, 1), (1, 1, 1), (2, 3, 6)])
+def test_a_far_hyperplane_that_coincides_divides_nothing(normal: tuple[int, ...]) -> None:
+    far, triple = 1e6 + 0.1, [3 * x for x in normal]
+    square = SubHyperplane(normal, far, Region.rectangle(1))
+    assert [side.is_empty for side in square.split(triple, 3 * far)] == [True, True]
+    assert [side.is_empty for side in square.split(triple, 3 * far + 1)] == [False, True]
 
 
 PARTS = [
