@@ -10,6 +10,7 @@ from typing import Any, Self
 
 from .._types import SideArray
 from ..errors import invalid_parameter
+from ..parameters import shown
 from .counting import uncounted
 
 
@@ -84,6 +85,8 @@ class PointSet(ABC):
         if isinstance(point, PointSet):
             raise invalid_parameter("Only points are in a set; for parts of it use <=.")
         sides = self.classify([point])
+        if len(sides) != 1:
+            raise invalid_parameter(f"A point has coordinates, unlike {shown(point)}.")
         return bool(sides[0] >= 0)
 
     @uncounted

@@ -233,3 +233,19 @@ def test_nothing_to_hit() -> None:
     found = single.test_ray([[0.0]] * 9, [1.0])
     assert float(Fraction(2)) == found.hits.t[-1]
     assert len(single) == 1
+
+
+@pytest.mark.parametrize(("shape", "size"), [((0,), 2), ((0, 2, 2), 4), ((0, 3, 3), 6)])
+def test_regions_of_trees_without_facets(shape: tuple[int, ...], size: int) -> None:
+    for tree in (bsp.AdaptiveTree(np.zeros(shape)), bsp.StaticTree(np.zeros(shape))):
+        region = tree.region(0)
+        assert len(region) == size
+        assert np.abs(np.array(region)).max() == pytest.approx(1)
+
+
+@pytest.mark.parametrize("order", [[0.9, 1.9], [0.0, 0.5], [False, True], [0, np.nan], [0, 2**70]])
+def test_orders_are_of_whole_numbers(order: object) -> None:
+    facets = [[[0, 0], [1, 0]], [[0, 1], [1, 1]]]
+    with pytest.raises(b.InvalidParameterError, match=r"^The order must be"):
+        bsp.StaticTree(facets, order=order)
+    assert len(bsp.StaticTree(facets, order=[1.0, 0.0])) == 3

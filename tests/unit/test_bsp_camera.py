@@ -139,3 +139,24 @@ def test_refused_parallel_projections(change: dict[str, Any], text: str) -> None
 def test_refused_views(change: dict[str, Any], text: str) -> None:
     with pytest.raises(InvalidMeshError, match=text):
         bsp.Camera.named(**{"view": "iso", "points": BOX, **change})
+
+
+def test_cameras_keep_copies_that_nobody_writes_into() -> None:
+    eye, target = np.array([0.0, -10, 0]), np.array([0.0, 0, 0])
+    cameras = [bsp.Camera.perspective(eye, target), bsp.Camera.orthographic((0, 1, 0), target=eye)]
+    eye[0] = 100
+    for camera in cameras:
+        assert camera.origin.tolist() == [0, -10, 0]
+        for array in (camera.origin, camera.axes, camera.direction):
+            with pytest.raises(ValueError, match="read-only"):
+                array[:] = 7
+
+
+@pytest.mark.parametrize(
+    "points", [[(0, -2, 0), (5, 3, 0), (-5, 3, 0), (0, 3, 5)], [(0, -1, 0), (0, 1, 0), (0, 0, 0)]]
+)
+def test_points_on_the_axis_of_a_fitted_perspective_are_in_the_picture(points: Any) -> None:
+    camera = bsp.Camera.named("front", points, field_of_view=90)
+    image, depth = camera.project(points)
+    assert depth.min() > 0
+    assert np.abs(image / (4 / 3, 1)).max() <= 1

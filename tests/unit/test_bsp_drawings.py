@@ -187,3 +187,39 @@ def test_bad_dxf(tmp_path: Path) -> None:
         (tmp_path / "bad.dxf").write_text(text)
         with pytest.raises(b.FormatError):
             R.from_dxf(tmp_path / "bad.dxf")
+
+
+SQUARE_PATH = '<rect width="4" height="4" {}/>'
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        *('fill="none"', 'fill=" none "', 'fill="NONE"', 'style="fill:none !important"'),
+        *('visibility="collapse"', 'visibility=" hidden "', 'style="display:none!important"'),
+    ],
+)
+def test_what_is_not_filled_or_shown_is_left_out(tmp_path: Path, said: str) -> None:
+    text = '<svg xmlns="http://www.w3.org/2000/svg">{}<rect x="9" width="1" height="1"/></svg>'
+    (tmp_path / "x.svg").write_text(text.format(SQUARE_PATH.format(said)))
+    assert R.from_svg(tmp_path / "x.svg").area == 1
+
+
+@pytest.mark.parametrize("said", ['display="none"', 'style="display:none"', 'display="NONE"'])
+def test_drawings_that_are_not_displayed_are_empty(tmp_path: Path, said: str) -> None:
+    text = f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{SQUARE_PATH.format("")}</svg>'
+    (tmp_path / "x.svg").write_text(text)
+    assert R.from_svg(tmp_path / "x.svg").is_empty
+
+
+def test_even_odd_is_told_in_any_case(tmp_path: Path) -> None:
+    path = '<path style="fill-rule: EvenOdd !important" d="M0 0H4V4H0Z M1 1H3V3H1Z"/>'
+    (tmp_path / "x.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{path}</svg>')
+    assert R.from_svg(tmp_path / "x.svg").area == 12
+
+
+@pytest.mark.parametrize("margin", [-1, -0.1, 1e308])
+def test_margins_without_a_page_are_refused(tmp_path: Path, margin: float) -> None:
+    with pytest.raises(b.InvalidParameterError, match="margin"):
+        bsp.save_svg(R.rectangle(4), tmp_path / "x.svg", margin=margin)
+    assert not (tmp_path / "x.svg").exists()

@@ -1,6 +1,7 @@
 """Parts of hyperplanes as values, and the connected paths of boundaries."""
 
 import math
+import operator
 from itertools import pairwise
 from typing import Any
 
@@ -218,3 +219,38 @@ class TestValues:
     def test_it_says_what_it_is(self) -> None:
         shown = repr(SubHyperplane((0, 2), 4, Intervals([(-4, 0)])))
         assert shown == "SubHyperplane((0, 1), 2, Intervals((-4, 0)))"
+
+
+@pytest.mark.parametrize("normal", [(1, 4), (1, 2, 3), (0, 3, 1), (0.3, 0.7)])
+def test_set_operations_keep_the_hyperplane(normal: tuple[float, ...]) -> None:
+    part = SubHyperplane(normal, 3)
+    assert (part | part) == part == ~~part
+    assert part.reversed().reversed() == part
+    assert hash(part & part) == hash(part)
+
+
+@pytest.mark.parametrize("normal", [(3, 1, 2), (0, 3, 1), (1, 1, 1), (2, 3, 6)])
+def test_a_far_hyperplane_that_coincides_divides_nothing(normal: tuple[int, ...]) -> None:
+    far, triple = 1e6 + 0.1, [3 * x for x in normal]
+    square = SubHyperplane(normal, far, Region.rectangle(1))
+    assert [side.is_empty for side in square.split(triple, 3 * far)] == [True, True]
+    assert [side.is_empty for side in square.split(triple, 3 * far + 1)] == [False, True]
+
+
+PARTS = [
+    (SubHyperplane((1, 4), 3), SubHyperplane((1, 4), 3, Intervals.empty())),
+    (b.bsp.SphericalRegion.hemisphere([0, 0, 1]), b.bsp.SphericalRegion.empty()),
+]
+
+
+@pytest.mark.parametrize(("full", "empty"), PARTS)
+def test_parts_of_nothing_are_false(full: Any, empty: Any) -> None:
+    assert bool(full) and not bool(empty)
+
+
+@pytest.mark.parametrize("part", [pair[0] for pair in PARTS])
+@pytest.mark.parametrize("operation", [operator.or_, operator.and_, operator.sub, operator.xor])
+@pytest.mark.parametrize("other", [3, None, UP])
+def test_parts_combine_with_their_like_only(part: Any, operation: Any, other: Any) -> None:
+    with pytest.raises(TypeError, match="unsupported operand"):
+        operation(part, other)

@@ -436,3 +436,12 @@ def test_a_polygon_that_crosses_itself_is_called_that() -> None:
             with pytest.raises(b.InvalidMeshError, match="crosses") as caught:
                 bsp.PartitionTree([bow], degenerate=degenerate)
             assert caught.value.code == "not_simple"
+
+
+def test_nobody_writes_into_a_tree() -> None:
+    tree = bsp.PartitionTree(CROSS)
+    assert tree.root is not None and not isinstance(tree.root, bsp.Leaf)
+    kept = [*tree.arrays.values(), *vars(tree.fragments).values(), tree.root.hyperplane[0]]
+    for array in [*kept, tree.fragments[0]]:
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 1

@@ -285,3 +285,35 @@ class TestVisibility:
     def test_an_eye_on_a_segment_is_refused(self) -> None:
         with pytest.raises(InvalidParameterError, match="lies on"):
             bsp.visibility_polygon([[[-1, 0], [1, 0]]], (0, 0), (-2, -2), (2, 2))
+
+
+BAD_BOXES = [
+    ((math.nan, 0), (1, 1)),
+    ((1, 1), (0, 0)),
+    ((0, 1), (1, 0)),
+    ((0, 0), (1,)),
+    (3, (1, 1)),
+]
+
+
+@pytest.mark.parametrize(("low", "high"), BAD_BOXES)
+def test_boxes_that_are_none_are_refused(low: Any, high: Any) -> None:
+    whole = bsp.AttributeTree(2, "all")
+    for tree in (whole, whole.insert([[0, 0], [1, 0]])):
+        for region in tree:
+            with pytest.raises(InvalidParameterError, match=r"^(low|high) must"):
+                region.measure_within(low, high)
+            with pytest.raises(InvalidParameterError, match=r"^(low|high) must"):
+                region.within(low, high)
+    with pytest.raises(InvalidParameterError, match=r"^(low|high) must"):
+        bsp.visibility_polygon([[[1, -1], [1, 1]]], (0.5, 0.5), low, high)
+
+
+def test_a_volume_is_seen_in_no_box_that_is_turned_over() -> None:
+    with pytest.raises(InvalidParameterError, match="low must not be above high"):
+        bsp.visibility_volume(np.ones((0, 3, 3)), (0, 0, 0), (-2, 2, -2), (2, -2, 2))
+
+
+def test_spherical_polygons_need_corners_that_differ() -> None:
+    with pytest.raises(InvalidParameterError, match="not all in one direction"):
+        bsp.SphericalRegion.polygon([[1, 0, 0], [2, 0, 0], [3, 0, 0]])

@@ -239,3 +239,22 @@ def test_full_ellipses_begin_anywhere(tmp_path: Path, start: float) -> None:
     )
     assert found.area == pytest.approx(12.5 * math.pi, rel=1e-2)
     np.testing.assert_allclose(found.centroid, (1, 2), atol=1e-6)
+
+
+@pytest.mark.parametrize(("version", "name"), [("R2000", "Löcher"), ("R12", "Ø"), ("R2010", "孔")])
+def test_names_of_layers_in_any_letters_and_case(tmp_path: Path, version: str, name: str) -> None:
+    document = ezdxf.new(version)
+    document.layers.add(name)
+    document.modelspace().add_circle((5, 5), 1)
+    document.modelspace().add_circle((0, 0), 1, dxfattribs={"layer": name})
+    document.saveas(tmp_path / "x.dxf")
+    for written in (name, name.upper(), name.lower()):
+        region = Region.from_dxf(tmp_path / "x.dxf", layers=[written])
+        assert region.area == pytest.approx(math.pi, rel=0.05)
+
+
+def test_layers_that_a_file_lacks_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError, match=r"no layer 'nope'; it has .*'there'") as refusal:
+        region_of(tmp_path, lambda space: square(space, layer="there"), layers=["there", "nope"])
+    assert refusal.value.code == "unknown_name"
+    assert region_of(tmp_path, square, layers=["Defpoints"]).is_empty

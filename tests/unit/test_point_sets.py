@@ -229,3 +229,9 @@ def test_partition_trees_are_equal_if_facets_and_cuts_are() -> None:
     assert one != bsp.PartitionTree(facets[::-1], "first")
     assert one != bsp.PartitionTree(facets, "first", pitch=-6)
     assert len({one, other}) == 1
+
+
+@every_kind
+def test_nothing_is_no_point(kind: Kind) -> None:
+    with pytest.raises(b.InvalidParameterError, match="A point has coordinates"):
+        _ = () in kind.box(0, 1)

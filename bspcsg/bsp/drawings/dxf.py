@@ -38,7 +38,7 @@ def load_dxf(
     tolerance : float
         Largest distance between a curve and the chords that replace it, in drawing units.
     layers : iterable of str, optional
-        The layers to read; all by default.
+        The layers to read, in capitals or not; all by default.
     winding : {"even-odd", "nonzero", "positive"}
         By default an outline inside another is a hole, whichever way they run.
     pitch : int, optional
@@ -46,13 +46,14 @@ def load_dxf(
     Raises
     ------
     FormatError
-        If the file cannot be read, is no DXF, or an outline is open or branches (`code`
-        ``"not_closed"``).
+        If the file cannot be read, is no DXF, lacks one of the layers (`code`
+        ``"unknown_name"``), or an outline is open or branches (``"not_closed"``).
     """
     chord = positive(tolerance, "tolerance")
+    names = None if layers is None else _names(layers)
     document = read_document(path)
-    wanted = None if layers is None else _names(layers)
     with format_errors(os.fspath(path), "DXF"):
+        wanted = None if names is None else _wanted(names, document, os.fspath(path))
         chains = list(chains_of(document.modelspace(), wanted, chord))
     return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
 
@@ -65,6 +66,23 @@ def _names(layers: Any) -> set[str]:
     if isinstance(layers, (str, bytes)) or not all(isinstance(name, str) for name in names):
         raise invalid_parameter(f"layers must be a list of names, not {shown(layers)}.")
     return names
+
+
+def _wanted(names: set[str], document: Any, file: str) -> set[str]:
+    """Return names of layers without regard to case, as DXF has them; `FormatError` if one lacks.
+
+    A layer need not be declared: what lies on it is enough.
+    """
+    declared = [layer.dxf.name for layer in document.layers]
+    entities = document.chain_layouts_and_blocks()
+    used = [entity.dxf.layer for entity in entities if entity.dxf.hasattr("layer")]
+    there = {name.casefold(): name for name in [*used, *declared]}
+    unknown = sorted(name for name in names if name.casefold() not in there)
+    if unknown:
+        known = ", ".join(map(shown, sorted(there.values())))
+        message = f"{file}: there is no layer {shown(unknown[0])}; it has {known}."
+        raise FormatError(message, "unknown_name")
+    return {name.casefold() for name in names}
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
@@ -119,11 +137,22 @@ def read_document(path: str | os.PathLike[str]) -> Any:
     """Return the ezdxf document of a file; `FormatError` if it is none."""
     ezdxf = optional("ezdxf", "ezdxf")
     name = file_path(path)
-    text = limited_content(name).decode("utf-8", errors="surrogateescape")
+    data = limited_content(name).replace(b"\r\n", b"\n")
     try:
-        return ezdxf.read(io.StringIO(text.replace("\r\n", "\n")))
+        return ezdxf.read(io.StringIO(_decoded(data)))
     except Exception as error:  # what ezdxf raises on damaged files is of any kind
         raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
+
+
+def _decoded(data: bytes) -> str:
+    """Return the text of a file in the code page that it names, by default in UTF-8."""
+    text = data.decode("utf-8", errors="surrogateescape")
+    if "$DWGCODEPAGE" not in text:
+        return text
+    management = optional("ezdxf.filemanagement", "ezdxf")
+    # From R2007 on files are UTF-8 whatever page they name, which this knows.
+    encoding = management.dxf_stream_info(io.StringIO(text)).encoding
+    return data.decode(encoding, errors="surrogateescape")
 
 
 def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:

@@ -38,7 +38,7 @@ def chains_of(layout: Any, layers: set[str] | None, chord: float) -> Iterator[Fl
     layout : ezdxf layout
         Insertions of blocks stand for what these hold.
     layers : set of str, optional
-        Those that count; all by default.
+        Those that count, casefolded; all by default.
     chord : float
         Largest distance between a curve and its chords.
 
@@ -48,7 +48,7 @@ def chains_of(layout: Any, layers: set[str] | None, chord: float) -> Iterator[Fl
         If blocks contain themselves or too much, or a curve would have too many chords.
     """
     for entity, layer in _entities(layout):
-        if layers is None or layer in layers:
+        if layers is None or layer.casefold() in layers:
             chain = _chain(entity, chord)
             if len(chain) > 1:
                 yield chain

@@ -1,6 +1,7 @@
 """Regions as SVG drawings: filled shapes in, one path out."""
 
 import io
+import math
 import os
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -15,7 +16,7 @@ from ...errors import FormatError, format_errors, invalid_parameter, words_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
 from ...mesh.interop import optional
-from ...parameters import file_path, number, of_kind, positive, shown, winding_rule
+from ...parameters import file_path, not_negative, of_kind, positive, shown, winding_rule
 from ..sets.region import Region
 from ..trees.facets import chosen_pitch
 from .svg_tree import make_plain, name_of
@@ -94,7 +95,9 @@ def shown_shapes(
         prepare(root)
         plain = io.BytesIO(ElementTree.tostring(root))
         drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
-        shapes = [shape for shape in drawing.elements() if isinstance(shape, elements.Shape)]
+        # svgelements makes nothing of a drawing that is not displayed.
+        found = () if drawing is None else drawing.elements()
+        shapes = [shape for shape in found if isinstance(shape, elements.Shape)]
     except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
         raise FormatError(message, "syntax") from error
@@ -116,7 +119,7 @@ def save_svg(
     fill : str
         Colour of the inside; the outline is black.
     margin : float
-        Space around the region, as a part of its size.
+        Space around the region, as a part of its size; at least 0.
 
     Raises
     ------
@@ -132,10 +135,13 @@ def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) ->
     """Return what `save_svg` writes."""
     bounds = of_kind(Region, region, "region").bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
-    space = float((high - low).max()) * number(margin, "margin")
+    space = float((high - low).max()) * not_negative(margin, "margin")
     if not isinstance(fill, str):
         raise invalid_parameter(f"fill must be a colour, not {shown(fill)}.")
     width, height = (high - low + 2 * space).tolist()
+    if not math.isfinite(max(width, height)):
+        message = f"With a margin of {shown(margin)} the page is beyond all doubles; give less."
+        raise invalid_parameter(message)
     x, y = float(low[0]) - space, -float(high[1]) - space
     outlines = " ".join(_path_of(points) for points in region.to_polygons())
     return (
@@ -177,17 +183,24 @@ def _checked(path: str | os.PathLike[str]) -> bytes:
 
 
 def _is_shown(shape: Any) -> bool:
-    values: dict[str, Any] = shape.values
-    return values.get("display") != "none" and values.get("visibility") != "hidden"
+    is_visible = _keyword(shape, "visibility") not in ("hidden", "collapse")
+    return is_visible and _keyword(shape, "display") != "none"
 
 
 def _is_filled(shape: Any) -> bool:
+    if _keyword(shape, "fill") == "none":
+        return False
     # What says nothing of its fill is black.
     return shape.values.get("fill") is None or shape.fill.value is not None
 
 
 def _rule(shape: Any) -> WindingRule:
-    return "even-odd" if shape.values.get("fill-rule") == "evenodd" else "nonzero"
+    return "even-odd" if _keyword(shape, "fill-rule") == "evenodd" else "nonzero"
+
+
+def _keyword(shape: Any, name: str) -> str:
+    """Return a property as CSS takes it: without blanks, case and importance."""
+    return str(shape.values.get(name) or "").partition("!")[0].strip().lower()
 
 
 def outlines_of(shape: Any, steps: Callable[[Any], int]) -> Iterator[tuple[FloatArray, bool]]:

@@ -29,6 +29,9 @@ _DIRECTIONS: dict[str, tuple[int, int, int]] = {
 #: Share of the picture's height and width that stays empty on each side of a fitted scene.
 MARGIN = 0.04
 
+#: Share of a scene's depth that lies between the eye of a fitted perspective and the scene.
+_CLEARANCE = 0.01
+
 #: Below this sine of their angle two directions count as parallel.
 _PARALLEL = 1e-9
 
@@ -53,6 +56,13 @@ class Camera:
     origin: FloatArray
     half_height: float
     is_perspective: bool
+
+    def __post_init__(self) -> None:
+        """Keep copies that nobody writes into."""
+        for name in ("axes", "origin"):
+            own = np.array(getattr(self, name), dtype=np.float64)
+            own.flags.writeable = False
+            object.__setattr__(self, name, own)
 
     @classmethod
     def perspective(
@@ -159,8 +169,10 @@ class Camera:
     def _receded(self, middle: FloatArray, reach: FloatArray, depth: FloatArray) -> "Camera":
         """Return this camera so far from the middle that no point reaches beyond the picture."""
         distance = float((reach.max(axis=1) / self.half_height - depth).max())
-        # A single point would be at the eye.
-        distance = distance if distance > 0 else 1.0
+        # Points on the axis of view, and a single one, would be at the eye or on its plane.
+        nearest = float(depth.min())
+        distance = max(distance, _CLEARANCE * float(np.ptp(depth)) - nearest)
+        distance = distance if distance > -nearest else 1.0
         return replace(self, origin=middle - distance * self.axes[2])
 
     @property

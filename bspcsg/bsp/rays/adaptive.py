@@ -9,6 +9,7 @@ import numpy as np
 from ..._core import RayTree
 from ..._types import IndexArray
 from ...errors import core_errors, invalid_parameter
+from ...geometry.arrays import doubles
 from ...parameters import at_least, not_negative, pitch_exponent, seed_number
 from ..trees.node import RegionShape
 from ..trees.tree import MARGIN, PartitionTree
@@ -341,10 +342,7 @@ def _permutation(order: Any, seed: int, count: int) -> IndexArray:
         if order == "random":
             return np.random.default_rng(seed).permutation(count)
         raise invalid_parameter(f"Unknown order {order!r}; use 'given', 'random' or an array.")
-    try:
-        permutation = np.asarray(order, dtype=np.int64)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise invalid_parameter("The order must be an array of indices.") from error
-    if permutation.shape != (count,) or (np.sort(permutation) != np.arange(count)).any():
+    places = doubles(order, invalid_parameter("The order must be an array of indices."))
+    if places.shape != (count,) or (np.sort(places) != np.arange(count)).any():
         raise invalid_parameter(f"The order must be a permutation of {count} facets.")
-    return permutation
+    return places.astype(np.int64)

@@ -15,6 +15,8 @@ def region_of(
 ) -> RegionShape:
     """Return R(v) within the box of the facets, grown by a margin in model units.
 
+    Without facets the box is the origin.
+
     Raises
     ------
     InvalidParameterError
@@ -22,6 +24,8 @@ def region_of(
     """
     step = 10.0**pitch
     points = corners.reshape(-1, corners.shape[-1])
+    if not len(points):
+        points = np.zeros((1, corners.shape[-1]))
     low = np.floor((points.min(axis=0) - margin) / step).astype(np.int64) - 1
     high = np.ceil((points.max(axis=0) + margin) / step).astype(np.int64) + 1
     region: Polytope | None = Polytope.box(low.tolist(), high.tolist())

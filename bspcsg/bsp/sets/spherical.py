@@ -6,7 +6,8 @@ for directions of the plane, in space for those of space.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+import operator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
@@ -81,7 +82,7 @@ class SphericalRegion:
         Raises
         ------
         InvalidParameterError
-            If the polygon is not convex, or runs clockwise.
+            If the polygon is not convex, runs clockwise, or has one corner again and again.
         """
         whole = [_whole(corner) for corner in _listed(corners)]
         if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
@@ -89,6 +90,8 @@ class SphericalRegion:
         sides = [_cross(a, b) for a, b in pairwise([*whole, whole[0]])]
         if any(_dot(side, corner) < 0 for side in sides for corner in whole):
             raise invalid_parameter("The corners are not convex and counterclockwise.")
+        if not any(map(any, sides)):
+            raise invalid_parameter("The corners of a polygon are not all in one direction.")
         return cls._inside(side for side in sides if any(side))
 
     @classmethod
@@ -110,21 +113,27 @@ class SphericalRegion:
 
     # Set operations
 
-    def __or__(self, other: "SphericalRegion") -> Self:
+    def __or__(self, other: object) -> Self:
         """Union."""
-        return type(self)(self._cone | other._cone)
+        return self._combined(other, operator.or_)
 
-    def __and__(self, other: "SphericalRegion") -> Self:
+    def __and__(self, other: object) -> Self:
         """Intersection."""
-        return type(self)(self._cone & other._cone)
+        return self._combined(other, operator.and_)
 
-    def __sub__(self, other: "SphericalRegion") -> Self:
+    def __sub__(self, other: object) -> Self:
         """Difference."""
-        return type(self)(self._cone - other._cone)
+        return self._combined(other, operator.sub)
 
-    def __xor__(self, other: "SphericalRegion") -> Self:
+    def __xor__(self, other: object) -> Self:
         """Symmetric difference."""
-        return type(self)(self._cone ^ other._cone)
+        return self._combined(other, operator.xor)
+
+    def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
+        made: Self = NotImplemented
+        if isinstance(other, SphericalRegion):
+            made = type(self)(operation(self._cone, other._cone))
+        return made
 
     def __invert__(self) -> Self:
         """Complement."""
@@ -141,6 +150,10 @@ class SphericalRegion:
     def __reduce__(self) -> tuple[Any, tuple[ObjectTree]]:
         """Pickle the cone."""
         return type(self), (self._cone,)
+
+    def __bool__(self) -> bool:
+        """Say whether anything is in it."""
+        return not self.is_empty
 
     def __repr__(self) -> str:
         """Say how much of the circle or sphere it is."""

@@ -3,7 +3,8 @@
 It is a hyperplane, and in it a set of one dimension less: intervals of a line, a region of a plane.
 """
 
-from collections.abc import Iterable, Iterator
+import operator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Self, TypeAlias
 
 import numpy as np
@@ -231,28 +232,44 @@ class SubHyperplane:
 
     # Set operations
 
-    def __or__(self, other: "SubHyperplane") -> Self:
+    def __or__(self, other: object) -> Self:
         """Union."""
-        return self._with(self._part | self._beside(other))
+        return self._combined(other, operator.or_)
 
-    def __and__(self, other: "SubHyperplane") -> Self:
+    def __and__(self, other: object) -> Self:
         """Intersection."""
-        return self._with(self._part & self._beside(other))
+        return self._combined(other, operator.and_)
 
-    def __sub__(self, other: "SubHyperplane") -> Self:
+    def __sub__(self, other: object) -> Self:
         """Difference."""
-        return self._with(self._part - self._beside(other))
+        return self._combined(other, operator.sub)
 
-    def __xor__(self, other: "SubHyperplane") -> Self:
+    def __xor__(self, other: object) -> Self:
         """Symmetric difference."""
-        return self._with(self._part ^ self._beside(other))
+        return self._combined(other, operator.xor)
+
+    def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
+        made: Self = NotImplemented
+        if isinstance(other, SubHyperplane):
+            made = self._with(operation(self._part, self._beside(other)))
+        return made
 
     def __invert__(self) -> Self:
         """Complement within the hyperplane."""
         return self._with(~self._part)
 
     def _with(self, part: Any) -> Self:
-        return type(self)(self._normal, self._offset, part)
+        return self._facing(1.0, part)
+
+    def _facing(self, sign: float, part: Any) -> Self:
+        """Return another part of this hyperplane, or of the reversed one."""
+        # A unit normal that is normalised again can be another one.
+        made = object.__new__(type(self))
+        made._normal = sign * self._normal + 0.0
+        made._offset = sign * self._offset + 0.0
+        made._part = part
+        made._normal.flags.writeable = False
+        return made
 
     def _beside(self, other: "SubHyperplane") -> Any:
         """Return the other's part in the coordinates of this hyperplane."""
@@ -276,7 +293,8 @@ class SubHyperplane:
         height = other._offset - float(other._normal @ self._normal) * self._offset
         nothing = self._with(type(self._part).empty())
         if np.abs(inner).max() <= _SAME:
-            sides = (height > _SAME, height < -_SAME)
+            gap = _SAME * max(1.0, abs(self._offset))
+            sides = (height > gap, height < -gap)
             return (self if sides[0] else nothing, self if sides[1] else nothing)
         minus, plus = self._part.split(inner if self.dimension == 3 else inner[0], height)
         return self._with(minus), self._with(plus)
@@ -304,7 +322,7 @@ class SubHyperplane:
 
     def reversed(self) -> "SubHyperplane":
         """Return the same points with the sides exchanged."""
-        across = SubHyperplane(-self._normal, -self._offset)
+        across = self._facing(-1.0, self._part)
         columns = _frame(across._normal) @ _frame(self._normal).T
         return across._with(_moved(self._part, columns, np.zeros(self.dimension - 1)))
 
@@ -320,6 +338,10 @@ class SubHyperplane:
     def __hash__(self) -> int:
         """Hash the hyperplane."""
         return hash((*self._normal.tolist(), self._offset))
+
+    def __bool__(self) -> bool:
+        """Say whether anything is in it."""
+        return not self.is_empty
 
     def __repr__(self) -> str:
         """Show the hyperplane and what lies in it."""

@@ -18,7 +18,7 @@ from ...geometry.hyperplane import exact_number, exact_point
 from ...shapes.primitives import box as box_solid
 from ...shapes.primitives import half_space
 from ...solid.solid import Solid
-from ..trees.facets import chosen_pitch
+from ..trees.facets import box_corners, chosen_pitch
 from .objects import ObjectTree
 from .region import Region
 
@@ -44,7 +44,7 @@ def visibility_polygon(
     Raises
     ------
     InvalidParameterError
-        If the eye lies on a segment, or a shape is wrong.
+        If the eye lies on a segment, a shape is wrong, or `low` is above `high`.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def visibility_polygon(
     13.0
     """
     walls, place = _exact(segments, eye, 2)
-    least, most = exact_point(low, 2, "low"), exact_point(high, 2, "high")
+    least, most = box_corners(low, high, 2)
     points = [*walls, [place, least, most]]
     pitch = chosen_pitch(None, np.array([[float(x) for x in p] for ps in points for p in ps]))
     place = _snapped(place, pitch)
@@ -91,7 +91,7 @@ def visibility_volume(
     Raises
     ------
     InvalidParameterError
-        If a shape is wrong.
+        If a shape is wrong, or `low` is above `high`.
 
     Notes
     -----
@@ -105,8 +105,7 @@ def visibility_volume(
     54.666666666666664
     """
     walls, place = _exact(triangles, eye, 3)
-    least = [float(x) for x in exact_point(low, 3, "low")]
-    most = [float(x) for x in exact_point(high, 3, "high")]
+    least, most = ([float(x) for x in corner] for corner in box_corners(low, high, 3))
     sizes = [end - start for start, end in zip(least, most, strict=True)]
     seen = box_solid(sizes).translate(least)
     for corners in walls:

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Generic, Literal, Self, TypeAlias, TypeVar
 
+import numpy as np
+
 from ..._types import Scalar
 from ...errors import InvalidMeshError, invalid_parameter
 from ...geometry.arrays import doubles
@@ -18,7 +20,7 @@ from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
 from ...parameters import dimension_number, function_of, pitch_exponent, shown
 from .asking import lattice_rows
-from .facets import corners_of
+from .facets import box_corners, corners_of
 from .node import RegionShape
 
 #: The type of the leaves' labels.
@@ -53,17 +55,28 @@ class LabelledRegion(Generic[Label]):
     pitch: int
 
     def within(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> RegionShape | None:
-        """Return the part inside a box, as `PartitionTree.region` does; None if there is none."""
+        """Return the part inside a box, as `PartitionTree.region` does; None if there is none.
+
+        Raises
+        ------
+        InvalidParameterError
+            If a corner has another dimension or is not finite, or `low` is above `high`.
+        """
         part = self._clipped(low, high)
         return None if part is None else part.shape(10.0**self.pitch)
 
     def measure_within(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> float:
-        """Return the length, area or volume of the part inside a box."""
+        """Return the length, area or volume of the part inside a box, given as for `within`."""
         part = self._clipped(low, high)
-        return 0.0 if part is None else float(part.measure) * 10.0 ** (self.pitch * len(low))
+        if part is None:
+            return 0.0
+        return float(part.measure) * 10.0 ** (self.pitch * part.dimension)
 
-    def _clipped(self, low: Sequence[Scalar], high: Sequence[Scalar]) -> Polytope | None:
-        part: Polytope | None = Polytope.box(_steps(low, self.pitch), _steps(high, self.pitch))
+    def _clipped(self, low: Any, high: Any) -> Polytope | None:
+        # The whole space as a region does not tell its dimension.
+        dimension = len(self.sides[0][0]) - 1 if self.sides else max(np.size(low), 1)
+        least, most = box_corners(low, high, dimension)
+        part: Polytope | None = Polytope.box(_steps(least, self.pitch), _steps(most, self.pitch))
         for row, side in self.sides:
             part = part and part.clipped(row, side)
         return part

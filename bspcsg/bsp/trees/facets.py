@@ -1,6 +1,7 @@
 """Points, segments and polygons in whatever form they come, as corners and offsets."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ from ..._core import suited_pitch
 from ..._types import FloatArray, IndexArray
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles, doubles_or_none
+from ...geometry.hyperplane import exact_point
 from ...mesh import interop
-from ...parameters import pitch_exponent
+from ...parameters import pitch_exponent, shown
 from ...solid.solid import Solid
 
 #: Corners (n, d) float64, and offsets (k + 1,) int64 at which the facets start.
@@ -84,6 +86,21 @@ def _suited_pitch(points: FloatArray) -> int:
     extent = float(np.ptp(points, axis=0).max())
     with core_errors():
         return suited_pitch(float(np.abs(points).max()), extent)
+
+
+def box_corners(low: Any, high: Any, dimension: int) -> tuple[list[Fraction], list[Fraction]]:
+    """Return the lowest and the highest corner of a box exactly.
+
+    Raises
+    ------
+    InvalidParameterError
+        If one has another dimension or is not finite, or the box is turned over.
+    """
+    least, most = exact_point(low, dimension, "low"), exact_point(high, dimension, "high")
+    if any(start > end for start, end in zip(least, most, strict=True)):
+        message = f"low must not be above high on any axis: {shown(low)} and {shown(high)}."
+        raise invalid_parameter(message)
+    return least, most
 
 
 def vector_rows(given: Any, dimension: int, name: str) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -234,15 +234,19 @@ class PartitionTree(Ordered):
         ``normal`` (n, d) and ``offset`` (n,) as in `Node.hyperplane`; ``minus``, ``plus``,
         ``parent`` (n,) node indices or -1; ``depth`` (n,); ``start``, ``end`` (n,) the coplanar set
         as a range of `fragments`; ``cut`` (n, 2): (-1, convex piece), (axis, lattice coordinate) or
-        (-2, place in `own_hyperplanes`).
+        (-2, place in `own_hyperplanes`). They are read-only.
         """
-        return self.core.nodes()
+        nodes = self.core.nodes()
+        _seal(nodes)
+        return nodes
 
     @cached_property
     def fragments(self) -> Fragments:
-        """The fragments of all coplanar sets, node by node in preorder."""
+        """The fragments of all coplanar sets, node by node in preorder; read-only."""
         with core_errors():
-            return Fragments(*self.core.fragments())
+            fragments = Fragments(*self.core.fragments())
+        _seal(vars(fragments))
+        return fragments
 
     @cached_property
     def own_hyperplanes(self) -> tuple[tuple[int, ...], ...]:
@@ -548,6 +552,12 @@ def _cut_rows(cuts: Any) -> IndexArray:
     if (np.abs(rows) >= 2.0**63).any():
         raise invalid_parameter(message)
     return np.ascontiguousarray(rows.reshape(-1, 2), dtype=np.int64)
+
+
+def _seal(arrays: Mapping[str, Any]) -> None:
+    """Make arrays read-only that a tree keeps and hands out."""
+    for array in arrays.values():
+        array.flags.writeable = False
 
 
 def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
