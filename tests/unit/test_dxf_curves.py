@@ -241,6 +241,16 @@ def test_full_ellipses_begin_anywhere(tmp_path: Path, start: float) -> None:
     np.testing.assert_allclose(found.centroid, (1, 2), atol=1e-6)
 
 
+@pytest.mark.parametrize("start", [0, 1])
+def test_full_ellipses_have_eight_chords_at_least(tmp_path: Path, start: float) -> None:
+    found = region_of(
+        tmp_path,
+        lambda space: space.add_ellipse((0, 0), (5, 0), 0.5, start, start + math.tau),
+        tolerance=9,
+    )
+    assert [len(outline) for outline in found.to_polygons()] == [8]
+
+
 @pytest.mark.parametrize(("version", "name"), [("R2000", "Löcher"), ("R12", "Ø"), ("R2010", "孔")])
 def test_names_of_layers_in_any_letters_and_case(tmp_path: Path, version: str, name: str) -> None:
     document = ezdxf.new(version)

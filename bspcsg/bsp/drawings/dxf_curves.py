@@ -115,8 +115,8 @@ def _is_full(ellipse: Any) -> bool:
 
 def _from_its_axis(ellipse: Any) -> Any:
     """Return a full ellipse that begins at its axis; ezdxf takes others for points."""
-    full = ellipse.construction_tool()
-    full.start_param, full.end_param = 0.0, math.tau
+    full = ellipse.copy()
+    full.dxf.start_param, full.dxf.end_param = 0.0, math.tau
     return full
 
 
