@@ -30,6 +30,10 @@ MOST_SEGMENTS = 1 << 16
 #: Corners of one body. While its solid is made each takes some 600 bytes, all of them 2.4 GB.
 MOST_CORNERS = 4_000_000
 
+#: Seconds that may be asked for, some twelve days: a call of the system takes no more than 2**31
+#: milliseconds.
+MOST_SECONDS = 10**6
+
 #: Trees divide lines, planes and spaces.
 _MOST_DIMENSIONS = 3
 
@@ -80,9 +84,14 @@ def not_negative(value: Any, name: str) -> float:
 
 
 def seconds(value: Any, name: str) -> float | None:
-    """Return a time above 0; None, as infinity does, stands for ever."""
-    forever = value is None or (isinstance(value, float) and value == math.inf)
-    return None if forever else positive(value, name)
+    """Return a time above 0, up to `MOST_SECONDS`; None, as infinity does, stands for ever."""
+    if value is None or (isinstance(value, float) and value == math.inf):
+        return None
+    time = positive(value, name)
+    if time > MOST_SECONDS:
+        message = f"{name} must be {MOST_SECONDS} at most, or None, not {time:g}."
+        raise invalid_parameter(message)
+    return time
 
 
 def at_least(least: int, value: Any, name: str) -> int:

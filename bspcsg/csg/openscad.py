@@ -35,7 +35,7 @@ def read_scad(
     defines : mapping of str to value, optional
         Variables of the script, as ``openscad -D name=value`` sets them.
     timeout : float, optional
-        In seconds; None, as infinity does, waits for ever.
+        In seconds, up to a million; None, as infinity does, waits for ever.
 
     Raises
     ------

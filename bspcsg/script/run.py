@@ -83,7 +83,7 @@ def run_script(
         Values of variables by their names. Each takes the place of what the script assigns to the
         variable at its top level, wherever it does; lines keep their numbers.
     timeout : float, optional
-        In seconds; None, as infinity does, waits for ever.
+        In seconds, up to a million; None, as infinity does, waits for ever.
 
     Returns
     -------
@@ -118,7 +118,7 @@ def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
     try:
         return pickle.dumps(task)
     except Exception as error:  # whatever the values do when they are asked
-        message = f"defines must hold values that another process can be sent: {error}."
+        message = f"defines must hold values that another process can be sent: {words_of(error)}."
         raise invalid_parameter(message) from error
 
 

@@ -186,7 +186,7 @@ def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) ->
 @pytest.mark.parametrize(
     "wrong",
     [
-        *({"timeout": value} for value in ("5", math.nan, 0, -1, True)),
+        *({"timeout": value} for value in ("5", math.nan, 0, -1, 1e7, True)),
         *({"arguments": value} for value in (5, "abc", [5], None)),
         *({"defines": value} for value in ("size=4", {4: 4}, {"size": lambda: 4})),
     ],

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 import click
 
-from ...parameters import MOST_PITCH, MOST_THREADS
+from ...parameters import MOST_PITCH, MOST_SECONDS, MOST_THREADS
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..inputs.scripts import STREAMED, SUFFIXES
 
@@ -16,10 +16,6 @@ _Command = TypeVar("_Command", bound=Callable[..., Any])
 #: A file, or "-" for a stream; whoever completes a line offers files for it. Whether it can be read
 #: is found out by reading: click would call a forbidden file wrong usage.
 PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
-
-#: Seconds that may be asked for, some twelve days: a call of the system takes no more than 2**31
-#: milliseconds.
-_MOST_SECONDS = 10**6
 
 
 class FiniteRange(click.FloatRange):
@@ -35,7 +31,7 @@ class FiniteRange(click.FloatRange):
         return number
 
 
-SECONDS = FiniteRange(0, _MOST_SECONDS, min_open=True)
+SECONDS = FiniteRange(0, MOST_SECONDS, min_open=True)
 
 _THREADS = click.option(
     "-j",
