@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -136,7 +136,7 @@ class Attributes:
         """Put the materials among others; one whose name is taken gets a number behind it."""
         names = {}
         for name, material in self.materials.items():
-            names[name] = _free_name(name, material, taken)
+            names[name] = _free(name, partial(_means_another, taken, material))
             taken[names[name]] = material
         values = self.face.get("material")
         if values is None or all(old == new for old, new in names.items()):
@@ -157,7 +157,7 @@ class Attributes:
         taken = set(image)
         for kind in kinds.tolist():
             if kind not in image:
-                image[kind] = _free(called(kind), taken)
+                image[kind] = _free(called(kind), taken.__contains__)
                 taken.add(image[kind])
         materials = {image[name]: one for name, one in self.materials.items() if name in image}
         told = np.array([image[kind] for kind in kinds.tolist()])[numbers]
@@ -195,18 +195,14 @@ class Attributes:
         return [(name, array.dtype.str, array.shape[2:]) for name, array in arrays]
 
 
-def _free_name(name: str, material: Material, taken: Mapping[str, Material]) -> str:
-    number, free = 1, name
-    while taken.get(free, material) != material:
-        number += 1
-        free = f"{name} ({number})"
-    return free
+def _means_another(taken: Mapping[str, Material], material: Material, name: str) -> bool:
+    return taken.get(name, material) != material
 
 
-def _free(name: str, taken: Container[str]) -> str:
+def _free(name: str, is_taken: Callable[[str], bool]) -> str:
     """Return a name that is not taken, with a number behind it if need be."""
     number, free = 1, name
-    while free in taken:
+    while is_taken(free):
         number += 1
         free = f"{name} ({number})"
     return free

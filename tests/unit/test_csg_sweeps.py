@@ -10,6 +10,7 @@ import bspcsg as b
 from bspcsg import csg
 from bspcsg.bsp import Region
 from support.scripts import moved, region, volume
+from support.timing import seconds
 
 # Sweeps and hulls
 
@@ -220,5 +221,9 @@ def test_turns_are_divided_below_half_turns() -> None:
 
 
 def test_many_plane_figures_are_taken_away_at_once() -> None:
-    squares = "".join(f"{moved(2 * k, 0, 0)} square(1);" for k in range(40))
-    assert region(f"difference() {{ square(100); {squares} }}").area == 10_000 - 40
+    def rest(count: int) -> b.Region:
+        circles = "".join(f"{moved(2 * k, 0, 0)} circle(r=1, $fn=24);" for k in range(count))
+        return region(f"difference() {{ square({2 * count}); {circles} }}")
+
+    assert rest(40).area == pytest.approx(6_400 - 39.5 * 12 * math.sin(math.tau / 24) / 2)
+    assert seconds(lambda: rest(1_000), 2) < 7 * seconds(lambda: rest(250), 2)

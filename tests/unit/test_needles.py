@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg._types import FloatArray, IndexArray, WindingRule
 from support.timing import seconds
 
 TURN = (30, 20, 10)
@@ -23,6 +24,59 @@ def cut_cylinder(sides: int, turn: tuple[int, int, int]) -> b.Mesh:
     """Return the mesh of a turned cylinder of many sides with a notch."""
     notch = b.cube(3).translate(8.5, -1.5, -1)
     return (b.cylinder(1, 10, segments=sides).rotate(turn) - notch.rotate(turn)).to_mesh()
+
+
+SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+
+
+def turned_square(rows: int, turn: float, height: float) -> FloatArray:
+    """Return the corners of a square in each row, turned by so many degrees from row to row."""
+    turns = turn * np.radians(np.arange(rows))[:, None]
+    x, y = SQUARE.T
+    place = [x * np.cos(turns) + y * np.sin(turns), y * np.cos(turns) - x * np.sin(turns)]
+    up = np.broadcast_to(np.linspace(0, height, rows)[:, None], (rows, 4))
+    return np.stack([*place, up], axis=2).reshape(-1, 3)
+
+
+def flattened(rows: int, turn: float) -> tuple[FloatArray, IndexArray]:
+    """Return the mesh of a square that is turned on its way up, with no height left."""
+    first, following = np.arange(4), np.roll(np.arange(4), -1)
+    wall = np.concatenate(
+        [
+            np.stack(three, axis=1)
+            for three in [(first, following, following + 4), (first, following + 4, first + 4)]
+        ]
+    )
+    walls = [wall + 4 * row for row in range(rows - 1)]
+    top = np.array([(0, 1, 2), (0, 2, 3)]) + 4 * (rows - 1)
+    return turned_square(rows, turn, 0), np.concatenate([[(0, 2, 1), (0, 3, 2)], *walls, top])
+
+
+def beside(mesh: tuple[FloatArray, IndexArray], other: b.Mesh) -> tuple[FloatArray, IndexArray]:
+    """Return a mesh with another one in it."""
+    vertices, faces = mesh
+    more = other.faces + len(vertices)
+    return np.concatenate([vertices, other.vertices]), np.concatenate([faces, more])
+
+
+def test_a_sheet_of_slivers_is_looked_at_at_once() -> None:
+    points = turned_square(400, 1 / 400, 5) * (2.1e9, 1, 2.1e9)
+    sheet = b.hull(points.round(3)).to_mesh()
+    alone = sheet.vertices, sheet.faces
+    for mesh in (alone, beside(alone, b.cube(1).translate(-9, 0, 0).to_mesh())):
+        solid = b.Solid.from_mesh(mesh, pitch=-3)
+        assert seconds(solid.normalized) < 2
+
+
+@pytest.mark.parametrize("winding", ["positive", "nonzero", "even-odd"])
+def test_what_lies_in_one_plane_and_crosses_itself_bounds_nothing(winding: WindingRule) -> None:
+    flat = flattened(40, 111)
+    nothing = b.Solid.from_mesh(flat, winding=winding)
+    cube = b.Solid.from_mesh(beside(flat, b.cube(1).to_mesh()), winding=winding)
+    assert seconds(lambda: nothing.is_empty) < 2
+    assert nothing.is_empty
+    assert seconds(lambda: cube.volume_exact) < 2
+    assert cube.equals(b.cube(1))
 
 
 @pytest.mark.parametrize(

@@ -40,11 +40,11 @@ struct Pluecker<const P: u64> {
 }
 
 /// A plane, modulo both primes.
-#[derive(Clone, Debug)]
-pub struct PlaneResidues {
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneResidues<'a> {
     first: Coefficients<P1>,
     second: Coefficients<P2>,
-    given: Given,
+    given: Given<'a>,
 }
 
 /// A plane's coefficients modulo a prime.
@@ -55,10 +55,10 @@ struct Coefficients<const P: u64> {
 }
 
 /// A plane as it was given.
-#[derive(Clone, Debug)]
-enum Given {
+#[derive(Clone, Copy, Debug)]
+enum Given<'a> {
     Corners([Lattice; 3]),
-    Plane(Plane),
+    Plane(&'a Plane),
 }
 
 impl<const P: u64> Coefficients<P> {
@@ -84,7 +84,7 @@ impl<const P: u64> Coefficients<P> {
     }
 }
 
-impl PlaneResidues {
+impl<'a> PlaneResidues<'a> {
     /// Those of a multiple of the plane through three lattice points.
     pub fn through(corners: &[Lattice; 3]) -> Self {
         let [a, b, c] = corners;
@@ -97,11 +97,11 @@ impl PlaneResidues {
     }
 
     /// Those of a plane.
-    pub fn of(plane: &Plane) -> Self {
+    pub fn of(plane: &'a Plane) -> Self {
         Self {
             first: Coefficients::of(plane),
             second: Coefficients::of(plane),
-            given: Given::Plane(plane.clone()),
+            given: Given::Plane(plane),
         }
     }
 
@@ -339,7 +339,8 @@ mod tests {
         // The same plane, told by points of it.
         let [a, b] = [[0, 0, 0], [1, -(1 << 31), 0]];
         let through = PlaneResidues::through(&[a, b, [0, 0, 7]]);
-        let beside = PlaneResidues::of(&plane([1, 1 << 30, 0], 0));
+        let slanted = plane([1, 1 << 30, 0], 0);
+        let beside = PlaneResidues::of(&slanted);
         assert_eq!(cut, LineKey::of(&Line::of_planes(&through, &beside)));
     }
 }

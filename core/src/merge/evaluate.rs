@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::descent::descend::{Counters, Descent};
+use super::descent::counters::Counters;
+use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::rule::Rule;
@@ -16,6 +17,7 @@ use crate::geometry::plane::Lattice;
 use crate::interrupt::handed_over;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::Source;
+use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
 use crate::tree::table::Table;
 
@@ -254,8 +256,7 @@ fn unite(solid: &Solid, rule: Rule, pairs: Option<Unclear>) -> Result<Solid> {
         return Ok(solid.clone().with_reduced(true));
     }
     if simple == Some(false)
-        && rule != Rule::EvenOdd
-        && let Some(united) = union_of_shells(solid, &sources)?
+        && let Some(united) = union_of_shells(solid, &sources, rule)?
     {
         return Ok(united);
     }
@@ -281,20 +282,25 @@ fn unite(solid: &Solid, rule: Rule, pairs: Option<Unclear>) -> Result<Solid> {
     Ok(Solid::new(root, solid.pitch(), table, true))
 }
 
-/// A mesh of several shells as the union of them; `None` if one of them overlaps itself or is turned
-/// inside out.
-fn union_of_shells(solid: &Solid, sources: &Sources) -> Result<Option<Solid>> {
-    let Some(shells) = simple_shells(solid, sources) else {
+/// A mesh as the union of the shells that bound something; `None` if one of them overlaps itself or is
+/// turned inside out, and where that is not what a rule calls inside.
+fn union_of_shells(solid: &Solid, sources: &Sources, rule: Rule) -> Result<Option<Solid>> {
+    let most = if rule == Rule::EvenOdd { 1 } else { usize::MAX };
+    let Some(shells) = simple_shells(solid, sources, most) else {
         return Ok(None);
     };
+    let table = || sources.table().clone();
+    if shells.is_empty() {
+        let nothing = Branch::uniform(solid.root().cell, 0);
+        return Ok(Some(Solid::new(nothing, solid.pitch(), table(), true)));
+    }
     let count = as_number(shells.len());
     let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
     terms.push(Term::Or((0..count).collect()));
     let descent = Descent::new(sources, Rule::Positive, true, shells.len());
     let root = descent.run(Expression::new(terms)?, shells)?;
-    let table = sources.table().clone();
     let alone = descent.overlapping().is_empty();
-    Ok(alone.then(|| Solid::new(root, solid.pitch(), table, true)))
+    Ok(alone.then(|| Solid::new(root, solid.pitch(), table(), true)))
 }
 
 fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {

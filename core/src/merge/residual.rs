@@ -236,26 +236,35 @@ impl Folding {
     /// Folds a symmetric difference, in which equal lines cancel each other.
     fn xor(&mut self, list: &[u32]) -> Known {
         let mut parity = false;
-        let mut open: Vec<u32> = Vec::new();
+        let mut lines: Vec<u32> = Vec::new();
         for i in list {
             match self.folded[*i as usize] {
                 Known::Value(v) => parity ^= v,
                 Known::Line(line, negate) => {
                     parity ^= negate;
-                    let twin = self.twin(line);
-                    if let Some(other) = open.iter().position(|l| self.twin(*l) == twin) {
-                        open.remove(other);
-                    } else {
-                        open.push(line);
-                    }
+                    *self.is_odd(line) ^= true;
+                    lines.push(line);
                 }
             }
         }
+        let mut open: Vec<u32> = Vec::new();
+        for line in lines.into_iter().rev() {
+            if std::mem::take(self.is_odd(line)) {
+                open.push(line);
+            }
+        }
+        open.reverse();
         match open.as_slice() {
             [] => Known::Value(parity),
             [line] => Known::Line(*line, parity),
             _ => Known::Line(self.append(Term::Xor(open)), parity),
         }
+    }
+
+    /// True if a symmetric difference names an odd number of lines that equal this one.
+    fn is_odd(&mut self, line: u32) -> &mut bool {
+        let twin = self.twin(line);
+        &mut self.lines[twin].is_named[0]
     }
 
     /// A line, or a new one for its complement.
@@ -314,6 +323,7 @@ mod tests {
             ),
             (vec![Term::And(vec![0, 2]), Term::Or(vec![3, 1])], None),
             (vec![Term::Xor(vec![0, 2, 1])], Some(2)),
+            (vec![Term::Xor(vec![0, 2, 1, 0, 2])], Some(0)),
         ];
         for (rest, alone) in cases {
             let terms = [vec![a.clone(), b.clone(), c.clone()], rest].concat();

@@ -271,7 +271,7 @@ impl Source {
     }
 
     /// The coefficients of a face's plane up to a common factor, for the keys of lines in it.
-    pub fn plane_residues(&self, face: FaceId) -> PlaneResidues {
+    pub fn plane_residues(&self, face: FaceId) -> PlaneResidues<'_> {
         match &self.shape {
             Shape::Mesh(mesh) => PlaneResidues::through(&mesh.corners(face)),
             Shape::HalfSpace(plane) => PlaneResidues::of(plane),

@@ -23,7 +23,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::motion::Motion;
 use crate::interrupt::poll;
-use crate::merge::descent::descend::Counters;
+use crate::merge::descent::counters::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
 use crate::merge::expression::{Expression, Term};
 use crate::merge::rule::Rule;

@@ -4,14 +4,13 @@
 //! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended). The
 //! page `docs/design/descent.md` tells the whole way.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::choice::{
-    extent, is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK, TOGETHER,
-};
+use super::choice::{extent, is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK};
+use super::counters::Counters;
 use super::join;
 use super::state::{find, has_constant, has_surface, nested, worth, State, States, MANY};
 use super::twins::{self, Firsts};
@@ -19,7 +18,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
 use crate::interrupt::{carried, poll};
-use crate::merge::expression::{Expression, Parted};
+use crate::merge::expression::Expression;
 use crate::merge::kernels::general::GeneralPosition;
 use crate::merge::kernels::orthogonal::Orthogonal;
 use crate::merge::kernels::problem::{CellProblem, Kernel, Listed};
@@ -31,7 +30,7 @@ use crate::mesh::tasks::{both, in_pool, Worth};
 use crate::tree::node::Branch;
 
 /// The end of a descent before all its cells are done.
-enum End {
+pub(super) enum End {
     /// It failed.
     Failed(Error),
     /// This operand overlaps itself, and is to be united with itself first.
@@ -47,10 +46,10 @@ impl From<Error> for End {
 }
 
 /// The result in a cell, or the end of the descent.
-type Visited = std::result::Result<Branch, End>;
+pub(super) type Visited = std::result::Result<Branch, End>;
 
 /// Two results, made at the same time where that pays; nothing begins after an end before it.
-fn both_in_turn(
+pub(super) fn both_in_turn(
     worth: Worth,
     first: impl FnOnce() -> Visited + Send,
     second: impl FnOnce() -> Visited + Send,
@@ -69,80 +68,6 @@ fn both_in_turn(
     };
     let (first, second) = both(worth, first, second);
     Ok((first?, second?))
-}
-
-/// Groups of groups, at most: 2³² operands in halves, and as many levels of alternating operations.
-const DEEPEST: u32 = 64;
-
-/// Counts of what an evaluation did.
-///
-/// # Example
-/// ```
-/// use std::sync::Arc;
-///
-/// use bspcsg::merge::evaluate::evaluate;
-/// use bspcsg::merge::expression::{Expression, Term};
-/// use bspcsg::mesh::import::import;
-/// use bspcsg::tree::solid::Solid;
-///
-/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
-/// let at = |x: f64| vertices.map(|[a, b, c]| [a + x, b, c]);
-/// let solid = |x: f64| -> Result<Solid, bspcsg::error::Error> {
-///     Ok(Solid::of_source(Arc::new(import(&at(x), &faces, None)?), false))
-/// };
-/// let either = vec![Term::Operand(0), Term::Operand(1), Term::Or(vec![0, 1])];
-/// let (_, counters) = evaluate(&Expression::new(either)?, &[solid(0.0)?, solid(0.5)?])?;
-/// // Few faces in one place: a kernel took all eight at once.
-/// assert!(counters.named().contains(&("kernels", 1)));
-/// assert!(counters.named().contains(&("kernel_elements", 8)));
-/// # Ok::<(), bspcsg::error::Error>(())
-/// ```
-#[derive(Debug, Default)]
-pub struct Counters {
-    /// Cells visited.
-    pub cells: AtomicU64,
-    /// Faces sorted into bins.
-    pub binned: AtomicU64,
-    /// Elements of lists that were halved, once for each halving.
-    pub halved: AtomicU64,
-    /// Cells worked on by the leaf kernel.
-    pub leaves: AtomicU64,
-    /// Elements in these.
-    pub leaf_elements: AtomicU64,
-}
-
-impl Counters {
-    /// Adds what another descent did.
-    fn add(&self, other: &Self) {
-        let pairs = [
-            (&self.cells, &other.cells),
-            (&self.binned, &other.binned),
-            (&self.halved, &other.halved),
-            (&self.leaves, &other.leaves),
-            (&self.leaf_elements, &other.leaf_elements),
-        ];
-        for (count, more) in pairs {
-            count.fetch_add(more.load(Ordering::Relaxed), Ordering::Relaxed);
-        }
-    }
-
-    /// The number of elements in cells that kernels took.
-    pub fn taken(&self) -> u64 {
-        self.leaf_elements.load(Ordering::Relaxed)
-    }
-
-    /// The counts with their names.
-    pub fn named(&self) -> [(&'static str, u64); 5] {
-        [
-            ("cells", &self.cells),
-            ("binned", &self.binned),
-            ("halved", &self.halved),
-            ("kernels", &self.leaves),
-            ("kernel_elements", &self.leaf_elements),
-        ]
-        .map(|(name, count)| (name, count.load(Ordering::Relaxed)))
-    }
 }
 
 /// The data that all cells of an evaluation share.
@@ -257,7 +182,7 @@ impl<'a> Descent<'a> {
     }
 
     /// A cell below one in which several operands mattered.
-    fn cell(
+    pub(super) fn cell(
         &self,
         cell: Cell,
         expression: Arc<Expression>,
@@ -280,7 +205,13 @@ impl<'a> Descent<'a> {
         self.resolve(cell, residual, states, round)
     }
 
-    fn resolve(&self, cell: Cell, residual: Residual, mut states: States, round: Round) -> Visited {
+    pub(super) fn resolve(
+        &self,
+        cell: Cell,
+        residual: Residual,
+        mut states: States,
+        round: Round,
+    ) -> Visited {
         let residual = match residual {
             Residual::Open(open) => match self.twins(|| twins::of_one_node(&states)) {
                 Some(firsts) => open.where_equal(|k| firsts.of(k)),
@@ -406,79 +337,8 @@ impl<'a> Descent<'a> {
         expression.value(outside, &mut Vec::new())
     }
 
-    /// The expression as one of two others, if results of operations need not be reduced.
-    fn parted(&self, expression: &Expression) -> Option<Parted> {
-        expression.parted().filter(|_| self.share)
-    }
-
-    /// The result in a cell from those of two groups of operands.
-    fn grouped(&self, cell: Cell, parted: Parted, states: States, depth: u32) -> Visited {
-        poll();
-        if parted.takes_one_by_one() {
-            return self.folded(cell, parted, states, depth);
-        }
-        let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-        let operands = parted.operands();
-        let [first, second] = parted.divide(states);
-        let [left, right] = parted.halves;
-        let results = both_in_turn(
-            worth(total),
-            || self.group(cell, &left, first, depth),
-            || self.group(cell, &right, second, depth),
-        )?;
-        let [ours, theirs] = &operands;
-        self.united(cell, parted.whole, results.into(), [ours, theirs])
-    }
-
-    /// The result in a cell where one operand after the other is taken, in a loop: there may be many.
-    fn folded(&self, cell: Cell, mut parted: Parted, states: States, depth: u32) -> Visited {
-        let mut first = states;
-        let mut steps = Vec::new();
-        let left = loop {
-            poll();
-            let last;
-            [first, last] = parted.divide(first);
-            let [left, right] = parted.halves;
-            steps.push((right, last, parted.whole));
-            let next = left.parted().filter(Parted::takes_one_by_one);
-            match next.filter(|_| first.len() > TOGETHER) {
-                Some(next) => parted = next,
-                None => break left,
-            }
-        };
-        let mut ours = left.operands();
-        let mut result = self.group(cell, &left, first, depth)?;
-        for (right, last, whole) in steps.into_iter().rev() {
-            let theirs = right.operands();
-            let next = self.group(cell, &right, last, depth)?;
-            result = self.united(cell, whole, [result, next], [&ours, &theirs])?;
-            ours.extend(theirs);
-        }
-        Ok(result)
-    }
-
-    /// The result in a cell from the results of two groups of operands.
-    fn united(
-        &self,
-        cell: Cell,
-        whole: Expression,
-        results: [Branch; 2],
-        operands: [&[u32]; 2],
-    ) -> Visited {
-        let states: States = (0..).zip(results.map(State::Tree)).collect();
-        let pair = Self::new(self.sources, self.rule, self.share, states.len());
-        let result = pair.cell(cell, Arc::new(whole), states, Round::OF_GROUPS);
-        self.counters.add(&pair.counters);
-        for (group, overlaps) in operands.iter().zip(&pair.overlaps) {
-            if overlaps.load(Ordering::Relaxed) {
-                self.note_overlaps(group)?;
-            }
-        }
-        result
-    }
-
     /// Remembers that operands overlap themselves; the first that is doubted may end the descent.
-    fn note_overlaps(&self, operands: &[u32]) -> std::result::Result<(), End> {
+    pub(super) fn note_overlaps(&self, operands: &[u32]) -> std::result::Result<(), End> {
         for k in operands {
             self.overlaps[*k as usize].store(true, Ordering::Relaxed);
         }
@@ -497,18 +357,6 @@ impl<'a> Descent<'a> {
         };
         let found: Vec<u32> = states.iter().filter(winds).map(|s| s.0).collect();
         self.note_overlaps(&found)
-    }
-
-    /// The result of a group of operands in a cell.
-    fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> Visited {
-        if states.len() > TOGETHER
-            && depth < DEEPEST
-            && let Some(parted) = expression.parted()
-        {
-            return self.grouped(cell, parted, states, depth + 1);
-        }
-        let residual = expression.residual(|_| None);
-        self.resolve(cell, residual, states, Round::START)
     }
 
     /// The states with the leaves of this cell, of so many elements, opened.

@@ -2,7 +2,9 @@
 //! takes them, and puts the results together.
 
 pub mod choice;
+pub mod counters;
 pub mod descend;
+mod groups;
 pub(super) mod join;
 pub(super) mod state;
 pub(super) mod twins;

@@ -3,7 +3,7 @@
 use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
 use crate::geometry::axes::each_axis;
-use crate::geometry::doubles::meeting::{meeting, Meeting};
+use crate::geometry::doubles::meeting::{has_no_area, meeting, Meeting};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Side;
@@ -22,7 +22,7 @@ pub(super) struct Looked {
     normal: [f64; 3],
     /// A bound on the rounding of the normal's components relative to the edges' lengths.
     size: f64,
-    /// True if the face certainly has area.
+    /// True if the face has area.
     has_area: bool,
     /// The corners, whose coordinates doubles hold.
     doubles: Triangle,
@@ -50,7 +50,7 @@ impl Looked {
             irregular: mesh.vertices_of(face).map(|v| irregular[v.place()]),
             normal,
             size,
-            has_area: longest(&normal) > 16.0 * f64::EPSILON * size,
+            has_area: longest(&normal) > 16.0 * f64::EPSILON * size || !has_no_area(&corners),
             doubles: corners,
             piece,
         }
@@ -71,7 +71,10 @@ impl Looked {
                     || other.has_beyond(self, other.shared_with(self))
                     || self.meets_in_points(other)
             }
-            2 => !self.shares_irregular_edge(other) && self.folds_away(other),
+            2 => {
+                !self.shares_irregular_edge(other)
+                    && (self.folds_away(other) || self.meets_in_edges(other))
+            }
             _ => false,
         }
     }
@@ -97,6 +100,13 @@ impl Looked {
         self.has_area && other.has_area && exact()
     }
 
+    /// Return whether two faces with a common edge have nothing else in common, for sure.
+    fn meets_in_edges(&self, other: &Self) -> bool {
+        let meets = || meeting(&self.doubles, &other.doubles);
+        let are_clear = || matches!(meets(), Meeting::Clear | Meeting::Edges(..));
+        self.has_area && other.has_area && are_clear()
+    }
+
     /// Return whether more than two faces may meet in the common edge: surfaces can cross there
     /// although no two faces do. An edge whose ends are other vertices of the same places has two
     /// faces of its own.
@@ -117,8 +127,8 @@ impl Looked {
         first.is_certain() && sides.all(|s| s == first)
     }
 
-    /// Return whether two faces with a common edge lie in different planes, or flat beside each
-    /// other.
+    /// Return whether two faces with a common edge clearly lie in different planes, or flat beside
+    /// each other.
     fn folds_away(&self, other: &Self) -> bool {
         let apex = other.doubles.iter().find(|p| !self.doubles.contains(p));
         let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
@@ -149,4 +159,41 @@ impl Looked {
 /// a − b, rounded once at most: the difference may have 54 bits.
 fn difference(a: &Point, b: &Point) -> [f64; 3] {
     each_axis(|i| a[i] - b[i])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Faces over these corners, which a shear draws out: volumes and planes in common stay.
+    fn sheared(corners: &[Lattice], faces: &[[u32; 3]]) -> Vec<Looked> {
+        let shear = |[x, y, z]: Lattice| [x + (y << 22) + (z << 43), y + (z << 22), z];
+        let mesh = TriangleMesh {
+            vertices: corners.iter().copied().map(shear).collect(),
+            faces: VertexId::rows(faces.iter().copied()),
+            ..TriangleMesh::default()
+        };
+        let irregular = vec![false; corners.len()];
+        let looked = |face| Looked::at(&mesh, face, &irregular, NONE);
+        mesh.face_ids().map(looked).collect()
+    }
+
+    #[test]
+    fn slivers_that_share_an_edge_are_clear_of_each_other() {
+        let corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+        let faces = sheared(&corners, &[[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]);
+        for i in 0..4 {
+            assert!(faces[i].has_area);
+            assert!(faces[..i].iter().all(|other| faces[i].is_clear_of(other)));
+        }
+    }
+
+    #[test]
+    fn slivers_that_are_folded_onto_each_other_are_not() {
+        let corners = [[0, 0, 0], [1, 2, 1], [3, 1, 2], [4, 3, 3], [-2, 1, -1]];
+        // All lie in one plane, the last corner beyond the common edge.
+        let faces = sheared(&corners, &[[0, 1, 2], [1, 0, 3], [1, 0, 4]]);
+        assert!(!faces[0].is_clear_of(&faces[1]));
+        assert!(faces[0].is_clear_of(&faces[2]));
+    }
 }

@@ -24,7 +24,8 @@ use crate::arith::{Int, Sign};
 use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::sixfold_flux;
-use crate::geometry::side::{Half, Orientation};
+use crate::geometry::plane::Lattice;
+use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::Source;
@@ -150,14 +151,16 @@ fn only_mesh(solid: &Solid) -> Option<(&Deferred, &Source, &TriangleMesh)> {
     Some((leaf, source, source.mesh().filter(|_| alone)?))
 }
 
-/// The shells of a mesh that closes by index, if there are several, and each alone is simple; of
-/// equal ones the first.
+/// The shells of a mesh that closes by index and bound something, if each alone is simple; of equal
+/// ones the first. `None` if one shell that bounds something is all there is, and if more than `most`
+/// are.
 ///
-/// Where two of them cross or hold each other, their union is what the mesh winds around.
+/// A shell in one plane bounds nothing. Where two others cross or hold each other, their union is
+/// what the mesh winds around.
 ///
 /// # Cost
 /// As [`simplicity`]; shells that overlap are not compared with each other.
-pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
+pub fn simple_shells(solid: &Solid, sources: &Sources, most: usize) -> Option<Vec<Branch>> {
     let (leaf, source, mesh) = only_mesh(solid)?;
     let whole =
         leaf.corner == 0 && !solid.root().complement && !leaf.groups[0].orientation.is_opposite();
@@ -166,21 +169,35 @@ pub fn simple_shells(solid: &Solid, sources: &Sources) -> Option<Vec<Branch>> {
         return None;
     }
     let shells = shells(source, mesh.faces.len());
-    if shells.iter().all(|shell| *shell == 0) {
+    let faces = faces_of(&shells);
+    let is_flat: Vec<bool> = faces.iter().map(|f| is_flat(source, mesh, f)).collect();
+    if is_flat == [false] {
         return None;
     }
-    let faces = faces_of(&shells);
     let is_first = copies::are_firsts(mesh, &faces);
-    let firsts = || faces.iter().zip(&is_first).filter(|shell| *shell.1);
+    let stays = is_first
+        .iter()
+        .zip(&is_flat)
+        .map(|(first, flat)| *first && !flat);
+    let staying: Vec<&Vec<FaceId>> = faces
+        .iter()
+        .zip(stays)
+        .filter(|s| s.1)
+        .map(|s| s.0)
+        .collect();
+    if staying.len() > most {
+        return None;
+    }
     let view = View::new(source, mesh);
-    let unclear = Unclear::among(&view, firsts().map(|shell| shell.0.as_slice()));
+    let unclear = Unclear::among(&view, staying.iter().map(|shell| shell.as_slice()));
     let mut check = Check::new(sources, &view, shells, unclear);
     for (seen, faces) in check.seen.iter_mut().zip(&faces) {
         *seen.get_mut() = is_outward(mesh, faces.iter().copied());
     }
     let shared = &leaf.groups[0].source;
-    let branches: Vec<Branch> = firsts()
-        .map(|shell| shell_of(shared, shell.0.clone()))
+    let branches: Vec<Branch> = staying
+        .into_iter()
+        .map(|shell| shell_of(shared, shell.clone()))
         .collect();
     for branch in &branches {
         if let Node::Deferred(leaf) = &*branch.node {
@@ -217,6 +234,20 @@ fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = FaceId>) -> bool 
         volume += sixfold_flux(&mesh.corners(face));
     }
     volume.sign() == Sign::Positive
+}
+
+/// Return whether all faces of a shell lie in one plane.
+///
+/// # Cost
+/// Up to the first face that leaves it.
+fn is_flat(source: &Source, mesh: &TriangleMesh, shell: &[FaceId]) -> bool {
+    let Some((first, rest)) = shell.split_first() else {
+        return true;
+    };
+    let plane = source.plane(*first);
+    let lies_in = |corner: &Lattice| plane.side_of_lattice(corner) == Side::On;
+    rest.iter()
+        .all(|face| mesh.corners(*face).iter().all(lies_in))
 }
 
 /// For each face the number of its edge-connected component.

@@ -15,11 +15,11 @@
 //! verification of geometric structures*, 1999. The ray tells one covering from several.
 
 use crate::arith::bounds::REACH;
-use crate::arith::{Filtered, Sign};
+use crate::arith::Sign;
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::geometry::winding::crossing::{triangle_change, Segment};
-use crate::geometry::winding::path::near_determinant;
+use crate::geometry::winding::path::determinant;
 use crate::mesh::triangles::TriangleMesh;
 
 /// Return whether a mesh that closes by index is star-shaped about the mean of its vertices; errs
@@ -57,9 +57,9 @@ fn mean(points: &[Lattice]) -> Option<Lattice> {
     Some(sum.map(|s| s.div_euclid(count) as i64))
 }
 
-/// Return whether the origin lies strictly behind a face's plane; errs on no.
+/// Return whether the origin lies strictly behind a face's plane.
 fn is_ahead([a, b, c]: &[Lattice; 3]) -> bool {
-    near_determinant(a, b, c) == Filtered::Certain(Sign::Positive)
+    determinant(a, b, c) == Sign::Positive
 }
 
 /// Return whether all corners lie on one side of the origin along an axis.
@@ -79,7 +79,7 @@ mod tests {
 
     fn tetrahedron() -> TriangleMesh {
         TriangleMesh {
-            vertices: vec![[0, 0, 0], [90, 0, 0], [0, 90, 0], [0, 0, 90]],
+            vertices: vec![[0, 0, 0], [88, 0, 0], [0, 88, 0], [0, 0, 88]],
             faces: [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]]
                 .map(|f| f.map(VertexId))
                 .to_vec(),
@@ -109,6 +109,19 @@ mod tests {
     fn convex_meshes_are_star_shaped() {
         assert!(is_star_shaped(&tetrahedron()));
         assert!(is_star_shaped(&cone(7, 1)));
+    }
+
+    #[test]
+    fn slivers_are_where_doubles_cannot_tell() {
+        let mut mesh = tetrahedron();
+        for p in &mut mesh.vertices {
+            *p = [
+                p[0] + (p[1] << 20) + (p[2] << 41),
+                p[1] + (p[2] << 20),
+                p[2],
+            ];
+        }
+        assert!(is_star_shaped(&mesh));
     }
 
     #[test]

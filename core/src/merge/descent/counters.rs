@@ -1,0 +1,74 @@
+//! Counters of a descent.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Counts of what an evaluation did.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::merge::evaluate::evaluate;
+/// use bspcsg::merge::expression::{Expression, Term};
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let at = |x: f64| vertices.map(|[a, b, c]| [a + x, b, c]);
+/// let solid = |x: f64| -> Result<Solid, bspcsg::error::Error> {
+///     Ok(Solid::of_source(Arc::new(import(&at(x), &faces, None)?), false))
+/// };
+/// let either = vec![Term::Operand(0), Term::Operand(1), Term::Or(vec![0, 1])];
+/// let (_, counters) = evaluate(&Expression::new(either)?, &[solid(0.0)?, solid(0.5)?])?;
+/// // Few faces in one place: a kernel took all eight at once.
+/// assert!(counters.named().contains(&("kernels", 1)));
+/// assert!(counters.named().contains(&("kernel_elements", 8)));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
+#[derive(Debug, Default)]
+pub struct Counters {
+    /// Cells visited.
+    pub cells: AtomicU64,
+    /// Faces sorted into bins.
+    pub binned: AtomicU64,
+    /// Elements of lists that were halved, once for each halving.
+    pub halved: AtomicU64,
+    /// Cells worked on by the leaf kernel.
+    pub leaves: AtomicU64,
+    /// Elements in these.
+    pub leaf_elements: AtomicU64,
+}
+
+impl Counters {
+    /// Adds what another descent did.
+    pub(super) fn add(&self, other: &Self) {
+        let pairs = [
+            (&self.cells, &other.cells),
+            (&self.binned, &other.binned),
+            (&self.halved, &other.halved),
+            (&self.leaves, &other.leaves),
+            (&self.leaf_elements, &other.leaf_elements),
+        ];
+        for (count, more) in pairs {
+            count.fetch_add(more.load(Ordering::Relaxed), Ordering::Relaxed);
+        }
+    }
+
+    /// The number of elements in cells that kernels took.
+    pub fn taken(&self) -> u64 {
+        self.leaf_elements.load(Ordering::Relaxed)
+    }
+
+    /// The counts with their names.
+    pub fn named(&self) -> [(&'static str, u64); 5] {
+        [
+            ("cells", &self.cells),
+            ("binned", &self.binned),
+            ("halved", &self.halved),
+            ("kernels", &self.leaves),
+            ("kernel_elements", &self.leaf_elements),
+        ]
+        .map(|(name, count)| (name, count.load(Ordering::Relaxed)))
+    }
+}
