@@ -171,7 +171,7 @@ class Attributes:
         """
         rows, is_even = self._rows()
         count = len(self.faces)
-        as_bytes = np.ascontiguousarray(rows).view(f"V{rows.shape[1]}").ravel() if count else rows
+        as_bytes = np.ascontiguousarray(rows).view(f"V{rows.shape[1]}").ravel()
         kept, numbers = np.unique(as_bytes[is_even], return_inverse=True)
         patches = np.zeros(count, dtype=np.int64)
         patches[is_even] = numbers
@@ -185,7 +185,8 @@ class Attributes:
         is_even = np.ones(count, dtype=bool)
         rows = [np.zeros((count, 1), dtype=np.uint8)]
         for name in self.names:
-            corners = _bytes_of(self.at_corners(name), 3 * count).reshape(count, 3, -1)
+            values = _bytes_of(self.at_corners(name), 3 * count)
+            corners = values.reshape(count, 3, values.shape[1])
             is_even &= (corners == corners[:, :1]).all(axis=(1, 2))
             rows.append(corners[:, 0])
         return np.concatenate(rows, axis=1), is_even

@@ -496,8 +496,9 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         """
         content = evaluate(self._node)
         if content.extent is None:
-            return _restored, (self.tree.dump(), (), *_if_any(self._sayings))
-        return _restored, (tree_of(content).dump(), tuple(self._factors), *_if_any(content.sayings))
+            return _restored, (self.tree.dump(), (), *_kept(self.tree, self._sayings))
+        tree = tree_of(content)
+        return _restored, (tree.dump(), tuple(self._factors), *_kept(tree, content.sayings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -596,8 +597,12 @@ def _is_reduced(tree: Tree) -> bool:
     return tree.simple is True
 
 
-def _if_any(sayings: Sayings) -> tuple[Sayings, ...]:
-    return (sayings,) if sayings else ()
+def _kept(tree: Tree, sayings: Sayings) -> tuple[Sayings, ...]:
+    """Return what is said of the sources whose faces may bound a solid, if anything is."""
+    if not sayings:
+        return ()
+    kept = zip(tree.named, sayings, strict=True)
+    return (tuple(said if is_named else None for is_named, said in kept),)
 
 
 def _restored(data: bytes, factors: Factors, sayings: Sayings = ()) -> Solid:

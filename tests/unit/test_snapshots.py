@@ -1,6 +1,7 @@
 """The content of pickles: bytes with a checksum, looked at in full before use."""
 
 import base64
+import pickle
 import random
 import zlib
 
@@ -54,6 +55,21 @@ def test_bytes_of_the_version_before_are_read() -> None:
     newer[HEAD - 1] = 4
     with pytest.raises(b.FormatError, match="newer"):
         loaded(bytes(newer) + zlib.crc32(newer).to_bytes(CHECKSUM, "little"))
+
+
+def test_what_bounds_nothing_is_not_in_the_bytes() -> None:
+    inside = b.cube(1).tagged(part=1) & b.sphere(5, segments=100).tagged(part=2)
+    data = pickle.dumps(inside)
+    assert len(data) < 2 * len(pickle.dumps(b.cube(1).tagged(part=1)))
+    copy = pickle.loads(data)
+    assert copy.equals(b.cube(1)) and copy.tagged(part=3).volume == 1
+    assert set(copy.to_mesh().face_attributes["part"].tolist()) == {1}
+
+
+def test_what_bounds_nothing_does_not_keep_a_solid_in_its_place() -> None:
+    inside = (b.cube(1) & b.cube(9e6)).tree
+    refined = inside.refined(inside.pitch - 3)
+    assert refined.volume6_exact(100) == inside.volume6_exact(100)
 
 
 def test_any_damaged_byte_shows() -> None:

@@ -380,6 +380,14 @@ impl Tree {
         self.solid.sources().iter().map(|s| s.id()).collect()
     }
 
+    /// For each source whether faces of it may bound the solid.
+    #[getter]
+    fn named(&self) -> Vec<bool> {
+        let names = self.solid.names();
+        let sources = self.solid.sources().iter();
+        sources.map(|s| names.contains(&s.id())).collect()
+    }
+
     #[getter]
     fn source_id(&self) -> Option<u64> {
         self.solid.sources().iter().next().map(|s| s.id())

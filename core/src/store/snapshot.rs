@@ -127,13 +127,14 @@ impl Snapshot {
             flip: c.face.orientation.is_opposite(),
             edges: c.outline.edges().iter().map(EdgeData::of).collect(),
         });
+        let parts: Vec<_> = parts.collect();
         Self {
             pitch: solid.pitch().exponent(),
             outside: solid.root().outside,
             reduced: solid.is_reduced(),
-            sources: solid.sources().iter().map(|s| SourceData::of(s)).collect(),
+            sources: SourceData::of_all(solid, &wholes, &parts),
             wholes,
-            parts: parts.collect(),
+            parts,
         }
     }
 
@@ -331,6 +332,24 @@ fn is_full_plane(cut: &CutFace) -> bool {
 }
 
 impl SourceData {
+    /// The sources of a solid; those of which no face bounds it leave nothing but their places.
+    fn of_all(solid: &Solid, wholes: &[WholeFaces], parts: &[PartData]) -> Vec<Self> {
+        let mut is_named = vec![false; solid.sources().len()];
+        let slots = wholes.iter().map(|w| w.slot);
+        for slot in slots.chain(parts.iter().map(|p| p.slot)) {
+            is_named[slot.place()] = true;
+        }
+        let all = solid.sources().iter().zip(is_named);
+        all.map(|(source, is_named)| {
+            if is_named {
+                Self::of(source)
+            } else {
+                Self::Mesh(TriangleMesh::default())
+            }
+        })
+        .collect()
+    }
+
     fn of(source: &Source) -> Self {
         match source.shape() {
             Shape::Mesh(mesh) => match source.close_pairs().get() {

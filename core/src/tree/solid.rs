@@ -153,12 +153,17 @@ impl Solid {
     pub fn outgrowing(mut self, named: usize) -> Self {
         self.named = named;
         if self.sources.len() > 2 * named + SPARE {
-            let names = names(&self.root);
+            let names = self.names();
             let kept = |s: &&Arc<Source>| names.contains(&s.id());
             self.sources = self.sources.iter().filter(kept).collect();
             self.named = self.sources.len();
         }
         self
+    }
+
+    /// The ids of the sources that the tree names: faces of others bound nothing.
+    pub fn names(&self) -> HashSet<u64> {
+        names(&self.root)
     }
 
     /// Return the number of sources that the tree named when that was last counted.
@@ -254,7 +259,6 @@ impl Solid {
     }
 }
 
-/// The ids of the sources that a tree names.
 fn names(root: &Branch) -> HashSet<u64> {
     let mut names = HashSet::default();
     let mut open = vec![root];
