@@ -38,8 +38,8 @@ def turned_square(rows: int, turn: float, height: float) -> FloatArray:
     return np.stack([*place, up], axis=2).reshape(-1, 3)
 
 
-def flattened(rows: int, turn: float) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh of a square that is turned on its way up, with no height left."""
+def stack(rows: int, turn: float, height: float) -> tuple[FloatArray, IndexArray]:
+    """Return the mesh of a square that is turned on its way up."""
     first, following = np.arange(4), np.roll(np.arange(4), -1)
     wall = np.concatenate(
         [
@@ -49,7 +49,7 @@ def flattened(rows: int, turn: float) -> tuple[FloatArray, IndexArray]:
     )
     walls = [wall + 4 * row for row in range(rows - 1)]
     top = np.array([(0, 1, 2), (0, 2, 3)]) + 4 * (rows - 1)
-    return turned_square(rows, turn, 0), np.concatenate([[(0, 2, 1), (0, 3, 2)], *walls, top])
+    return turned_square(rows, turn, height), np.concatenate([[(0, 2, 1), (0, 3, 2)], *walls, top])
 
 
 def beside(mesh: tuple[FloatArray, IndexArray], other: b.Mesh) -> tuple[FloatArray, IndexArray]:
@@ -70,13 +70,25 @@ def test_a_sheet_of_slivers_is_looked_at_at_once() -> None:
 
 @pytest.mark.parametrize("winding", ["positive", "nonzero", "even-odd"])
 def test_what_lies_in_one_plane_and_crosses_itself_bounds_nothing(winding: WindingRule) -> None:
-    flat = flattened(40, 111)
+    flat = stack(40, 111, 0)
     nothing = b.Solid.from_mesh(flat, winding=winding)
     cube = b.Solid.from_mesh(beside(flat, b.cube(1).to_mesh()), winding=winding)
     assert seconds(lambda: nothing.is_empty) < 2
     assert nothing.is_empty
+    tip = b.cube(1) - b.Solid.from_mesh(flat, winding=winding)
+    assert seconds(lambda: tip.volume_exact) < 2 and tip.equals(b.cube(1))
     assert seconds(lambda: cube.volume_exact) < 2
     assert cube.equals(b.cube(1))
+    twice = beside(beside(flat, b.cube(1).to_mesh()), b.cube(1).to_mesh())
+    assert b.Solid.from_mesh(twice, winding=winding).volume == (winding != "even-odd")
+
+
+def test_thin_layers_with_a_plane_in_common_are_combined_at_once() -> None:
+    def rest(rows: int) -> b.Solid:
+        return b.Solid.from_mesh(stack(rows, 33, 1e-3)) ^ b.cube(1)
+
+    assert seconds(lambda: rest(80).volume_exact) < 2
+    assert seconds(lambda: rest(160).volume_exact) < 4
 
 
 @pytest.mark.parametrize(

@@ -65,7 +65,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let pitch = common_pitch(expression, solids)?;
     let merged = without_twins(expression, solids);
     let expression = merged.as_ref().unwrap_or(expression);
-    let mut operands = solids.to_vec();
+    let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
     let mut is_first = true;
     loop {
         let sources = Sources::new(joint_table(&operands));
@@ -97,6 +97,15 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             operands[k] = normalize(&operands[k], Rule::Positive)?;
         }
     }
+}
+
+/// The solid, or nothing if it is a mesh in one plane, which bounds nothing.
+fn bounding(solid: &Solid) -> Solid {
+    let is_flat = |s: &Source| s.mesh().is_some_and(|m| m.are_in_one_plane(m.face_ids()));
+    if solid.whole_mesh().is_some_and(|mesh| is_flat(mesh)) {
+        return Solid::uniform(solid.pitch(), false);
+    }
+    solid.clone()
 }
 
 /// The error that explains a failed operation on a solid: if stored data say that it is reduced,

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::grid::Pitch;
 use super::handle::{FaceId, VertexId};
 use crate::geometry::axes::each_axis;
-use crate::geometry::plane::Lattice;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::side::Side;
 
 /// Lattice triangles, and the doubles they came from.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -48,6 +49,21 @@ impl TriangleMesh {
         let least = |i: usize| a[i].min(b[i]).min(c[i]);
         let most = |i: usize| a[i].max(b[i]).max(c[i]);
         ([least(0), least(1), least(2)], [most(0), most(1), most(2)])
+    }
+
+    /// Return whether some faces lie in one plane.
+    ///
+    /// # Cost
+    /// Up to the first that leaves the plane of the first.
+    pub fn are_in_one_plane(&self, mut faces: impl Iterator<Item = FaceId>) -> bool {
+        let Some([a, b, c]) = faces.next().map(|face| self.corners(face)) else {
+            return true;
+        };
+        let Some(plane) = Plane::through(&a, &b, &c) else {
+            return false;
+        };
+        let lies_in = |corner: &Lattice| plane.side_of_lattice(corner) == Side::On;
+        faces.all(|face| self.corners(face).iter().all(lies_in))
     }
 
     /// For each vertex the first at its place on the lattice.

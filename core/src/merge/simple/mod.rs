@@ -24,8 +24,7 @@ use crate::arith::{Int, Sign};
 use crate::error::Result;
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::sixfold_flux;
-use crate::geometry::plane::Lattice;
-use crate::geometry::side::{Half, Orientation, Side};
+use crate::geometry::side::{Half, Orientation};
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::Source;
@@ -170,24 +169,14 @@ pub fn simple_shells(solid: &Solid, sources: &Sources, most: usize) -> Option<Ve
     }
     let shells = shells(source, mesh.faces.len());
     let faces = faces_of(&shells);
-    let is_flat: Vec<bool> = faces.iter().map(|f| is_flat(source, mesh, f)).collect();
-    if is_flat == [false] {
+    let is_flat = |k: &usize| mesh.are_in_one_plane(faces[*k].iter().copied());
+    let bounding: Vec<usize> = (0..faces.len()).filter(|k| !is_flat(k)).collect();
+    if bounding.len() > most || faces.len() == 1 && bounding.len() == 1 {
         return None;
     }
     let is_first = copies::are_firsts(mesh, &faces);
-    let stays = is_first
-        .iter()
-        .zip(&is_flat)
-        .map(|(first, flat)| *first && !flat);
-    let staying: Vec<&Vec<FaceId>> = faces
-        .iter()
-        .zip(stays)
-        .filter(|s| s.1)
-        .map(|s| s.0)
-        .collect();
-    if staying.len() > most {
-        return None;
-    }
+    let firsts = bounding.into_iter().filter(|k| is_first[*k]);
+    let staying: Vec<&Vec<FaceId>> = firsts.map(|k| &faces[k]).collect();
     let view = View::new(source, mesh);
     let unclear = Unclear::among(&view, staying.iter().map(|shell| shell.as_slice()));
     let mut check = Check::new(sources, &view, shells, unclear);
@@ -234,20 +223,6 @@ fn is_outward(mesh: &TriangleMesh, faces: impl Iterator<Item = FaceId>) -> bool 
         volume += sixfold_flux(&mesh.corners(face));
     }
     volume.sign() == Sign::Positive
-}
-
-/// Return whether all faces of a shell lie in one plane.
-///
-/// # Cost
-/// Up to the first face that leaves it.
-fn is_flat(source: &Source, mesh: &TriangleMesh, shell: &[FaceId]) -> bool {
-    let Some((first, rest)) = shell.split_first() else {
-        return true;
-    };
-    let plane = source.plane(*first);
-    let lies_in = |corner: &Lattice| plane.side_of_lattice(corner) == Side::On;
-    rest.iter()
-        .all(|face| mesh.corners(*face).iter().all(lies_in))
 }
 
 /// For each face the number of its edge-connected component.
