@@ -213,6 +213,7 @@ class Inputs:
         counts = f"{counted(len(raw.faces), 'triangle')} became {len(made.mesh.faces)}"
         turned = f", {made.turned} of them turned round" if made.turned else ""
         self.out.warning(f"{shown(path)} was not closed and is repaired: {counts}{turned}.")
+        self.tell(path, made.lost)
         return solid
 
     def tell(self, path: Path, findings: Sequence[Finding]) -> None:
