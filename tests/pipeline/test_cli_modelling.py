@@ -114,6 +114,18 @@ def test_parts_of_one_script_are_in_each_others_way(folder: Path, capsys: Captur
     assert code == 1 and "1 pair of objects, 1 in each other's way" in out
 
 
+@pytest.mark.parametrize("suffix", ["3mf", "glb", "obj", "csg"])
+def test_objects_of_one_file_of_another_name_clash(
+    suffix: str, folder: Path, capsys: Capture
+) -> None:
+    boxes().save(f"all.{suffix}")
+    Path(f"all.{suffix}").rename("all.part")
+    code, out, err = ran(capsys, "clash", "all.part", "--from", suffix)
+    assert (code, err) == (1, "") and "3 pairs of objects, 1 in each other's way" in out
+    code, _, err = ran(capsys, "clash", "all.part", "--from", "json")
+    assert code == 2 and "ending in .json" in err
+
+
 def test_one_object_cannot_clash(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "clash", "a.off")
     assert code == 2 and "a.off is one object" in err
