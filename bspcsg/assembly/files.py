@@ -78,9 +78,7 @@ def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:
 class _Making:
     """The solids of one file: meshes that nodes share are shared by solids."""
 
-    def __init__(
-        self, path: str | os.PathLike[str], suffix: str, options: dict[str, Any]
-    ) -> None:
+    def __init__(self, path: str | os.PathLike[str], suffix: str, options: dict[str, Any]) -> None:
         self._path = path
         self._suffix = suffix
         self._options = options

@@ -431,6 +431,14 @@ def is_among(path: Path, others: Iterable[Path]) -> bool:
     return any(path.exists() and other.exists() and path.samefile(other) for other in others)
 
 
+def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -> None:
+    """Refuse to write the parts of a file over files that are read."""
+    for number, where in enumerate(targets, 1):
+        if not is_dropped(where) and is_among(where, inputs):
+            message = f"part {number} of {shown(file)} would be written to {where}, which is an"
+            raise click.UsageError(f"{message} input, too.")
+
+
 def shown(path: Path) -> str:
     """Return what to call a file in messages."""
     return "-" if str(path) == STREAM else str(path)
