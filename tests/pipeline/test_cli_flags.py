@@ -205,6 +205,8 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
     "line",
     [
         "compare a.off c.stl --tol nan",
+        "compare a.off c.stl --samples 99999999999999999999",
+        "validate a.off c.stl --samples 99999999999999999999",
         "repair a.off -o x.ply --timeout nan",
         "repair a.off -o x.ply --timeout inf",
         "repair a.off -o x.ply --timeout 1e10",
