@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .._types import BoolArray
-from ..errors import BspcsgError, Finding, invalid_parameter, missing_part
+from ..errors import BspcsgError, Finding, InvalidMeshError, invalid_parameter, missing_part
 from ..formats.raw import RawMesh
 from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
@@ -23,6 +23,9 @@ STEPS = ("weld", "dedup", "split", "orient", "fill")
 
 _CHILD = Path(__file__).with_name("child.py")
 _MISSING = 6
+
+#: pymeshlab counts edges in 32 bits; no mesh has a larger hole.
+_LARGEST_HOLE = 2**31 - 1
 
 #: Most names that are told.
 _TOLD = 4
@@ -77,6 +80,8 @@ def repair(
     Raises
     ------
     InvalidMeshError
+        If there is no triangle.
+    InvalidParameterError
         If a step is unknown.
     MissingPartError
         If pymeshlab, or a system library it needs, is missing.
@@ -87,8 +92,11 @@ def repair(
     if unknown:
         message = f"Unknown step {sorted(unknown)[0]!r}; one of {', '.join(STEPS)}."
         raise invalid_parameter(message)
+    if len(raw.faces) == 0:
+        message = f"{raw.name or 'the mesh'}: there is no triangle in it, so nothing is repaired."
+        raise InvalidMeshError(message, "empty_mesh")
     ordered = [step for step in STEPS if step in steps]
-    settings = {"steps": ordered, "weld": weld, "max_hole": max_hole}
+    settings = {"steps": ordered, "weld": weld, "max_hole": min(max_hole, _LARGEST_HOLE)}
     with tempfile.TemporaryDirectory() as folder:
         np.savez(
             Path(folder) / "mesh.npz",

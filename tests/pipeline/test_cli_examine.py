@@ -180,6 +180,13 @@ def test_repair(folder: Path, capsys: Capture) -> None:
     assert b.load("closed.off").volume_exact == 8
 
 
+def test_nothing_is_not_repaired(folder: Path, capsys: Capture) -> None:
+    Path("none.off").write_text("OFF\n0 0 0\n")
+    code, out, err = ran(capsys, "repair", "none.off", "-o", "x.off")
+    assert (code, out) == (4, "") and not Path("x.off").exists()
+    assert err == "bspcsg: error: none.off: there is nothing in it, so nothing was written.\n"
+
+
 def test_repair_tells_what_it_loses(folder: Path, capsys: Capture) -> None:
     vertices, faces = joined(cube(), moved(cube(), (3, 0, 0)))
     said = Attributes(faces, corner={"color": np.full((24, 3, 4), 0.5)})

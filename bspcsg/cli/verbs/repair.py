@@ -94,6 +94,9 @@ class _Repairing:
         raw = self._inputs.raw(self._file)
         limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
         self._inputs.tell(self._file, raw.findings)
+        if len(raw.faces) == 0:
+            message = f"{shown(self._file)}: there is nothing in it, so nothing was written."
+            raise output.EmptyResultError(message, "empty_result")
         before = diagnose(raw)
         made = repaired(raw, steps, **limits)
         after = diagnose(self._target.rounded(made.mesh)[0])
