@@ -14,7 +14,7 @@ from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
 from ..formats import single
 from ..formats.atomic import write_file
-from ..formats.files import form_of, read, write
+from ..formats.files import form_of, read_as, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
 from ..formats.registry import Form
@@ -46,12 +46,16 @@ _BYTE = 255
 
 def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
     """Read an assembly (see `Assembly.load`)."""
-    suffix = Path(file_path(path)).suffix.lower()
+    return load_as(path, Path(file_path(path)).suffix.lower(), **options)
+
+
+def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assembly:
+    """Read an assembly as what a suffix names, whatever the file's own suffix."""
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:
-        return _Making(path, options).assembly(_scene(path, suffix))
-    raw = read(path)
+        return _Making(path, suffix, options).assembly(_scene(path, suffix))
+    raw = read_as(path, suffix)
     start, children = 0, []
     for name, faces in parts_of(raw):
         rows = np.arange(start, start + len(faces))
@@ -74,8 +78,9 @@ def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:
 class _Making:
     """The solids of one file: meshes that nodes share are shared by solids."""
 
-    def __init__(self, path: str | os.PathLike[str], options: dict[str, Any]) -> None:
+    def __init__(self, path: str | os.PathLike[str], suffix: str, options: dict[str, Any]) -> None:
         self._path = path
+        self._suffix = suffix
         self._options = options
         self._solids: dict[int, Solid] = {}
 
@@ -83,7 +88,7 @@ class _Making:
         """Return the tree; a file of nothing but what is passed by is refused as a mesh is."""
         made = self._node(root) or Assembly(root.name)
         if not made.parts:
-            solid_of(read(self._path), self._path, **self._options)
+            solid_of(read_as(self._path, self._suffix), self._path, **self._options)
         return made
 
     def _node(self, node: SceneNode) -> Assembly | None:

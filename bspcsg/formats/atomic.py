@@ -47,7 +47,7 @@ def write_file(
     # A link stays a link: what it points to is replaced.
     target = Path(os.path.realpath(name))
     with _writing(name):
-        _check_target(target)
+        _check_target(name)
         part = target.with_name(f".{target.name[:_KEPT]}.{os.urandom(4).hex()}.part")
         _write_new(part, target, chunks, prove)
 
@@ -56,7 +56,7 @@ def refuse_target(path: str | os.PathLike[str]) -> None:
     """Raise a `FormatError` where no file can be, or where something else is than a file."""
     name = file_path(path)
     with _writing(name):
-        _check_target(Path(os.path.realpath(name)))
+        _check_target(name)
 
 
 @contextlib.contextmanager
@@ -76,13 +76,16 @@ def _drop(chunks: Iterable[bytes], prove: Proof | None) -> None:
         prove(io.BytesIO(data))
 
 
-def _check_target(target: Path) -> None:
-    if target.is_dir():
+def _check_target(name: str) -> None:
+    # Not the real path, which names nothing where this is an open pipe, as /dev/stdout may be.
+    path = Path(name)
+    if path.is_dir():
         raise IsADirectoryError(21, "it is a folder")
-    if target.exists() and not target.is_file():
+    if path.exists() and not path.is_file():
         raise OSError(22, "it is no ordinary file")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(2, f"there is no folder {target.parent}")
+    folder = Path(os.path.realpath(name)).parent
+    if not folder.is_dir():
+        raise FileNotFoundError(2, f"there is no folder {folder}")
 
 
 #: Bytes that are gathered before they are written: fewer take longer each, and chunks of more go

@@ -19,7 +19,7 @@ from ..mesh.certificate import Certificate, Precision
 from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
 from ..solid.counting import uncounted
-from ..solid.measure import overlap_of
+from ..solid.measure import overlaps_of
 from ..solid.solid import Solid
 
 #: Most places that a finding keeps.
@@ -104,7 +104,13 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
     findings = [*raw.findings, *_edge_findings(mesh, edges), *_face_findings(mesh, edges)]
     solid, verdict = _as_solid(raw, findings)
     # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
-    overlapping = _overlaps(solid, findings) if solid is not None and verdict == "solid" else None
+    overlapping = None
+    if solid is not None and verdict == "solid":
+        overlaps = _overlaps(solid)
+        codes = {found.code for found in overlaps}
+        overlapping = "self_overlap" in codes
+        verdict = "inside out" if "inside_out" in codes else verdict
+        findings += overlaps
     proof = None if solid is None else _proof(solid, findings)
     return Diagnosis(
         triangles=len(raw.faces),
@@ -265,14 +271,12 @@ def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]
     return solid, "inside out" if inverted else "solid"
 
 
-def _overlaps(solid: Solid, findings: list[Finding]) -> bool:
-    """Return whether faces cross, overlap or repeat, and add a finding if they do."""
-    found = overlap_of(solid)
-    if found is None:
-        return False
-    places = solid.to_mesh().source[list(found.where), 1]
-    findings.append(replace(found, where=_few(places)))
-    return True
+def _overlaps(solid: Solid) -> list[Finding]:
+    """Return the findings about bodies left out, and faces that cross, overlap or repeat."""
+    source = solid.to_mesh().source
+    return [
+        replace(found, where=_few(source[list(found.where), 1])) for found in overlaps_of(solid)
+    ]
 
 
 def _proof(solid: Solid, findings: list[Finding]) -> Certificate:

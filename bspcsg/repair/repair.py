@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from .._types import BoolArray
-from ..errors import BspcsgError, invalid_parameter, missing_part
+from ..errors import BspcsgError, Finding, InvalidMeshError, invalid_parameter, missing_part
 from ..formats.raw import RawMesh
 from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
@@ -23,6 +23,12 @@ STEPS = ("weld", "dedup", "split", "orient", "fill")
 
 _CHILD = Path(__file__).with_name("child.py")
 _MISSING = 6
+
+#: pymeshlab counts edges in 32 bits; no mesh has a larger hole.
+_LARGEST_HOLE = 2**31 - 1
+
+#: Most names that are told.
+_TOLD = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,11 +42,14 @@ class Repair:
         Steps that could not be taken, and why.
     turned : int
         The number of triangles turned round because they faced inwards.
+    lost : tuple of Finding
+        The names and attributes that are gone: no triangle is known by where it came from.
     """
 
     mesh: RawMesh
     failed: dict[str, str]
     turned: int
+    lost: tuple[Finding, ...] = ()
 
 
 def repair(
@@ -52,6 +61,8 @@ def repair(
     timeout: float | None = None,
 ) -> Repair:
     """Return a mesh with duplicates dropped, faces oriented and holes filled.
+
+    The names of several objects and all attributes are left out, and told as lost.
 
     Parameters
     ----------
@@ -69,6 +80,8 @@ def repair(
     Raises
     ------
     InvalidMeshError
+        If there is no triangle.
+    InvalidParameterError
         If a step is unknown.
     MissingPartError
         If pymeshlab, or a system library it needs, is missing.
@@ -79,8 +92,11 @@ def repair(
     if unknown:
         message = f"Unknown step {sorted(unknown)[0]!r}; one of {', '.join(STEPS)}."
         raise invalid_parameter(message)
+    if len(raw.faces) == 0:
+        message = f"{raw.name or 'the mesh'}: there is no triangle in it, so nothing is repaired."
+        raise InvalidMeshError(message, "empty_mesh")
     ordered = [step for step in STEPS if step in steps]
-    settings = {"steps": ordered, "weld": weld, "max_hole": max_hole}
+    settings = {"steps": ordered, "weld": weld, "max_hole": min(max_hole, _LARGEST_HOLE)}
     with tempfile.TemporaryDirectory() as folder:
         np.savez(
             Path(folder) / "mesh.npz",
@@ -98,8 +114,27 @@ def repair(
         faces[inward] = faces[inward][:, ::-1]
     # What was split to be oriented and closed is joined again: equal points are one vertex.
     points, same = welded(vertices[faces].reshape(-1, 3))
-    mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), (), raw.unit)
-    return Repair(mesh, failed, turned)
+    called = tuple((name, len(faces)) for name, _ in raw.objects) if len(raw.objects) == 1 else ()
+    mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), called, raw.unit)
+    return Repair(mesh, failed, turned, _lost(raw))
+
+
+def _lost(raw: RawMesh) -> tuple[Finding, ...]:
+    """Return the findings about what a repair does not keep of a mesh."""
+    objects = [name for name, _ in raw.objects if name] if len(raw.objects) > 1 else []
+    attributes = () if raw.attributes is None else raw.attributes.names
+    kinds = (
+        ("names_left_out", "names of objects", dict.fromkeys(objects)),
+        ("attributes_left_out", "attributes", attributes),
+    )
+    found = []
+    for code, kind, names in kinds:
+        if names:
+            told = ", ".join(f"“{name}”" for name in list(names)[:_TOLD])
+            more = f" and {len(names) - _TOLD} more" if len(names) > _TOLD else ""
+            message = f"repairing keeps no {kind}: {told}{more} were left out."
+            found.append(Finding(code, "warning", message, (), len(names)))
+    return tuple(found)
 
 
 def _asked(folder: Path, timeout: float | None) -> dict[str, str]:

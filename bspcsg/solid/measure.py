@@ -6,11 +6,14 @@ from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any, Self
 
+import numpy as np
+
 from .._core import Tree
 from .._types import FloatArray, IndexArray, SideArray
 from ..errors import Finding, core_errors
 from ..mesh import interop
-from ..mesh.mesh import Mesh
+from ..mesh.boxes import boxes_of
+from ..mesh.mesh import Mesh, surfaces_of
 from ..parameters import at_least
 from .sides import sides_of
 
@@ -22,6 +25,9 @@ LONGEST_VOLUME = 200_000
 
 #: No machine holds a number of more digits; the core counts its bits in 64.
 _MOST_DIGITS = 10**15
+
+#: Volumes below this part of what they are summed from may be rounding.
+_ROUNDING = 1e-9
 
 #: Most places that a finding names.
 _PLACES = 8
@@ -88,10 +94,10 @@ class Measured(ABC):
         # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
         if not self.is_bounded or {"inside_out", "self_overlap"} & {one.code for one in told}:
             return told
-        more = overlap_of(self)
-        if more is None and "crossing" not in {one.code for one in told}:
-            more = _crossing_of(self)
-        return told if more is None else (*told, more)
+        more = overlaps_of(self)
+        if not more and "crossing" not in {one.code for one in told}:
+            more = _crossings_of(self)
+        return (*told, *more)
 
     @property
     def pitch(self) -> int:
@@ -274,16 +280,19 @@ def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
     )
 
 
-def overlap_of(solid: Measured) -> Finding | None:
+def overlaps_of(solid: Measured) -> tuple[Finding, ...]:
     """Return what is to be said of a solid whose mesh is not its boundary.
 
     Inputs that nobody has vouched for are united with themselves for this, once.
     """
     reduced = solid.normalized()
     if solid.tree.simple is not False:
-        return None
+        return ()
     mesh = solid.to_mesh()
+    turned = _turned_shells(mesh, reduced)
     crossing = _crossing_faces(mesh)
+    if turned and not crossing:
+        return turned
     message = (
         f"faces cross, overlap, touch or lie inside: {len(mesh.faces)} triangles, where the"
         f" boundary of the solid has {len(reduced.to_mesh().faces)}"
@@ -293,20 +302,46 @@ def overlap_of(solid: Measured) -> Finding | None:
             f"; {len(crossing)} cross or overlap others, the first near {_near(mesh, crossing)}"
         )
     where = tuple(crossing[:_PLACES])
-    return Finding("self_overlap", "warning", message, where, max(1, len(crossing)))
+    overlap = Finding("self_overlap", "warning", message, where, max(1, len(crossing)))
+    return (*turned, overlap)
 
 
-def _crossing_of(solid: Measured) -> Finding | None:
+def _turned_shells(mesh: Mesh, reduced: Measured) -> tuple[Finding, ...]:
+    """Return what is to be said of bodies that face inwards and so are left out of the solid.
+
+    The walls of cavities face inwards, too, but lie on the boundary of the solid.
+    """
+    owner = surfaces_of(mesh.faces, len(mesh.vertices))
+    corners = mesh.vertices[mesh.faces]
+    middle = boxes_of(corners, owner).mean(axis=1)[owner]
+    a, b, c = (corners[:, k] - middle for k in range(3))
+    parts = np.einsum("ij,ij->i", np.cross(a, b), c)
+    is_turned = np.bincount(owner, parts) < -_ROUNDING * np.bincount(owner, np.abs(parts))
+    if not is_turned.any():
+        return ()
+    faces = np.flatnonzero(is_turned[owner])
+    is_kept = sides_of(corners[faces].reshape(-1, 3), reduced.tree).reshape(-1, 3) >= 0
+    is_turned[owner[faces[is_kept.any(axis=1)]]] = False
+    shells, first = np.unique(owner, return_index=True)
+    found = first[is_turned[shells]].tolist()
+    if not found:
+        return ()
+    many = "1 body is" if len(found) == 1 else f"{len(found)} bodies are"
+    message = f"{many} inside out, and left out of the solid; the first near {_near(mesh, found)}"
+    return (Finding("inside_out", "warning", message, tuple(found[:_PLACES]), len(found)),)
+
+
+def _crossings_of(solid: Measured) -> tuple[Finding, ...]:
     """Return what is to be said of a mesh that crosses itself, though not on the lattice."""
     mesh = solid.to_mesh()
     crossing = _crossing_faces(mesh)
     if not crossing:
-        return None
+        return ()
     message = (
         "these triangles of inputs cross or overlap others by less than a step of the lattice; the"
         f" first near {_near(mesh, crossing)}"
     )
-    return Finding("crossing", "warning", message, tuple(crossing[:_PLACES]), len(crossing))
+    return (Finding("crossing", "warning", message, tuple(crossing[:_PLACES]), len(crossing)),)
 
 
 def _crossing_faces(mesh: Mesh) -> list[int]:

@@ -4,9 +4,11 @@ import json
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg.attributes.attributes import Attributes
 from bspcsg.io import RawMesh, write
 from support.cli import Capture, put, ran
 from support.shapes import cube, cuboid, flipped, joined, moved
@@ -176,6 +178,36 @@ def test_repair(folder: Path, capsys: Capture) -> None:
     rows = {line.strip().split("  ")[0]: line.split()[-2:] for line in out.splitlines()}
     assert rows["triangles"] == ["11", "12"] and rows["open edges"] == ["3", "0"]
     assert b.load("closed.off").volume_exact == 8
+
+
+def test_nothing_is_not_repaired(folder: Path, capsys: Capture) -> None:
+    Path("none.off").write_text("OFF\n0 0 0\n")
+    code, out, err = ran(capsys, "repair", "none.off", "-o", "x.off")
+    assert (code, out) == (4, "") and not Path("x.off").exists()
+    assert err == "bspcsg: error: none.off: there is nothing in it, so nothing was written.\n"
+
+
+def test_repair_tells_what_it_loses(folder: Path, capsys: Capture) -> None:
+    vertices, faces = joined(cube(), moved(cube(), (3, 0, 0)))
+    said = Attributes(faces, corner={"color": np.full((24, 3, 4), 0.5)})
+    objects = (("lid", 12), ("body", 12))
+    write(RawMesh(vertices, faces, objects=objects, attributes=said), "two.3mf")
+    code, out, err = ran(capsys, "repair", "two.3mf", "-o", "x.3mf", "--json")
+    assert code == 0 and "“lid”, “body” were left out" in err and "“color”" in err
+    codes = [finding["code"] for finding in json.loads(out)["findings"]]
+    assert codes == ["names_left_out", "attributes_left_out"]
+    write(RawMesh(cube()[0], cube()[1][1:], objects=(("lid", 11),)), "open.3mf")
+    code, _, err = ran(capsys, "repair", "open.3mf", "-o", "x.3mf")
+    assert (code, err) == (0, "") and b.io.read("x.3mf").objects == (("lid", 12),)
+
+
+def test_repairs_of_inputs_tell_what_they_lose(folder: Path, capsys: Capture) -> None:
+    vertices, faces = cube()
+    said = Attributes(faces[1:], vertex={"color": np.full((8, 4), 0.5)})
+    write(RawMesh(vertices, faces[1:], attributes=said), "open.ply")
+    arguments = ("union", "open.ply", "a.off", "-o", "x.ply", "--on-invalid", "repair")
+    code, _, err = ran(capsys, *arguments)
+    assert code == 0 and "“color” were left out" in err
 
 
 def test_repair_as_json(folder: Path, capsys: Capture) -> None:

@@ -51,6 +51,21 @@ def test_invalid_files_are_refused_with_what_to_type(opened: Path, capsys: Captu
 
 
 @pytest.mark.parametrize(
+    "arguments",
+    [
+        ["convert", "open.off", "-o", "x.off", "--simplify", "0.1mm"],
+        ["render", "open.off", "-o", "x.svg", "--section", "0,0,1,0.5"],
+    ],
+)
+def test_advice_names_only_options_of_the_verb(
+    opened: Path, capsys: Capture, arguments: list[str]
+) -> None:
+    code, _, err = ran(capsys, *arguments)
+    assert code == 4 and "open.off: the mesh is not closed" in err
+    assert "Try: bspcsg repair open.off" in err and "--on-invalid" not in err
+
+
+@pytest.mark.parametrize(
     ("arguments", "volume"),
     [
         (["union", "a.off", "open.off"], 8),
@@ -190,6 +205,8 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
     "line",
     [
         "compare a.off c.stl --tol nan",
+        "compare a.off c.stl --samples 99999999999999999999",
+        "validate a.off c.stl --samples 99999999999999999999",
         "repair a.off -o x.ply --timeout nan",
         "repair a.off -o x.ply --timeout inf",
         "repair a.off -o x.ply --timeout 1e10",

@@ -54,6 +54,18 @@ def test_parts_of_several_files(folder: Path, capsys: Capture) -> None:
     assert code == 0 and [part["volume"] for part in document["parts"]] == [8, 1]
 
 
+def test_parts_do_not_replace_inputs(folder: Path, capsys: Capture) -> None:
+    put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
+    put("two-2.off", cuboid((0, 0, 0), (3, 1, 1)))
+    code, out, err = ran(capsys, "explode", "two.off", "two-2.off", "-o", "%.off")
+    assert (code, out) == (2, "") and not Path("two-1.off").exists()
+    assert "part 2 of two.off would be written to two-2.off, which is an input, too." in err
+    code, out, err = ran(capsys, "split", "two-2.off", "-o", "two-%.off", "--plane", "x,1")
+    assert (code, out) == (2, "") and not Path("two-1.off").exists()
+    assert "part 2 of two-2.off would be written to two-2.off, which is an input, too." in err
+    assert b.load("two-2.off").volume == 3
+
+
 def test_nothing_is_written_if_a_file_has_no_parts(folder: Path, capsys: Capture) -> None:
     Path("none.off").write_text("OFF\n0 0 0\n")
     code, out, err = ran(capsys, "explode", "a.off", "none.off", "-o", "x-%.stl")
@@ -112,6 +124,18 @@ def test_parts_of_one_script_are_in_each_others_way(folder: Path, capsys: Captur
     Path("two.csg").write_text("cube(2); multmatrix([[1,0,0,1],[0,1,0,0],[0,0,1,0]]) cube(2);")
     code, out, _ = ran(capsys, "clash", "two.csg")
     assert code == 1 and "1 pair of objects, 1 in each other's way" in out
+
+
+@pytest.mark.parametrize("suffix", ["3mf", "glb", "obj", "csg"])
+def test_objects_of_one_file_of_another_name_clash(
+    suffix: str, folder: Path, capsys: Capture
+) -> None:
+    boxes().save(f"all.{suffix}")
+    Path(f"all.{suffix}").rename("all.part")
+    code, out, err = ran(capsys, "clash", "all.part", "--from", suffix)
+    assert (code, err) == (1, "") and "3 pairs of objects, 1 in each other's way" in out
+    code, _, err = ran(capsys, "clash", "all.part", "--from", "json")
+    assert code == 2 and "ending in .json" in err
 
 
 def test_one_object_cannot_clash(folder: Path, capsys: Capture) -> None:

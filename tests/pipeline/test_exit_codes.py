@@ -51,6 +51,7 @@ CODES = {
         "report results.jsonl -o x.html",
         "view a.off -o x.html --no-open",
         "lecture -o x.html",
+        "lecture -o /dev/null",
         "tree good.csg",
         "bench --list",
         "doctor",

@@ -160,3 +160,10 @@ def test_points_on_the_axis_of_a_fitted_perspective_are_in_the_picture(points: A
     image, depth = camera.project(points)
     assert depth.min() > 0
     assert np.abs(image / (4 / 3, 1)).max() <= 1
+
+
+@pytest.mark.filterwarnings("error")
+def test_eyes_very_far_away_see_which_faces_are_turned_to_them() -> None:
+    camera = bsp.Camera.perspective((1e300, 0, 0), (0, 0, 0))
+    cosines = camera.facing(np.zeros((2, 3)), np.array([(1.0, 0, 0), (0, 1.0, 0)]))
+    assert cosines.tolist() == [1, 0]

@@ -97,6 +97,30 @@ def test_inside_out() -> None:
     assert (found.signed_volume, found.volume) == (-1.0, 0.0)
 
 
+def test_one_body_inside_out() -> None:
+    sound = cuboid((-1, -1, -1), (2, 2, 2))
+    found = diagnose(RawMesh(*joined(sound, moved(flipped(cube()), (5, 0, 0)))))
+    assert found.verdict == "inside out" and not found.is_solid
+    assert (found.volume, found.self_overlapping) == (27.0, False)
+    (finding,) = found.findings
+    assert (finding.code, finding.where, finding.count) == ("inside_out", (12,), 1)
+    assert "1 body is inside out" in finding.message
+
+
+def test_bodies_inside_out_that_overlap_others() -> None:
+    sound = cuboid((-1, -1, -1), (2, 2, 2))
+    parts = (sound, moved(cube(), (1.5, 0, 0)), moved(flipped(cube()), (5, 0, 0)))
+    found = diagnose(RawMesh(*joined(*parts)))
+    assert {finding.code for finding in found.findings} == {"inside_out", "self_overlap"}
+    assert found.verdict == "inside out" and found.self_overlapping is True
+
+
+def test_cavities_of_bodies_that_overlap_are_not_inside_out() -> None:
+    hollow = joined(cuboid((-1, -1, -1), (2, 2, 2)), flipped(cube()))
+    found = diagnose(RawMesh(*joined(hollow, moved(hollow, (2, 0, 0)))))
+    assert found.verdict == "solid" and found.self_overlapping is True
+
+
 def test_measures() -> None:
     found = diagnose(RawMesh(*joined(cube(), moved(cube(), (0.5, 0.5, 0.5)))))
     assert (found.signed_volume, found.volume, found.surfaces) == (2.0, 1.875, 2)

@@ -189,3 +189,14 @@ def test_real_files(shared_meshes: Path) -> None:
         raw = read(shared_meshes / row["file"])
         found = len(raw.vertices), len(raw.faces)
         assert found == (int(row["n_vertices"]), int(row["n_triangles"])), row["file"]
+
+
+@pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="needs names of open files")
+def test_open_pipes_are_no_ordinary_files() -> None:
+    read_end, write_end = os.pipe()
+    try:
+        with pytest.raises(FormatError, match="it is no ordinary file"):
+            write_file(f"/dev/fd/{write_end}", [b"x"])
+    finally:
+        os.close(read_end)
+        os.close(write_end)

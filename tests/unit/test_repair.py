@@ -55,6 +55,17 @@ def test_duplicates_and_flat_triangles_go() -> None:
     assert len(made.mesh.faces) == 12 and diagnose(made.mesh).is_solid
 
 
+def test_nothing_cannot_be_repaired() -> None:
+    with pytest.raises(InvalidMeshError, match=r"scan: there is no triangle in it") as caught:
+        repair(RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64), "scan"))
+    assert caught.value.code == "empty_mesh"
+
+
+def test_holes_may_be_of_any_size() -> None:
+    vertices, faces = cube(2)
+    assert diagnose(repair(RawMesh(vertices, faces[1:]), max_hole=2**40).mesh).is_solid
+
+
 def test_sound_meshes_stay_as_they_are() -> None:
     made = repair(RawMesh(*icosphere(2)))
     assert (len(made.mesh.faces), made.failed, made.turned) == (320, {}, 0)

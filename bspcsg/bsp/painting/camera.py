@@ -233,6 +233,8 @@ class Camera:
         if not self.is_perspective:
             return -normals @ self.direction
         arms = self.origin - corners
+        # The squares of very long ones would not be doubles; powers of two change no cosine.
+        arms = np.ldexp(arms, -np.frexp(np.abs(arms).max(initial=0))[1])
         lengths = np.linalg.norm(arms, axis=1)
         cosines: FloatArray = np.einsum("ij,ij->i", arms, normals) / np.where(
             lengths > 0, lengths, 1

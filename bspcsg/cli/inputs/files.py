@@ -49,8 +49,8 @@ class Inputs:
         The unit of files that do not say; None if the user has not said either.
     winding : str
     pitch : int or None
-    on_invalid : {"error", "warn", "repair"}
-        The treatment of a file that is not closed.
+    on_invalid : {"error", "warn", "repair"} or None
+        The treatment of a file that is not closed; None if the verb leaves no choice.
     noticed : list of Finding
         The findings about the solids so far, which results repeat.
     objects : ObjectNames
@@ -62,7 +62,7 @@ class Inputs:
     unit: str | None = None
     winding: Any = "positive"
     pitch: int | None = None
-    on_invalid: str = "error"
+    on_invalid: str | None = None
     noticed: list[Finding] = field(default_factory=list)
     objects: ObjectNames = field(default_factory=ObjectNames)
 
@@ -183,7 +183,8 @@ class Inputs:
                 raise
             if self.on_invalid == "repair":
                 return self._repaired(raw, path)
-            message = f"{error.message}\n  Try: {repair_command(path)}\n{ON_INVALID}"
+            message = f"{error.message}\n  Try: {repair_command(path)}"
+            message += f"\n{ON_INVALID}" if self.on_invalid is not None else ""
             raise InvalidMeshError(message, error.code, error.where) from error
 
     def _solid_of(self, raw: "RawMesh", path: Path) -> "Solid":
@@ -213,6 +214,7 @@ class Inputs:
         counts = f"{counted(len(raw.faces), 'triangle')} became {len(made.mesh.faces)}"
         turned = f", {made.turned} of them turned round" if made.turned else ""
         self.out.warning(f"{shown(path)} was not closed and is repaired: {counts}{turned}.")
+        self.tell(path, made.lost)
         return solid
 
     def tell(self, path: Path, findings: Sequence[Finding]) -> None:
@@ -427,6 +429,14 @@ def is_dropped(path: Path) -> bool:
 def is_among(path: Path, others: Iterable[Path]) -> bool:
     """Say whether a file is there and one of others, by whatever name."""
     return any(path.exists() and other.exists() and path.samefile(other) for other in others)
+
+
+def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -> None:
+    """Refuse to write the parts of a file over files that are read."""
+    for number, where in enumerate(targets, 1):
+        if not is_dropped(where) and is_among(where, inputs):
+            message = f"part {number} of {shown(file)} would be written to {where}, which is an"
+            raise click.UsageError(f"{message} input, too.")
 
 
 def shown(path: Path) -> str:

@@ -33,6 +33,9 @@ class FiniteRange(click.FloatRange):
 
 SECONDS = FiniteRange(0, MOST_SECONDS, min_open=True)
 
+#: Numbers of points to measure distances from; ten million take some seconds and a gigabyte.
+SAMPLES = click.IntRange(0, 10_000_000)
+
 _THREADS = click.option(
     "-j",
     "--jobs",

@@ -73,17 +73,21 @@ def _files(inputs: Inputs, files: "Sequence[Path]") -> "Assembly":
 
 def _objects(inputs: Inputs, path: Path) -> "Assembly":
     """Return what is in one file."""
-    from ...assembly.tree import Assembly
+    from ...assembly.files import load_as
     from ...formats.registry import FORMATS
 
     if str(path) == STREAM or path.suffix.lower() == ".py" or inputs.on_invalid != "error":
         raise click.UsageError(f"clash needs at least two files{_ONE}")
     is_script = inputs.is_script(path)
     options = {} if is_script else {"winding": inputs.winding, "pitch": inputs.pitch}
-    whole = Assembly.load(path, **options)
+    suffix = inputs.suffix_of(path)
+    if suffix == ".json" and path.suffix.lower() != suffix:
+        message = f"{shown(path)}: clash reads one script in JSON by its name, ending in .json."
+        raise click.UsageError(message)
+    whole = load_as(path, suffix, **options)
     if len(whole) < 2:
         raise click.UsageError(f"{shown(path)} is one object; clash needs two files{_ONE}")
-    says_unit = not is_script and FORMATS[inputs.suffix_of(path)].unit
+    says_unit = not is_script and FORMATS[suffix].unit
     return whole if inputs.unit is None or says_unit else whole.scale(MILLIMETRES[inputs.unit])
 
 

@@ -10,7 +10,7 @@ from ..console.output import Output, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, shown
 from ..options.patterns import file_argument
-from ..options.shared import FiniteRange, common, reading, sets
+from ..options.shared import SAMPLES, FiniteRange, common, reading, sets
 from ..pages.written import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ Examples:
 @click.option(
     "--samples",
     metavar="N",
-    type=click.IntRange(min=0),
+    type=SAMPLES,
     default=10_000,
     help="Points on the difference to measure distances from; 0 for none.",
 )

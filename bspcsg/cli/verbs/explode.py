@@ -7,7 +7,7 @@ import click
 
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import Inputs, Target, expanded, is_dropped, shown
+from ..inputs.files import Inputs, Target, expanded, is_dropped, refuse_inputs, shown
 from ..job import mesh_values, summary
 from ..options.patterns import files_argument
 from ..options.shared import PATH, common, reading, sets, writing
@@ -66,6 +66,9 @@ class _Exploding:
         set_threads(self._settings["threads"])
         self._refuse_early()
         parts = [self._parts(path) for path in self._files]
+        for path, meshes in zip(self._files, parts, strict=True):
+            targets = (self._target(path, number).path for number in range(1, len(meshes) + 1))
+            refuse_inputs(path, targets, self._files)
         documents = [
             self._write(path, number, mesh)
             for path, meshes in zip(self._files, parts, strict=True)

@@ -5,18 +5,16 @@ from typing import Any
 
 import click
 
-from ...errors import FormatError
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import refuse_folder, shown
+from ..inputs.files import shown
 from ..options.shared import common
+from ..pages.written import refuse_page, write_page
 
 _EPILOG = """\b
 Example:
   bspcsg lecture -o lecture.html
 """
-
-_SUFFIXES = (".html", ".htm")
 
 
 @click.command(
@@ -38,16 +36,11 @@ def lecture(target: Path, **given: Any) -> int:
     It needs no network: the figures call the core of bspcsg, compiled to WebAssembly, in the page.
     Open it in a browser.
     """
-    from ...formats.atomic import write_file
     from ...report.lecture.page import CHAPTERS, lecture_page
 
-    if target.suffix.lower() not in _SUFFIXES:
-        message = f"{shown(target)}: the name must end in .html."
-        raise FormatError(message, "unknown_format")
-    refuse_folder(target)
-    page = lecture_page().encode("utf-8")
-    write_file(target, [page])
+    refuse_page(target)
+    size = write_page(target, lecture_page())
     line = f"{shown(target)}  {len(CHAPTERS)} chapters"
-    document = {"output": str(target), "chapters": len(CHAPTERS), "bytes": len(page)}
+    document = {"output": str(target), "chapters": len(CHAPTERS), "bytes": size}
     Output.of(given).result(line, document)
     return output.DONE

@@ -66,7 +66,8 @@ def repair(file: Path, target: Path, **given: Any) -> int:
 
     The steps: weld joins vertices; dedup drops repeated and flat triangles; split takes edges with
     more than two triangles apart; orient turns triangles the same way round; fill closes holes.
-    The file is written even if it still is no solid; then the exit code is 1.
+    The file is written even if it still is no solid; then the exit code is 1. The names of several
+    objects and all attributes, such as colours, are lost, which is said.
     """
     return _Repairing(file, target, **given).run()
 
@@ -93,13 +94,17 @@ class _Repairing:
         raw = self._inputs.raw(self._file)
         limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
         self._inputs.tell(self._file, raw.findings)
+        if len(raw.faces) == 0:
+            message = f"{shown(self._file)}: there is nothing in it, so nothing was written."
+            raise output.EmptyResultError(message, "empty_result")
         before = diagnose(raw)
         made = repaired(raw, steps, **limits)
         after = diagnose(self._target.rounded(made.mesh)[0])
         lost = self._target.write(made.mesh)
+        self._inputs.tell(self._file, made.lost)
         for finding in lost:
             self._out.finding(shown(self._target.path), finding)
-        self._tell(before, after, made, (*raw.findings, *lost))
+        self._tell(before, after, made, (*raw.findings, *made.lost, *lost))
         return output.DONE if after.is_solid else output.FOUND
 
     def _steps(self) -> list[str]:

@@ -9,7 +9,7 @@ import click
 from ...errors import Finding
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import Inputs, Target, expanded, shown
+from ..inputs.files import Inputs, Target, expanded, refuse_inputs, shown
 from ..job import mesh_values, summary
 from ..options.patterns import file_argument
 from ..options.shared import PATH, SIMPLIFY, check_depth, common, numbers, reading, sets, writing
@@ -84,9 +84,8 @@ class _Splitting:
         from ...parameters import set_threads
 
         set_threads(self._settings["threads"])
-        cutter = self._settings["cutter"]
         self._target("1").refuse_early()
-        self._inputs.refuse_early([self._file] + ([cutter] if cutter else []))
+        self._inputs.refuse_early(self._read())
         solid = self._inputs.solid(self._file)
         meshes, verdicts = self._parts(solid)
         if "subject failed" in verdicts:
@@ -94,6 +93,11 @@ class _Splitting:
             return output.FOUND
         self._write(meshes, verdicts)
         return output.FOUND if "DISAGREE" in verdicts else output.DONE
+
+    def _read(self) -> list[Path]:
+        """Return the files that are read."""
+        cutter = self._settings["cutter"]
+        return [self._file, cutter] if cutter else [self._file]
 
     def _parts(self, solid: "Solid") -> tuple[list["Mesh"], list[str]]:
         """Return the parts, and manifold3d's verdict on each if there is one."""
@@ -138,6 +142,8 @@ class _Splitting:
 
     def _write(self, meshes: list["Mesh"], verdicts: list[str]) -> None:
         documents = []
+        targets = (self._target(str(number)).path for number in range(1, len(meshes) + 1))
+        refuse_inputs(self._file, targets, self._read())
         for number, mesh in enumerate(meshes, 1):
             target = self._target(str(number))
             lost = target.write(mesh)

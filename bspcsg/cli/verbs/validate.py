@@ -25,7 +25,7 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import SECONDS, telling
+from ..options.shared import SAMPLES, SECONDS, telling
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
@@ -137,7 +137,7 @@ _FILE = click.Path(path_type=Path, readable=False)
 @click.option(
     "--samples",
     metavar="N",
-    type=click.IntRange(min=0),
+    type=SAMPLES,
     default=500,
     show_default=True,
     help="Points to measure distances from; 0 for none.",
