@@ -215,6 +215,8 @@ BAD: list[tuple[Callable[[], object], str, list[int]]] = [
     ),
     (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0]), "invalid_parameter", []),
     (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], [0, 0, 0]), "bad_normal", [0]),
+    (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], [0, 0, 9], max_t=0.5), "invalid_parameter", []),
+    (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], [0, 0, 9], max_t="x"), "invalid_parameter", []),
     (
         lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], directions=[0, 0, 1], max_t=np.nan),
         "invalid_parameter",
