@@ -131,3 +131,13 @@ def test_polish_keeps_what_is_no_rotation() -> None:
     assert bounds is not None
     assert bounds[1, 0] == pytest.approx(10.1)
     assert csg.loads("", polish=True).is_empty
+
+
+def test_polish_tells_a_warning_once() -> None:
+    near = 'cube([10, 10, 10.00001]); cube(9); import("no.stl");'
+    up = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]]) cube(10);"
+    told: list[csg.Polish] = []
+    with pytest.warns(csg.CsgWarning) as said:
+        csg.loads(near + up, polish=True, on_polish=told.append)
+    assert told[0].pitch == -4
+    assert len(said) == 1
