@@ -1,5 +1,7 @@
+import copy
 import math
 import os
+import pickle
 from pathlib import Path
 from typing import Any
 
@@ -118,6 +120,34 @@ def test_a_long_text_without_its_end_is_found_at_once() -> None:
 def test_vectors_do_not() -> None:
     with pytest.raises(FormatError, match="nested deeper than 64"):
         csg.parse("cube(" + "[" * DEEP)
+
+
+def test_deep_trees_are_values_as_others_are() -> None:
+    text = "group() {" * DEEP + "cube({}); cube(3);" + "}" * DEEP
+    one, same, other = (csg.parse(text.replace("{}", size)) for size in ("1", "1", "2"))
+    assert one == same and hash(one) == hash(same)
+    assert one != other and one.nodes[0] != other.nodes[0]
+    assert repr(one) == repr(same) != repr(other)
+    assert pickle.loads(pickle.dumps(one)) == one
+    assert copy.copy(one) == one == copy.deepcopy(one)
+
+
+def test_nodes_that_are_shared_stay_so() -> None:
+    node = Node("cube", (Argument(None, 1.0),))
+    for _ in range(60):
+        node = Node("union", (), (node, node))
+    again = pickle.loads(pickle.dumps(node))
+    assert again.children[0] is again.children[1]
+    assert again == node and hash(again) == hash(node)
+    assert Node("union", (), (node,)) != node
+
+
+def test_nodes_show_their_fields() -> None:
+    places = "place=Place(line=0, column=0)"
+    leaf = f"Node(name='cube', arguments=(), children=(), modifiers='#', {places})"
+    for count, inner in ((1, f"({leaf},)"), (2, f"({leaf}, {leaf})")):
+        shown = f"Node(name='union', arguments=(), children={inner}, modifiers='', {places})"
+        assert repr(Node("union", (), (Node("cube", modifiers="#"),) * count)) == shown
 
 
 def test_deep_trees_are_no_json() -> None:

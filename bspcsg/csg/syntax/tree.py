@@ -1,5 +1,6 @@
 """The tree that a script stands for: nodes with arguments and children, as plain values."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple, TypeAlias
@@ -54,9 +55,13 @@ class Argument:
         return hash((self.name, self.value))
 
 
-@dataclass(frozen=True, slots=True)
+#: A node with the numbers of its children.
+_Row: TypeAlias = tuple[str, tuple[Argument, ...], list[int], str, Place]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Node:
-    """A node: a primitive, a transform or an operation on its children.
+    """A node: a primitive, a transform or an operation on its children; trees may be any depth.
 
     Parameters
     ----------
@@ -81,6 +86,88 @@ class Node:
     def is_ignored(self) -> bool:
         """True if a modifier takes the node out of the model."""
         return "%" in self.modifiers or "*" in self.modifiers
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Node):
+            return NotImplemented
+        waiting, seen = [(self, other)], set()
+        while waiting:
+            a, b = waiting.pop()
+            if a is b or (id(a), id(b)) in seen:
+                continue
+            seen.add((id(a), id(b)))
+            if _head(a) != _head(b):
+                return False
+            waiting.extend(zip(a.children, b.children, strict=True))
+        return True
+
+    def __hash__(self) -> int:
+        made: dict[int, int] = {}
+        for node in _distinct(self):
+            made[id(node)] = hash((_head(node), tuple(made[id(child)] for child in node.children)))
+        return made[id(self)]
+
+    def __repr__(self) -> str:
+        """Show all fields, as dataclasses do."""
+        parts: list[str] = []
+        waiting: list[Node | str] = [self]
+        while waiting:
+            item = waiting.pop()
+            if isinstance(item, str):
+                parts.append(item)
+                continue
+            parts.append(f"Node(name={item.name!r}, arguments={item.arguments!r}, children=(")
+            end = "," if len(item.children) == 1 else ""
+            waiting.append(f"{end}), modifiers={item.modifiers!r}, place={item.place!r})")
+            for number, child in reversed(list(enumerate(item.children))):
+                waiting += [child, ", "] if number else [child]
+        return "".join(parts)
+
+    def __copy__(self) -> "Node":
+        """Return the node itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "Node":
+        """Return the node itself, which never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Callable[[list[_Row]], "Node"], tuple[list[_Row]]]:
+        """Pickle the nodes one after another, each after its children."""
+        nodes = _distinct(self)
+        numbers = {id(node): number for number, node in enumerate(nodes)}
+        return _planted, (
+            [
+                (n.name, n.arguments, [numbers[id(c)] for c in n.children], n.modifiers, n.place)
+                for n in nodes
+            ],
+        )
+
+
+def _head(node: Node) -> tuple[str, tuple[Argument, ...], str, int]:
+    """Return all that a node says, and how many children it has."""
+    return node.name, node.arguments, node.modifiers, len(node.children)
+
+
+def _distinct(root: Node) -> list[Node]:
+    """Return the nodes of a tree, each once and after its children."""
+    waiting: list[tuple[Node, bool]] = [(root, False)]
+    done: dict[int, Node] = {}
+    while waiting:
+        node, is_ready = waiting.pop()
+        if is_ready:
+            done.setdefault(id(node), node)
+        elif id(node) not in done:
+            waiting.append((node, True))
+            waiting.extend((child, False) for child in node.children)
+    return list(done.values())
+
+
+def _planted(rows: list[_Row]) -> Node:
+    """Return the node of the last row."""
+    made: list[Node] = []
+    for name, arguments, children, modifiers, place in rows:
+        made.append(Node(name, arguments, tuple(made[k] for k in children), modifiers, place))
+    return made[-1]
 
 
 @dataclass(frozen=True)
