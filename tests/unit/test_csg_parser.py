@@ -2,6 +2,8 @@ import copy
 import math
 import os
 import pickle
+from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from bspcsg import BspcsgError, FormatError, InvalidParameterError, csg
+from bspcsg import BspcsgError, FormatError, InvalidParameterError, Solid, csg
 from bspcsg.csg import Argument, CsgTree, Node
 
 DEEP = 100_000
@@ -312,6 +314,52 @@ def test_scad_takes_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     for one in wrong:
         with pytest.raises(InvalidParameterError, match=next(iter(one))):
             csg.read_scad(path, **one)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [[1, 2, 3], np.array([1, 2, 3]), [np.int64(1), Fraction(2), True + 2], ([1.0][0], 2, 3.0)],
+)
+def test_values_of_trees_made_by_hand_are_those_of_scripts(value: Any) -> None:
+    made = CsgTree([Node("cube", [Argument("size", value)])])  # type: ignore[arg-type]
+    read = csg.parse("cube(size = [1, 2, 3]);")
+    assert (
+        made == read
+        and hash(made) == hash(read)
+        and repr(made.nodes[0].arguments) == repr(read.nodes[0].arguments)
+    )
+    assert csg.parse(csg.dumps(made)) == csg.from_json(csg.to_json(made)) == made
+    solid = csg.evaluate(made)
+    assert isinstance(solid, Solid) and solid.volume == 6
+
+
+def deep_vector() -> object:
+    value: object = 1.0
+    for _ in range(65):
+        value = (value,)
+    return value
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Argument("size", object()),  # type: ignore[arg-type]
+        lambda: Argument("size", b"text"),  # type: ignore[arg-type]
+        lambda: Argument("size", 10**400),
+        lambda: Argument("size", deep_vector()),  # type: ignore[arg-type]
+        lambda: Argument("si ze", 1.0),
+        lambda: Argument("true", 1.0),
+        lambda: Node("cu be"),
+        lambda: Node(5),  # type: ignore[arg-type]
+        lambda: Node("cube", modifiers="x"),
+        lambda: Node("cube", (1,)),  # type: ignore[arg-type]
+        lambda: Node("union", (), Node("cube")),  # type: ignore[arg-type]
+        lambda: CsgTree("cube"),  # type: ignore[arg-type]
+    ],
+)
+def test_nodes_that_no_script_can_hold_are_refused(make: Callable[[], object]) -> None:
+    with pytest.raises(InvalidParameterError):
+        make()
 
 
 def test_numbers_of_numpy_are_written_as_numbers() -> None:

@@ -14,9 +14,7 @@ from typing import Any, TypeGuard
 
 from ...errors import FormatError
 from ...parameters import at_least, file_path, of_kind, text_value
-from .parser import DEEPEST_VECTOR, WORDS
-from .tokens import WORD
-from .tree import Argument, CsgTree, Node, Value
+from .tree import DEEPEST_VECTOR, WORDS, Argument, CsgTree, Node, Value, is_name
 
 FORMAT = "bspcsg-csg"
 VERSION = 1
@@ -106,7 +104,7 @@ def _nodes(data: Any, where: str, name: str, depth: int) -> tuple[Node, ...]:
 
 
 def _node(data: Any, where: str, name: str, depth: int) -> Node:
-    if not isinstance(data, dict) or not _is_name(data.get("node")):
+    if not isinstance(data, dict) or not is_name(data.get("node")):
         raise _wrong(name, where, "a node with a name")
     modifiers = data.get("modifiers", "")
     if not isinstance(modifiers, str) or set(modifiers) - set("#%!*"):
@@ -121,7 +119,7 @@ def _node(data: Any, where: str, name: str, depth: int) -> Node:
 
 def _argument(data: Any, where: str, name: str) -> Argument:
     named = data.get("name") if isinstance(data, dict) else None
-    if not isinstance(data, dict) or "value" not in data or not (named is None or _is_name(named)):
+    if not isinstance(data, dict) or "value" not in data or not (named is None or is_name(named)):
         raise _wrong(name, where, "an argument with a value")
     if named in WORDS:
         raise _wrong(name, f"{where}.name", f"a name, and {named} is a value")
@@ -155,11 +153,6 @@ def _double(number: int | float) -> float:
         return float(number)
     except OverflowError:
         return math.inf
-
-
-def _is_name(name: Any) -> bool:
-    match = WORD.fullmatch(name) if isinstance(name, str) else None
-    return match is not None and match.lastgroup == "name"
 
 
 def _wrong(name: str, where: str, expected: str) -> FormatError:

@@ -1,15 +1,37 @@
 """The tree that a script stands for: nodes with arguments and children, as plain values."""
 
+import math
+import re
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
+from numbers import Real
 from pathlib import Path
-from typing import NamedTuple, TypeAlias
+from types import NoneType
+from typing import Any, NamedTuple, TypeAlias, TypeGuard, TypeVar
 
-from ...errors import BspcsgError
+from ...errors import BspcsgError, invalid_parameter
+from ...parameters import shown
 from .intermediate import Intermediate
 
 #: An argument: a number, a text, true or false, undef (None), or a vector of values.
 Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
+
+#: Names that are values, so that no argument has them.
+WORDS: dict[str, Value] = {
+    "true": True,
+    "false": False,
+    "undef": None,
+    "inf": math.inf,
+    "nan": math.nan,
+}
+
+#: Deepest vector in a vector; OpenSCAD writes two, for matrices and paths.
+DEEPEST_VECTOR = 64
+
+_SCALAR = frozenset({float, str, bool, NoneType})
+_NAME = re.compile(r"\$?[A-Za-z_]\w*")
+_Part = TypeVar("_Part")
 
 
 class Place(NamedTuple):
@@ -25,6 +47,40 @@ NOWHERE = Place(0, 0)
 SPECIAL = ("$fn", "$fa", "$fs")
 
 
+def is_name(name: Any) -> TypeGuard[str]:
+    """Say whether it may be the name of a node or of an argument."""
+    return isinstance(name, str) and _NAME.fullmatch(name) is not None
+
+
+def _plain(value: Any, depth: int = 0) -> "Value":
+    """Return a value as trees hold it: numbers as doubles, vectors as tuples."""
+    if type(value) in _SCALAR:
+        return value  # type: ignore[no-any-return]
+    if hasattr(value, "tolist"):  # NumPy's
+        return _plain(value.tolist(), depth)
+    if isinstance(value, (tuple, list)) and depth < DEEPEST_VECTOR:
+        if isinstance(value, tuple) and _SCALAR.issuperset(map(type, value)):
+            return value
+        return tuple(_plain(entry, depth + 1) for entry in value)
+    if isinstance(value, str):
+        return str(value)
+    with suppress(OverflowError):
+        if isinstance(value, Real):
+            return float(value)
+    raise invalid_parameter(
+        "A value in a script is a number, a text, true, false, None or a vector of these, within"
+        f" each other up to {DEEPEST_VECTOR} times, not {shown(value)}."
+    )
+
+
+def _parts(kind: type[_Part], given: Any, what: str) -> tuple[_Part, ...]:
+    """Return the parts of a tree as a tuple."""
+    parts = tuple(given) if isinstance(given, (tuple, list)) else None
+    if parts is None or not all(isinstance(part, kind) for part in parts):
+        raise invalid_parameter(f"{what} must be a tuple of {kind.__name__}, not {shown(given)}.")
+    return parts
+
+
 def _are_same(one: "Value", other: "Value") -> bool:
     """Say whether values are equal; true is not 1, though Python's are."""
     if isinstance(one, tuple) and isinstance(other, tuple):
@@ -34,17 +90,27 @@ def _are_same(one: "Value", other: "Value") -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Argument:
-    """One argument of a node.
+    """One argument of a node; lists become tuples, and all numbers doubles.
 
     Parameters
     ----------
     name : str or None
         Such as ``"size"`` or ``"$fn"``; None for an argument that goes by its position.
     value : Value
+
+    Raises
+    ------
+    InvalidParameterError
+        If the name or the value is none that a script can hold.
     """
 
     name: str | None
     value: Value
+
+    def __post_init__(self) -> None:
+        if self.name is not None and (not is_name(self.name) or self.name in WORDS):
+            raise invalid_parameter(f"{shown(self.name)} cannot be the name of an argument.")
+        object.__setattr__(self, "value", _plain(self.value))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Argument):
@@ -74,6 +140,11 @@ class Node:
         Some of ``#`` (kept), ``%`` and ``*`` (ignored) and ``!`` (this node alone counts).
     place : Place
         The place of its name; it does not count when nodes are compared.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a script cannot hold such a node.
     """
 
     name: str
@@ -81,6 +152,14 @@ class Node:
     children: tuple["Node", ...] = ()
     modifiers: str = ""
     place: Place = field(default=NOWHERE, compare=False)
+
+    def __post_init__(self) -> None:
+        if not is_name(self.name):
+            raise invalid_parameter(f"{shown(self.name)} cannot be the name of a node.")
+        if not isinstance(self.modifiers, str) or set(self.modifiers) - set("#%!*"):
+            raise invalid_parameter(f"Modifiers are some of # % ! *, not {shown(self.modifiers)}.")
+        object.__setattr__(self, "arguments", _parts(Argument, self.arguments, "Arguments"))
+        object.__setattr__(self, "children", _parts(Node, self.children, "Children"))
 
     @property
     def is_ignored(self) -> bool:
@@ -189,6 +268,9 @@ class CsgTree:
     name: str = field(default="<csg>", compare=False)
     folder: Path = field(default_factory=Path, compare=False)
     intermediate: Intermediate | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nodes", _parts(Node, self.nodes, "The nodes of a tree"))
 
     def explained(self, error: BspcsgError) -> BspcsgError:
         """Return an error about a node with all that is known about its place."""
