@@ -185,6 +185,18 @@ def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
         assert csg.loads(csg.dumps(simplified)).volume == 125
 
 
+@pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
+def test_children_of_another_dimension_do_not_count_once_simplified() -> None:
+    for text in (
+        "cube(1); group() { square(1); cube(5); }",
+        "cube(1); group() { group() { square(1); cube(5); } }",
+        "color() { cube(1); union() { group() { projection() cube(1); } cube(5); } }",
+        'cube(1); group() { text("a"); group() { cube(5); cube(4); } }',
+    ):
+        simplified = csg.simplified(csg.parse(text))
+        assert csg.loads(csg.dumps(simplified)).volume == csg.loads(text).volume == 1
+
+
 def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:
     tree = csg.parse("union($fn = 40) { group($fn = 4) { cube(9); !sphere(1); } }")
     alone = csg.loads("sphere(1, $fn = 4);")
