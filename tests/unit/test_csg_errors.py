@@ -172,6 +172,21 @@ def test_true_is_not_one() -> None:
         assert left.volume == 1
 
 
+@pytest.mark.parametrize(
+    "move",
+    [
+        "multmatrix([[1, 0, 0, 1e99], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])",
+        "resize([1e99, 1, 1])",
+    ],
+)
+def test_what_is_moved_beyond_all_lattices_is_an_error_of_its_node(move: str) -> None:
+    text = f"cube(1); {move} {{ cube(1); }}"
+    with pytest.raises(b.LimitError, match=r"<csg>:1:10: (multmatrix|resize)\(\)"):
+        csg.evaluate(csg.parse(text))
+    with pytest.warns(csg.CsgWarning, match=r"It is left out"):
+        assert csg.loads(text, lenient=True).volume == 1
+
+
 def test_each_node_that_is_left_out_is_told_at_its_place() -> None:
     with pytest.warns(csg.CsgWarning) as told:
         csg.loads('sphere(r = "two"); cube(1); sphere(r = "two");', lenient=True)
