@@ -14,6 +14,7 @@ from hypothesis import given
 
 from bspcsg import BspcsgError, FormatError, InvalidParameterError, Solid, csg
 from bspcsg.csg import Argument, CsgTree, Node
+from bspcsg.csg.syntax.json_form import DEEPEST_NODE
 
 DEEP = 100_000
 
@@ -314,6 +315,19 @@ def test_scad_takes_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     for one in wrong:
         with pytest.raises(InvalidParameterError, match=next(iter(one))):
             csg.read_scad(path, **one)
+
+
+def test_the_deepest_trees_that_json_holds_are_read_again() -> None:
+    tree = csg.parse("group() {" * (DEEPEST_NODE - 1) + "cube(1);" + "}" * (DEEPEST_NODE - 1))
+    assert csg.from_json(csg.to_json(tree)) == tree
+    deeper = csg.to_json(tree).replace('"children": []', '"children": [{"node": "cube"}]')
+    with pytest.raises(FormatError, match="nest deeper than 200"):
+        csg.from_json(deeper)
+
+
+def test_json_may_begin_with_a_byte_order_mark() -> None:
+    tree = csg.parse("cube(1);")
+    assert csg.from_json("\ufeff" + csg.to_json(tree)) == tree
 
 
 @pytest.mark.parametrize(

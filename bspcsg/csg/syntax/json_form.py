@@ -56,7 +56,7 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
     place = Path() if folder is None else Path(file_path(folder, "folder"))
     text_value(name, "name")
     try:
-        data = json.loads(text_value(text, "text"))
+        data = json.loads(text_value(text, "text").removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:
         raise FormatError(f"{name}: this is no JSON: {error}.", "syntax") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -98,7 +98,7 @@ def _value_data(value: Value) -> Any:
 def _nodes(data: Any, where: str, name: str, depth: int) -> tuple[Node, ...]:
     if not isinstance(data, list):
         raise _wrong(name, where, "a list of nodes")
-    if depth > DEEPEST_NODE:
+    if data and depth > DEEPEST_NODE:
         raise FormatError(f"{name}: nodes nest deeper than {DEEPEST_NODE}.", "too_deep")
     return tuple(_node(entry, f"{where}[{k}]", name, depth) for k, entry in enumerate(data))
 
