@@ -208,8 +208,9 @@ def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
     step = Fraction(10) ** pitch
     if loops is None or any(Fraction(*x) % step for loop in loops for p in loop for x in p):
         message = (
-            "The regions differ too much in size: no lattice reaches as far as one of them and"
-            f" holds the corners of the other; round these to {float(step):g} or cut off the rest."
+            "One region does not fit the lattice of 2^53 steps that holds the corners of another,"
+            f" and these would move on a coarser one; round them to {float(step):g}, or cut off"
+            " what is far out."
         )
         raise LimitError(message, "too_large")
     corners = [np.array([[n / d for n, d in point] for point in loop]) for loop in loops]
