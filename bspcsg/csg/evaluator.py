@@ -61,8 +61,9 @@ def evaluate(
         around these, move to the finest lattice on which as many corners of different parts, and
         faces across the axes, coincide as on any. Its step is a unit of the sixth digit of the
         largest coordinate at most, and each corner moves once, by at most half a step along each
-        axis. Nothing moves where that brings nothing together; faces of turned bodies may break
-        where their corners move.
+        axis. Nothing moves where that brings nothing together, nor does a part of which a piece
+        would lose more than half of its size; faces of turned bodies may break where their corners
+        move.
     on_polish : callable, optional
         Is told which lattice that was and how far corners moved, as a `Polish`.
     on_invalid : {"error", "warn", "repair"}

@@ -14,8 +14,11 @@ Scope: TypeAlias = tuple[Argument, ...]
 
 #: Nodes whose number of sides depends on them.
 _SIDED = frozenset(
-    {"circle", "sphere", "cylinder", "offset", "linear_extrude", "rotate_extrude", "import"}
-)
+    {
+        "circle", "sphere", "cylinder", "text", "offset", "linear_extrude", "rotate_extrude",
+        "import",
+    }
+)  # fmt: skip
 
 
 def inherited(scope: Scope, node: Node) -> Scope:

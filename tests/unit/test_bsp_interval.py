@@ -118,3 +118,20 @@ def test_the_centroid_of_a_short_interval_far_out_lies_in_it() -> None:
         assert short.centroid == pytest.approx(low + width / 2, rel=2e-16)
         line = bsp.SubHyperplane((0, 1), 0, short)
         assert abs(line.centroid[0]) == abs(short.centroid)
+
+
+def test_intervals_keep_their_lattice_wherever_they_are_moved() -> None:
+    s = bsp.Intervals([(0, 1e-10), (5, 6)], pitch=-12)
+    assert s.translate(1 + 1e-13) == s.translate(1)
+    assert s.scale(1.5) == bsp.Intervals([(0, 1.5e-10), (7.5, 9)], pitch=-12)
+    assert bsp.Intervals([(0, 1)], pitch=-15).scale(1000).pairs.tolist() == [[0, 1000]]
+    assert bsp.Intervals([(0, 1)], pitch=-1).scale(0.01).pairs.tolist() == [[0, 0.01]]
+
+
+def test_intervals_beyond_all_doubles_are_refused() -> None:
+    s = bsp.Intervals([(0, 1e10), (1e11, INF)])
+    for factor in (1e300, -1e300):
+        with pytest.raises(b.LimitError):
+            s.scale(factor)
+    with pytest.raises(b.LimitError):
+        s.translate(1e300)

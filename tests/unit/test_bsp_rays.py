@@ -192,6 +192,8 @@ def test_lists_know_their_rays() -> None:
 
 CUBE = b.cube(2)
 
+UP = [0.0, 0.0, 9.0]
+
 BAD: list[tuple[Callable[[], object], str, list[int]]] = [
     (lambda: bsp.RayCaster([[0.0, 1.0]]), "shape", []),
     (lambda: bsp.RayCaster("nonsense"), "invalid_parameter", []),
@@ -215,6 +217,8 @@ BAD: list[tuple[Callable[[], object], str, list[int]]] = [
     ),
     (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0]), "invalid_parameter", []),
     (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], [0, 0, 0]), "bad_normal", [0]),
+    (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], UP, max_t=0.5), "invalid_parameter", []),
+    (lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], UP, max_t="x"), "invalid_parameter", []),
     (
         lambda: bsp.RayCaster(CUBE).occluded([0, 0, 0], directions=[0, 0, 1], max_t=np.nan),
         "invalid_parameter",

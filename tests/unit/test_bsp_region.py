@@ -253,7 +253,7 @@ def test_bad_parameters() -> None:
     with pytest.raises(b.UnboundedError):
         b.half_space((0, 0, 1)).slice(-1)
     with pytest.raises(b.LimitError):
-        R.rectangle(1e8) | R([(0, 0), (1, 0), (0, 1)], pitch=-15)
+        R.rectangle(1e8) | R([(0, 0), (1e-14, 0), (0, 1)], pitch=-15)
 
 
 def test_the_perimeter_of_a_complement_is_that_of_the_region() -> None:

@@ -317,3 +317,17 @@ def test_a_volume_is_seen_in_no_box_that_is_turned_over() -> None:
 def test_spherical_polygons_need_corners_that_differ() -> None:
     with pytest.raises(InvalidParameterError, match="not all in one direction"):
         bsp.SphericalRegion.polygon([[1, 0, 0], [2, 0, 0], [3, 0, 0]])
+
+
+def test_corners_of_sixteen_digits_lie_on_their_polygon() -> None:
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        corners = rng.normal(size=(4, 3))
+        corners /= np.linalg.norm(corners, axis=1)[:, None]
+        a, b, c = corners[:3] if np.linalg.det(corners[:3]) > 0 else corners[2::-1]
+        side = bsp.SphericalRegion.polygon([a, b, c])
+        assert side.classify([a, b, c]).tolist() == [0, 0, 0]
+        around = (a + b + c).tolist()
+        fan = [bsp.SphericalRegion.polygon([p, q, around]) for p, q in ((a, b), (b, c), (c, a))]
+        assert fan[0] | fan[1] | fan[2] == side
+        assert not (fan[0] & fan[1] or fan[1] & fan[2] or fan[2] & fan[0])

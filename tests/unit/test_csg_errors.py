@@ -172,6 +172,21 @@ def test_true_is_not_one() -> None:
         assert left.volume == 1
 
 
+@pytest.mark.parametrize(
+    "move",
+    [
+        "multmatrix([[1, 0, 0, 1e99], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])",
+        "resize([1e99, 1, 1])",
+    ],
+)
+def test_what_is_moved_beyond_all_lattices_is_an_error_of_its_node(move: str) -> None:
+    text = f"cube(1); {move} {{ cube(1); }}"
+    with pytest.raises(b.LimitError, match=r"<csg>:1:10: (multmatrix|resize)\(\)"):
+        csg.evaluate(csg.parse(text))
+    with pytest.warns(csg.CsgWarning, match=r"It is left out"):
+        assert csg.loads(text, lenient=True).volume == 1
+
+
 def test_each_node_that_is_left_out_is_told_at_its_place() -> None:
     with pytest.warns(csg.CsgWarning) as told:
         csg.loads('sphere(r = "two"); cube(1); sphere(r = "two");', lenient=True)
@@ -183,6 +198,18 @@ def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
         assert csg.loads(text).volume == 125
         simplified = csg.simplified(csg.parse(text))
         assert csg.loads(csg.dumps(simplified)).volume == 125
+
+
+@pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
+def test_children_of_another_dimension_do_not_count_once_simplified() -> None:
+    for text in (
+        "cube(1); group() { square(1); cube(5); }",
+        "cube(1); group() { group() { square(1); cube(5); } }",
+        "color() { cube(1); union() { group() { projection() cube(1); } cube(5); } }",
+        'cube(1); group() { text("a"); group() { cube(5); cube(4); } }',
+    ):
+        simplified = csg.simplified(csg.parse(text))
+        assert csg.loads(csg.dumps(simplified)).volume == csg.loads(text).volume == 1
 
 
 def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:

@@ -236,3 +236,13 @@ def test_pictures_that_are_none_are_refused(tmp_path: Path) -> None:
         b.surface(picture(tmp_path / "a.png", [[1, 2, 3]]))
     with pytest.raises(b.LimitError, match="This surface"):
         b.surface(picture(tmp_path / "b.png", np.zeros((1500, 1500))))
+
+
+@pytest.mark.parametrize("argument", ["dpi = 0", "dpi = -9", 'id = "a"', 'layer = "a"'])
+def test_what_does_not_count_for_a_drawing_is_told(tmp_path: Path, argument: str) -> None:
+    pytest.importorskip("svgelements")
+    (tmp_path / "x.svg").write_text(DRAWING.format('<rect id="b" width="72" height="72"/>'))
+    plain = csg.evaluate(csg.parse('import("x.svg", layer = "");', folder=tmp_path))
+    with pytest.warns(csg.CsgWarning, match=argument.partition(" ")[0]):
+        told = csg.evaluate(csg.parse(f'import("x.svg", {argument});', folder=tmp_path))
+    assert isinstance(told, Region) and told == plain

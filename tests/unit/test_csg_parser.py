@@ -1,5 +1,9 @@
+import copy
 import math
 import os
+import pickle
+from collections.abc import Callable
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -8,8 +12,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 
-from bspcsg import BspcsgError, FormatError, InvalidParameterError, csg
+from bspcsg import BspcsgError, FormatError, InvalidParameterError, Solid, csg
 from bspcsg.csg import Argument, CsgTree, Node
+from bspcsg.csg.syntax.json_form import DEEPEST_NODE
 
 DEEP = 100_000
 
@@ -118,6 +123,34 @@ def test_a_long_text_without_its_end_is_found_at_once() -> None:
 def test_vectors_do_not() -> None:
     with pytest.raises(FormatError, match="nested deeper than 64"):
         csg.parse("cube(" + "[" * DEEP)
+
+
+def test_deep_trees_are_values_as_others_are() -> None:
+    text = "group() {" * DEEP + "cube({}); cube(3);" + "}" * DEEP
+    one, same, other = (csg.parse(text.replace("{}", size)) for size in ("1", "1", "2"))
+    assert one == same and hash(one) == hash(same)
+    assert one != other and one.nodes[0] != other.nodes[0]
+    assert repr(one) == repr(same) != repr(other)
+    assert pickle.loads(pickle.dumps(one)) == one
+    assert copy.copy(one) == one == copy.deepcopy(one)
+
+
+def test_nodes_that_are_shared_stay_so() -> None:
+    node = Node("cube", (Argument(None, 1.0),))
+    for _ in range(60):
+        node = Node("union", (), (node, node))
+    again = pickle.loads(pickle.dumps(node))
+    assert again.children[0] is again.children[1]
+    assert again == node and hash(again) == hash(node)
+    assert Node("union", (), (node,)) != node
+
+
+def test_nodes_show_their_fields() -> None:
+    places = "place=Place(line=0, column=0)"
+    leaf = f"Node(name='cube', arguments=(), children=(), modifiers='#', {places})"
+    for count, inner in ((1, f"({leaf},)"), (2, f"({leaf}, {leaf})")):
+        shown = f"Node(name='union', arguments=(), children={inner}, modifiers='', {places})"
+        assert repr(Node("union", (), (Node("cube", modifiers="#"),) * count)) == shown
 
 
 def test_deep_trees_are_no_json() -> None:
@@ -282,6 +315,65 @@ def test_scad_takes_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     for one in wrong:
         with pytest.raises(InvalidParameterError, match=next(iter(one))):
             csg.read_scad(path, **one)
+
+
+def test_the_deepest_trees_that_json_holds_are_read_again() -> None:
+    tree = csg.parse("group() {" * (DEEPEST_NODE - 1) + "cube(1);" + "}" * (DEEPEST_NODE - 1))
+    assert csg.from_json(csg.to_json(tree)) == tree
+    deeper = csg.to_json(tree).replace('"children": []', '"children": [{"node": "cube"}]')
+    with pytest.raises(FormatError, match="nest deeper than 200"):
+        csg.from_json(deeper)
+
+
+def test_json_may_begin_with_a_byte_order_mark() -> None:
+    tree = csg.parse("cube(1);")
+    assert csg.from_json("\ufeff" + csg.to_json(tree)) == tree
+
+
+@pytest.mark.parametrize(
+    "value",
+    [[1, 2, 3], np.array([1, 2, 3]), [np.int64(1), Fraction(2), True + 2], ([1.0][0], 2, 3.0)],
+)
+def test_values_of_trees_made_by_hand_are_those_of_scripts(value: Any) -> None:
+    made = CsgTree([Node("cube", [Argument("size", value)])])  # type: ignore[arg-type]
+    read = csg.parse("cube(size = [1, 2, 3]);")
+    assert (
+        made == read
+        and hash(made) == hash(read)
+        and repr(made.nodes[0].arguments) == repr(read.nodes[0].arguments)
+    )
+    assert csg.parse(csg.dumps(made)) == csg.from_json(csg.to_json(made)) == made
+    solid = csg.evaluate(made)
+    assert isinstance(solid, Solid) and solid.volume == 6
+
+
+def deep_vector() -> object:
+    value: object = 1.0
+    for _ in range(65):
+        value = (value,)
+    return value
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: Argument("size", object()),  # type: ignore[arg-type]
+        lambda: Argument("size", b"text"),  # type: ignore[arg-type]
+        lambda: Argument("size", 10**400),
+        lambda: Argument("size", deep_vector()),  # type: ignore[arg-type]
+        lambda: Argument("si ze", 1.0),
+        lambda: Argument("true", 1.0),
+        lambda: Node("cu be"),
+        lambda: Node(5),  # type: ignore[arg-type]
+        lambda: Node("cube", modifiers="x"),
+        lambda: Node("cube", (1,)),  # type: ignore[arg-type]
+        lambda: Node("union", (), Node("cube")),  # type: ignore[arg-type]
+        lambda: CsgTree("cube"),  # type: ignore[arg-type]
+    ],
+)
+def test_nodes_that_no_script_can_hold_are_refused(make: Callable[[], object]) -> None:
+    with pytest.raises(InvalidParameterError):
+        make()
 
 
 def test_numbers_of_numpy_are_written_as_numbers() -> None:

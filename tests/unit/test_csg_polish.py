@@ -131,3 +131,44 @@ def test_polish_keeps_what_is_no_rotation() -> None:
     assert bounds is not None
     assert bounds[1, 0] == pytest.approx(10.1)
     assert csg.loads("", polish=True).is_empty
+
+
+def test_polish_tells_a_warning_once() -> None:
+    near = 'cube([10, 10, 10.00001]); cube(9); import("no.stl");'
+    up = "multmatrix([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]]) cube(10);"
+    told: list[csg.Polish] = []
+    with pytest.warns(csg.CsgWarning) as said:
+        csg.loads(near + up, polish=True, on_polish=told.append)
+    assert told[0].pitch == -4
+    assert len(said) == 1
+
+
+def at(x: float, y: float, z: float) -> str:
+    return f"multmatrix([[1, 0, 0, {x}], [0, 1, 0, {y}], [0, 0, 1, {z}], [0, 0, 0, 1]])"
+
+
+THIN = {
+    "a plate": "cube([100, 100, 0.0004]);",
+    "a plate with a block": "render() { cube([100, 100, 0.0004]);" + at(0, 0, 20) + "cube(3); }",
+}
+
+
+@pytest.mark.parametrize("thin", THIN)
+def test_polish_removes_no_body(thin: str) -> None:
+    nearly = "".join(
+        at(x, 0, 50) + "cube([10, 10, 10.0001]);" + at(x, 0, 60) + "cube(10);" for x in (0, 20, 40)
+    )
+    told: list[csg.Polish] = []
+    polished = csg.loads(THIN[thin] + nearly, polish=True, on_polish=told.append)
+    alone = csg.loads(THIN[thin])
+    assert told[0].pitch == -3
+    assert polished.volume == pytest.approx(alone.volume + 6000, rel=1e-9)
+    assert len(polished.decompose()) == len(alone.decompose()) + 3
+
+
+def test_polish_removes_no_figure() -> None:
+    nearly = at(0, 50, 0) + "square([10, 10.0001]);" + at(0, 60, 0) + "square(10);"
+    nearly += at(10.0001, 50, 0) + "square(10);"
+    polished = csg.evaluate(csg.parse("square([100, 0.0004]);" + nearly), polish=True)
+    assert isinstance(polished, Region)
+    assert polished.area == pytest.approx(300.04, abs=1e-9)

@@ -161,3 +161,39 @@ def test_random_small_and_large_solids_agree_with_their_points(seed: int) -> Non
     p, q = large.classify(points) > 0, small.classify(points) > 0
     found = [one.classify(points) > 0 for one in (large | small, large & small, large - small)]
     assert np.array_equal(found, [p | q, p & q, p & ~q])
+
+
+def test_regions_of_very_different_sizes_combine_where_no_corner_moves() -> None:
+    large, small = b.Region.rectangle(1e9, 1e9), b.Region.rectangle(1, 1)
+    assert small != large and small <= large and not small.isdisjoint(large)
+    assert (large - small).area_exact == 10**18 - 1
+    assert (~small & large).area_exact == 10**18 - 1
+    assert b.Region.compose([small, large]) == small | large == large
+    assert (small & b.Region.half_plane((1, 0), 1e9)) == small
+    fine = b.Region.rectangle(1e-8, 1)
+    assert fine != large
+    with pytest.raises(b.LimitError, match="would move on a coarser one"):
+        fine | large
+    with pytest.raises(b.LimitError, match="would move on a coarser one"):
+        b.Region.compose([fine, large])
+
+
+@pytest.mark.parametrize("dimension", [1, 2, 3])
+def test_sets_lie_on_one_side_of_what_is_beyond_the_lattice(dimension: int) -> None:
+    made = {
+        1: b.bsp.Intervals([(0, 1)]).tree,
+        2: b.Region.rectangle(1, 1).tree,
+        3: b.bsp.ObjectTree.from_mesh(b.cube(1)),
+    }[dimension]
+    up = [1.0] * dimension
+    for far in (1e9, 1e300):
+        assert made.split(up, far)[0] == made and made.split(up, far)[1].is_empty
+        assert made.split(up, -far)[1] == made and made.split(up, -far)[0].is_empty
+        with pytest.raises(b.LimitError):
+            (~made).split(up, far)
+
+
+def test_nothing_of_a_region_lies_in_a_line_beyond_the_lattice() -> None:
+    assert b.bsp.SubHyperplane.inside(b.Region.rectangle(1, 1), (1, 0), 1e9).is_empty
+    with pytest.raises(b.LimitError):
+        b.bsp.SubHyperplane.inside(b.Region.rectangle(1, 1), (1, 0), 1e300)

@@ -202,6 +202,11 @@ def test_text_in_scripts_stands_as_close_as_openscads() -> None:
     assert (plain - own)[1, 0] == pytest.approx(step * (1 - 1000 / 1024), abs=2e-3)
 
 
+def test_text_takes_the_special_variables_around_it() -> None:
+    coarse = figure('text("O", $fn = 3);')
+    assert figure('group($fn = 3) { text("O"); }') == coarse != figure('text("O");')
+
+
 def test_text_without_letters_or_size_is_empty() -> None:
     for script in ('text("");', 'text("a", size = 0);', 'text("a", size = -1);', "text();"):
         assert figure(script).is_empty

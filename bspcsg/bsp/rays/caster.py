@@ -432,19 +432,22 @@ class RayCaster:
         directions : (n, d) or (d,) array_like of float
             Instead of targets.
         max_t : float or (n,) array_like of float
-            With directions: only hits with ``0 < t < max_t`` count, `t` as `first_hit` rounds it.
+            With directions only, of which hits with ``0 < t < max_t`` count, `t` as `first_hit`
+            rounds it.
         threads : int
 
         Raises
         ------
         InvalidMeshError
-            As for `first_hit`; also if a target is its origin, or not exactly one of targets and
-            directions is given.
+            As for `first_hit`; also if a target is its origin, not exactly one of targets and
+            directions is given, or `max_t` with targets.
         """
         if (targets is None) == (directions is None):
             raise invalid_parameter("Give either targets or directions.")
         if targets is not None:
             first, second = ray_arrays(origins, targets, self.dimension, ("Origins", "Targets"))
+            if not np.isposinf(_limits(max_t, len(first))).all():
+                raise invalid_parameter("max_t goes with directions; targets are where a way ends.")
             with core_errors():
                 return self._scene.hidden(first.ravel(), second.ravel(), thread_count(threads))
         first, second = ray_arrays(origins, directions, self.dimension)

@@ -1,5 +1,6 @@
 """`Intervals`: a set of points on the line, as an immutable value."""
 
+from contextlib import suppress
 from fractions import Fraction
 from typing import Any, Self
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar
-from ...errors import InvalidMeshError, core_errors, invalid_parameter
+from ...errors import InvalidMeshError, LimitError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import Hyperplane
 from ...geometry.transform import whole_steps
@@ -132,7 +133,7 @@ class Intervals(FlatSet):
         shift = number(offset, "offset")
         steps = whole_steps(shift, self.pitch)
         if steps is None:
-            return type(self)(self.pairs + shift)
+            return self._placed(self.pairs + shift)
         return self._moved([1], [steps])
 
     def scale(self, factor: Scalar) -> "Intervals":
@@ -140,7 +141,19 @@ class Intervals(FlatSet):
         by = number(factor, "factor")
         if by == 0:
             raise invalid_parameter("The factor must not be 0.")
-        return type(self)(np.sort(self.pairs * by, axis=1))
+        with np.errstate(over="ignore"):
+            return self._placed(np.sort(self.pairs * by, axis=1))
+
+    def _placed(self, pairs: FloatArray) -> "Intervals":
+        """Return intervals that these became, on their own lattice or a finer one if that holds."""
+        if np.isinf(pairs).sum() > np.isinf(self.pairs).sum():
+            raise LimitError("The moved set lies beyond all doubles.", "too_large")
+        suited = chosen_pitch(None, pairs[np.isfinite(pairs)][:, None])
+        # Far out two ends may be one double: nothing lies between them there.
+        there = pairs[pairs[:, 0] < pairs[:, 1]]
+        with suppress(LimitError):
+            return type(self)(there, pitch=min(self.pitch, suited))
+        return type(self)(there, pitch=suited)
 
     def __repr__(self) -> str:
         """Show the intervals, as long as they are few."""

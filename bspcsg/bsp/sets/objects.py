@@ -12,7 +12,7 @@ from typing import Any, Self, TypeVar, get_args
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
-from ...errors import core_errors, invalid_parameter
+from ...errors import LimitError, core_errors, invalid_parameter
 from ...mesh import interop
 from ...parameters import (
     SET_OPS,
@@ -218,7 +218,14 @@ class ObjectTree(TreeQueries):
         InvalidMeshError
             If the other set has another dimension; for ``==`` the two are different then.
         """
-        a, b = self._aligned(set_of(other))
+        tree = set_of(other).tree
+        try:
+            a, b = self._aligned(tree)
+        except LimitError:
+            # Sizes are exact on any lattice.
+            if self._size_key() == tree._size_key():
+                raise
+            return False
         with core_errors():
             return a.equals(b)
 
@@ -241,7 +248,14 @@ class ObjectTree(TreeQueries):
             return self._of(self._tree.partitioned(row))
 
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
-        """Return the parts on the minus and on the plus side of a hyperplane, as sets."""
+        """Return the parts on the minus and on the plus side of a hyperplane, as sets.
+
+        What is bounded lies on one side of a hyperplane beyond the lattice.
+        """
+        is_above = hyperplane(normal, offset, self.dimension).is_above_lattice(self.pitch)
+        if is_above is not None and self.is_bounded:
+            nothing = self.uniform(self.dimension, full=False, pitch=self.pitch)
+            return (self, nothing) if is_above else (nothing, self)
         row = self._row(normal, offset)
         with core_errors():
             minus, plus = self._tree.split(row)

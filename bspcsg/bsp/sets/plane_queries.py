@@ -1,6 +1,8 @@
 """The queries of a region of the plane: outlines, measures, lines, nearest points."""
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from fractions import Fraction
 from typing import Any, Self
 
@@ -8,11 +10,12 @@ import numpy as np
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, SetOp, Vector
-from ...errors import core_errors, invalid_parameter
+from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
 from ...parameters import number
 from .flat_set import FlatSet
-from .loops import Outline
+from .loops import Outline, loop_segments
+from .objects import ObjectTree
 from .tree_set import TreeSet
 
 
@@ -29,7 +32,10 @@ class PlaneQueries(FlatSet):
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
         """Return a result by whatever is faster: a sweep over the boundaries, or merged trees."""
-        a, b = self.tree._aligned(other)
+        try:
+            a, b = self.tree._aligned(other)
+        except LimitError:
+            a, b = on_one_lattice([self.tree, other.tree])
         with core_errors():
             return self._of(a.combined(b, op))
 
@@ -172,6 +178,44 @@ class PlaneQueries(FlatSet):
                 parts.append([])
             parts[owner].append(cells[face])
         return [convex_corners(faces) for faces in parts]
+
+
+def on_one_lattice(trees: Sequence[ObjectTree]) -> list[CoreTree]:
+    """Return sets of the plane on the finest lattice that holds them and all their corners.
+
+    Raises
+    ------
+    LimitError
+        If there is none.
+    """
+    # Nothing and everything live on any lattice.
+    pitches = {tree.pitch for tree in trees if not (tree.is_empty or tree.is_full)}
+    finest, coarsest = min(pitches, default=trees[0].pitch), max(pitches, default=trees[0].pitch)
+    for pitch in range(finest, coarsest):
+        with suppress(LimitError):
+            return [_on_lattice(tree, pitch) for tree in trees]
+    return [_on_lattice(tree, coarsest) for tree in trees]
+
+
+def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
+    """Return a set on a finer lattice, or on a coarser one that holds all of its corners."""
+    if pitch <= tree.pitch or tree.is_empty or tree.is_full:
+        return tree._refined(pitch)
+    if not tree.is_bounded and (~tree).is_bounded:
+        return _on_lattice(~tree, pitch).complement()
+    with core_errors():
+        loops = tree._tree.exact_outlines() if tree.is_bounded else None
+    step = Fraction(10) ** pitch
+    if loops is None or any(Fraction(*x) % step for loop in loops for p in loop for x in p):
+        message = (
+            "One region does not fit the lattice of 2^53 steps that holds the corners of another,"
+            f" and these would move on a coarser one; round them to {float(step):g}, or cut off"
+            " what is far out."
+        )
+        raise LimitError(message, "too_large")
+    corners = [np.array([[n / d for n, d in point] for point in loop]) for loop in loops]
+    with core_errors():
+        return CoreTree.region(loop_segments(corners).reshape(-1, 4), pitch, "positive")
 
 
 def vector2(value: Any, name: str) -> tuple[float, float]:

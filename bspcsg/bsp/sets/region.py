@@ -34,7 +34,7 @@ from ..trees.facets import chosen_pitch
 from .boundary import segment_rows
 from .loops import closed_loops, loop_segments, moved_points
 from .objects import ObjectTree
-from .plane_queries import PlaneQueries, vector2
+from .plane_queries import PlaneQueries, on_one_lattice, vector2
 
 #: The rules that say which winding numbers count as inside, in the plane.
 FillRule: TypeAlias = WindingRule | Literal["negative"]
@@ -48,7 +48,9 @@ class Region(PlaneQueries):
     or overlap themselves and each other. The lattice is that of solids: coordinates are snapped to
     steps of ``10**pitch``, at most 2**53 of them from the origin, and everything else is exact.
     Points and edges without area on either side do not count (regularised sets). ``==``, ``<=``,
-    ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
+    ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`. Regions combine on
+    the finest lattice of theirs, or where that does not reach far enough on the finest one that
+    does, if it holds all their corners; else they are refused with a `LimitError`.
 
     Parameters
     ----------
@@ -172,10 +174,7 @@ class Region(PlaneQueries):
         parts = [of_kind(Region, part, "Each part") for part in regions]
         if not parts:
             return cls()
-        # Nothing and everything live on any lattice.
-        pitches = [part.pitch for part in parts if not (part.is_empty or part.is_full)]
-        pitch = min(pitches, default=parts[0].pitch)
-        trees = [part.tree._refined(pitch) for part in parts]
+        trees = on_one_lattice([part.tree for part in parts])
         with core_errors():
             return cls._of(trees[0].composed(trees[1:]))
 

@@ -26,14 +26,18 @@ from .objects import ObjectTree
 #: The lattice of cones: directions are whole numbers.
 _WHOLE = 0
 
+#: Directions up to this have normals of 106 bits between them, which the core takes as they are.
+_LARGEST = 1 << 52
+
 
 class SphericalRegion:
     """A set of directions of the plane or of space; an immutable value.
 
     Make one with `hemisphere`, `polygon`, `arc`, `empty` or `full`, and combine them with
     ``| & - ^ ~``. Directions are points seen from the origin; they need no unit length, and their
-    numbers count as the decimals they are written as. All decisions are exact; only sizes are
-    rounded.
+    numbers count as the decimals they are written as. Those that need whole numbers beyond 2**52
+    are rounded to the nearest below that, wherever they are given, so that arcs between them are
+    exact; axes are not. All decisions are exact; only sizes are rounded.
 
     Examples
     --------
@@ -84,7 +88,7 @@ class SphericalRegion:
         InvalidParameterError
             If the polygon is not convex, runs clockwise, or has one corner again and again.
         """
-        whole = [_whole(corner) for corner in _listed(corners)]
+        whole = [_snapped(corner) for corner in _listed(corners)]
         if len(whole) < 3 or any(len(corner) != 3 for corner in whole):
             raise invalid_parameter("A polygon has at least three corners in space.")
         sides = [_cross(a, b) for a, b in pairwise([*whole, whole[0]])]
@@ -97,7 +101,7 @@ class SphericalRegion:
     @classmethod
     def arc(cls, start: Any, end: Any) -> Self:
         """Return the directions of the plane from one counterclockwise to another, (2,) each."""
-        a, b = _whole(start), _whole(end)
+        a, b = _snapped(start), _snapped(end)
         if len(a) != 2 or len(b) != 2:
             raise invalid_parameter("An arc goes from one direction of the plane to another.")
         sides = [[-a[1], a[0]], [b[1], -b[0]]]
@@ -197,7 +201,7 @@ class SphericalRegion:
         start = 0 if len(nodes) else (nodes.IN if self.is_full else nodes.OUT)
 
         def side(direction: Any) -> int:
-            place = tuple(map(Fraction, _whole(direction)))
+            place = tuple(map(Fraction, _snapped(direction)))
             if len(place) != self.dimension:
                 raise invalid_parameter(f"A direction here has {self.dimension} numbers.")
             seen, pending = set(), [start]
@@ -293,12 +297,12 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
 def _cone_of(arms: list[list[Fraction]]) -> SphericalRegion | None:
     """Return the directions of a facet seen from the origin, None if it is seen edge-on."""
     if len(arms) == 2:
-        (a, b), (c, d) = arms
+        (a, b), (c, d) = map(_snapped, arms)
         turn = a * d - b * c
         if not turn:
             return None
         return SphericalRegion.arc(*(arms if turn > 0 else arms[::-1]))
-    whole = [_whole(arm) for arm in arms]
+    whole = [_snapped(arm) for arm in arms]
     volume = _dot(_cross(whole[0], whole[1]), whole[2])
     if not volume:
         return None
@@ -327,6 +331,16 @@ def _whole(direction: Any) -> list[int]:
     whole = [int(x * denominator) for x in exact]
     divisor = math.gcd(*whole)
     return [x // divisor for x in whole]
+
+
+def _snapped(direction: Any) -> list[int]:
+    """Return the nearest whole numbers, not beyond 2**52, in about the same direction."""
+    whole = _whole(direction)
+    largest = max(map(abs, whole))
+    if largest <= _LARGEST:
+        return whole
+    grain = 1 << ((largest - 1).bit_length() - (_LARGEST - 1).bit_length())
+    return _whole([round(Fraction(entry, grain)) for entry in whole])
 
 
 def _cross(a: Sequence[int], b: Sequence[int]) -> list[int]:

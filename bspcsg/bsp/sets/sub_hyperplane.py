@@ -410,7 +410,10 @@ def _lattice_part(
     step = 10.0**tree.pitch
     longest = max(map(abs, row[:-1]))
     normal = [number / longest for number in row[:-1]]
-    whole = SubHyperplane(normal, row[-1] / longest * step)
+    try:
+        whole = SubHyperplane(normal, row[-1] / longest * step)
+    except OverflowError as error:
+        raise LimitError("The hyperplane lies beyond all doubles.", "too_large") from error
     if pieces is None:
         return whole
     border = _FARTHEST * step

@@ -48,7 +48,6 @@ def made_by(
         else:
             form: Literal["csg", "json"] = "json" if suffix == ".json" else "csg"
             solid = csg.loads(text, name=str(path), form=form, **options)
-    # A polished model is evaluated twice, and warns as often.
-    for said in dict.fromkeys(str(warning.message) for warning in caught):
-        out.warning(said)
+    for said in caught:
+        out.warning(str(said.message))
     return solid

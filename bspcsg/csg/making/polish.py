@@ -5,10 +5,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from ..._types import FloatArray
+from ..._types import FloatArray, IndexArray
 from ...bsp import Region
-from ...mesh.mesh import Mesh
+from ...geometry.polygon import signed_area
+from ...mesh.mesh import Mesh, surfaces_of
 from ...solid.solid import Solid
 
 #: Entries of a matrix may be this far from a rotation's to be taken for one.
@@ -112,15 +114,38 @@ def pitch_of(body: Solid | Region) -> int:
 
 
 def snapped(body: Solid | Region, pitch: int) -> tuple[Solid | Region, float]:
-    """Return a body with its corners on a lattice, and how far the farthest moved."""
+    """Return a body with its corners on a lattice, and how far the farthest moved.
+
+    One of which a piece or a hole would lose more than half of its size stays as it is.
+    """
     if isinstance(body, Region):
         loops = body.to_polygons()
         on_lattice = [np.round(loop, -pitch) for loop in loops]
+        if not _survive(*([signed_area(loop) for loop in some] for some in (loops, on_lattice))):
+            return body, 0.0
         moved = max(_farthest(*pair) for pair in zip(loops, on_lattice, strict=True))
         return Region(on_lattice, pitch=pitch), moved
     mesh = body.normalized().to_mesh()
     corners = np.round(mesh.vertices, -pitch)
+    surfaces = surfaces_of(mesh.faces, len(corners))
+    if not _survive(*(_volumes(c[mesh.faces], surfaces) for c in (mesh.vertices, corners))):
+        return body, 0.0
     return Solid(corners, mesh.faces, pitch=pitch), _farthest(mesh.vertices, corners)
+
+
+def _survive(before: ArrayLike, after: ArrayLike) -> bool:
+    """Say whether all signed sizes stay what they were, by half at least."""
+    whole = np.asarray(before)
+    return bool((np.asarray(after) * np.sign(whole) >= np.abs(whole) / 2).all())
+
+
+def _volumes(triangles: FloatArray, surfaces: IndexArray) -> FloatArray:
+    """Return the signed volume within each surface, from its first corner for few digits' sake."""
+    names, first, owner = np.unique(surfaces, return_index=True, return_inverse=True)
+    a, b, c = np.moveaxis(triangles - triangles[first, :1][owner], 1, 0)
+    volumes = np.zeros(len(names))
+    np.add.at(volumes, owner, (np.cross(a, b) * c).sum(axis=1) / 6)
+    return volumes
 
 
 def _farthest(before: FloatArray, after: FloatArray) -> float:

@@ -22,6 +22,9 @@ from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 
+#: Pixels per inch of drawings that do not say, and the fewest that count.
+_DPI, _LEAST_DPI = 72.0, 0.001
+
 
 @node("import")
 def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
@@ -33,7 +36,7 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
     if suffix == ".dxf":
         return _dxf(path, arguments, arguments.number("scale", 1.0))
     if suffix == ".svg":
-        return svg_region(path, arguments.number("dpi", 72.0), arguments.flag("center"))
+        return _svg(path, owner, arguments, run)
     if suffix not in FORMATS:
         known = ", ".join(sorted([*FORMATS, ".dxf", ".svg"]))
         message = f"“{suffix}” files are not supported; known are {known}."
@@ -48,6 +51,17 @@ def drawing_of(arguments: Arguments, run: Evaluation) -> Region:
     """Return the DXF file that an extrusion names, as scripts of before 2013 have it."""
     # What an extrusion scales is its upper end.
     return _dxf(_path(arguments, run), arguments, 1.0)
+
+
+def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Region:
+    dpi = arguments.number("dpi", _DPI)
+    if dpi < _LEAST_DPI:
+        run.warn(owner, f"its dpi must be {_LEAST_DPI:g} or more; it is {_DPI:g} instead")
+        dpi = _DPI
+    for name in ("id", "layer"):
+        if arguments.value(name) not in (None, ""):
+            run.warn(owner, f"all of the drawing is read: its {name} does not count")
+    return svg_region(path, dpi, arguments.flag("center"))
 
 
 def _dxf(path: Path, arguments: Arguments, scale: float) -> Region:

@@ -16,6 +16,9 @@ from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
 
+#: Entries of matrices beyond this may move a body beyond all lattices.
+_FAR = 1e15
+
 
 @node("multmatrix", makes_corners=False)
 def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
@@ -37,7 +40,10 @@ def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> 
         return None
     if isinstance(body, Region):
         return body.transform(matrix[:2, [0, 1, 3]])
-    return body.transform(matrix)
+    moved = body.transform(matrix)
+    if np.abs(matrix).max() > _FAR:
+        moved.tree  # noqa: B018  builds it, so that what no lattice holds is this node's error
+    return moved
 
 
 def _flat_map(matrix: FloatArray) -> FloatArray:

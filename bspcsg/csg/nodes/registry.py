@@ -59,6 +59,8 @@ class Evaluation:
         True while a child of a hull is made, of which only the corners count.
     loose : dict
         Empty solids for meshes in hulls that bound nothing by their `id`, each with its corners.
+    told : set of str
+        The messages that the caller has heard.
     """
 
     script: str = "<csg>"
@@ -71,6 +73,7 @@ class Evaluation:
     united: dict[int, tuple[Region, list[Region]]] = field(default_factory=dict)
     in_hull: bool = False
     loose: dict[int, tuple[Solid, FloatArray]] = field(default_factory=dict)
+    told: set[str] = field(default_factory=set)
 
     def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
         """Return the arguments of a node."""
@@ -104,7 +107,11 @@ class Evaluation:
         self.tell(f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}")
 
     def tell(self, message: str) -> None:
-        """Tell the caller what was left out, by a message that names its place."""
+        """Tell the caller what was left out, once, by a message that names its place."""
+        # A polished model is evaluated twice.
+        if message in self.told:
+            return
+        self.told.add(message)
         warnings.warn(self.explained(message), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:

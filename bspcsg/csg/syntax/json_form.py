@@ -14,9 +14,7 @@ from typing import Any, TypeGuard
 
 from ...errors import FormatError
 from ...parameters import at_least, file_path, of_kind, text_value
-from .parser import DEEPEST_VECTOR, WORDS
-from .tokens import WORD
-from .tree import Argument, CsgTree, Node, Value
+from .tree import DEEPEST_VECTOR, WORDS, Argument, CsgTree, Node, Value, is_name
 
 FORMAT = "bspcsg-csg"
 VERSION = 1
@@ -58,7 +56,7 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
     place = Path() if folder is None else Path(file_path(folder, "folder"))
     text_value(name, "name")
     try:
-        data = json.loads(text_value(text, "text"))
+        data = json.loads(text_value(text, "text").removeprefix("\ufeff"))
     except (ValueError, RecursionError) as error:
         raise FormatError(f"{name}: this is no JSON: {error}.", "syntax") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
@@ -100,13 +98,13 @@ def _value_data(value: Value) -> Any:
 def _nodes(data: Any, where: str, name: str, depth: int) -> tuple[Node, ...]:
     if not isinstance(data, list):
         raise _wrong(name, where, "a list of nodes")
-    if depth > DEEPEST_NODE:
+    if data and depth > DEEPEST_NODE:
         raise FormatError(f"{name}: nodes nest deeper than {DEEPEST_NODE}.", "too_deep")
     return tuple(_node(entry, f"{where}[{k}]", name, depth) for k, entry in enumerate(data))
 
 
 def _node(data: Any, where: str, name: str, depth: int) -> Node:
-    if not isinstance(data, dict) or not _is_name(data.get("node")):
+    if not isinstance(data, dict) or not is_name(data.get("node")):
         raise _wrong(name, where, "a node with a name")
     modifiers = data.get("modifiers", "")
     if not isinstance(modifiers, str) or set(modifiers) - set("#%!*"):
@@ -121,7 +119,7 @@ def _node(data: Any, where: str, name: str, depth: int) -> Node:
 
 def _argument(data: Any, where: str, name: str) -> Argument:
     named = data.get("name") if isinstance(data, dict) else None
-    if not isinstance(data, dict) or "value" not in data or not (named is None or _is_name(named)):
+    if not isinstance(data, dict) or "value" not in data or not (named is None or is_name(named)):
         raise _wrong(name, where, "an argument with a value")
     if named in WORDS:
         raise _wrong(name, f"{where}.name", f"a name, and {named} is a value")
@@ -155,11 +153,6 @@ def _double(number: int | float) -> float:
         return float(number)
     except OverflowError:
         return math.inf
-
-
-def _is_name(name: Any) -> bool:
-    match = WORD.fullmatch(name) if isinstance(name, str) else None
-    return match is not None and match.lastgroup == "name"
 
 
 def _wrong(name: str, where: str, expected: str) -> FormatError:

@@ -21,19 +21,7 @@ from ...errors import FormatError
 from ...parameters import file_path, text_value
 from .source import Script
 from .tokens import Token, tokens, unquoted
-from .tree import Argument, CsgTree, Node, Place, Value
-
-#: Deepest vector in a vector; OpenSCAD writes two, for matrices and paths.
-DEEPEST_VECTOR = 64
-
-#: Names that are values, so that no argument has them.
-WORDS: dict[str, Value] = {
-    "true": True,
-    "false": False,
-    "undef": None,
-    "inf": math.inf,
-    "nan": math.nan,
-}
+from .tree import DEEPEST_VECTOR, WORDS, Argument, CsgTree, Node, Place, Value
 
 
 def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> CsgTree:

@@ -1,6 +1,8 @@
 """Trees without the nodes that make no difference."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +14,10 @@ _PLAIN = frozenset({"group", "union"})
 
 #: Nodes whose children may be several instead of their union.
 _UNITING = frozenset({*_PLAIN, "color", "multmatrix", "render"})
+
+#: Nodes that make plane figures, and such as make what their first child is.
+_FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection"})
+_KEEPING = _UNITING | {"difference", "intersection", "hull", "minkowski", "resize"}
 
 
 def simplified(tree: CsgTree) -> CsgTree:
@@ -25,9 +31,26 @@ def simplified(tree: CsgTree) -> CsgTree:
     return replace(tree, nodes=_with_children(Node("union", (), roots)))
 
 
+class _Done(NamedTuple):
+    """A simplified node.
+
+    Parameters
+    ----------
+    node : Node
+    is_flat : bool or None
+        True for a plane figure, False for a solid, None for nothing.
+    is_mixed : bool
+        True if its children are both, of which those of one kind do not count.
+    """
+
+    node: Node
+    is_flat: bool | None
+    is_mixed: bool
+
+
 def _with_children(root: Node) -> tuple[Node, ...]:
     """Return the simplified children of a node that unites; trees may be any depth."""
-    done: list[Node] = []
+    done: list[_Done] = []
     waiting: list[tuple[Node, bool]] = [(root, False)]
     while waiting:
         node, children_done = waiting.pop()
@@ -37,24 +60,40 @@ def _with_children(root: Node) -> tuple[Node, ...]:
             waiting.extend((child, False) for child in reversed(children))
             continue
         first = len(done) - len(children)
-        made = tuple(done[first:])
+        made = done[first:]
         del done[first:]
-        done.append(_rebuilt(node, made, at_top=not waiting))
-    return done[0].children
+        kinds = [child.is_flat for child in made if child.is_flat is not None]
+        rebuilt = _rebuilt(node, made, at_top=not waiting)
+        is_mixed = len(set(kinds)) > 1 or any(
+            child.is_mixed and child.node is rebuilt for child in made
+        )
+        done.append(_Done(rebuilt, _is_flat(node, kinds), is_mixed))
+    return done[0].node.children
 
 
-def _rebuilt(node: Node, children: tuple[Node, ...], at_top: bool) -> Node:
+def _rebuilt(node: Node, made: Sequence[_Done], at_top: bool) -> Node:
+    children = tuple(child.node for child in made)
     if node.name in _UNITING:
-        children = tuple(part for child in children for part in _parts(child))
+        children = tuple(part for child in made for part in _parts(child))
     if not at_top and _is_plain(node) and len(children) == 1:
         return children[0]
     modifiers = node.modifiers.replace("!", "")
     return Node(node.name, node.arguments, children, modifiers, node.place)
 
 
-def _parts(node: Node) -> tuple[Node, ...]:
+def _is_flat(node: Node, kinds: Sequence[bool]) -> bool | None:
+    """Say whether a node with children of these kinds makes a plane figure."""
+    if node.name in _KEEPING:
+        return kinds[0] if kinds else None
+    texts = [argument.value for argument in node.arguments if isinstance(argument.value, str)]
+    is_drawing = any(text.lower().endswith((".dxf", ".svg")) for text in texts)
+    return node.name in _FIGURES or (node.name == "import" and is_drawing)
+
+
+def _parts(child: _Done) -> tuple[Node, ...]:
     """Return what a child of a node that unites may be replaced by."""
-    return node.children if _is_plain(node) else (node,)
+    is_loose = _is_plain(child.node) and not child.is_mixed
+    return child.node.children if is_loose else (child.node,)
 
 
 def _is_plain(node: Node) -> bool:

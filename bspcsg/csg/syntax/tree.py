@@ -1,14 +1,37 @@
 """The tree that a script stands for: nodes with arguments and children, as plain values."""
 
+import math
+import re
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
+from numbers import Real
 from pathlib import Path
-from typing import NamedTuple, TypeAlias
+from types import NoneType
+from typing import Any, NamedTuple, TypeAlias, TypeGuard, TypeVar
 
-from ...errors import BspcsgError
+from ...errors import BspcsgError, invalid_parameter
+from ...parameters import shown
 from .intermediate import Intermediate
 
 #: An argument: a number, a text, true or false, undef (None), or a vector of values.
 Value: TypeAlias = "float | str | bool | tuple[Value, ...] | None"
+
+#: Names that are values, so that no argument has them.
+WORDS: dict[str, Value] = {
+    "true": True,
+    "false": False,
+    "undef": None,
+    "inf": math.inf,
+    "nan": math.nan,
+}
+
+#: Deepest vector in a vector; OpenSCAD writes two, for matrices and paths.
+DEEPEST_VECTOR = 64
+
+_SCALAR = frozenset({float, str, bool, NoneType})
+_NAME = re.compile(r"\$?[A-Za-z_]\w*")
+_Part = TypeVar("_Part")
 
 
 class Place(NamedTuple):
@@ -24,6 +47,40 @@ NOWHERE = Place(0, 0)
 SPECIAL = ("$fn", "$fa", "$fs")
 
 
+def is_name(name: Any) -> TypeGuard[str]:
+    """Say whether it may be the name of a node or of an argument."""
+    return isinstance(name, str) and _NAME.fullmatch(name) is not None
+
+
+def _plain(value: Any, depth: int = 0) -> "Value":
+    """Return a value as trees hold it: numbers as doubles, vectors as tuples."""
+    if type(value) in _SCALAR:
+        return value  # type: ignore[no-any-return]
+    if hasattr(value, "tolist"):  # NumPy's
+        return _plain(value.tolist(), depth)
+    if isinstance(value, (tuple, list)) and depth < DEEPEST_VECTOR:
+        if isinstance(value, tuple) and _SCALAR.issuperset(map(type, value)):
+            return value
+        return tuple(_plain(entry, depth + 1) for entry in value)
+    if isinstance(value, str):
+        return str(value)
+    with suppress(OverflowError):
+        if isinstance(value, Real):
+            return float(value)
+    raise invalid_parameter(
+        "A value in a script is a number, a text, true, false, None or a vector of these, within"
+        f" each other up to {DEEPEST_VECTOR} times, not {shown(value)}."
+    )
+
+
+def _parts(kind: type[_Part], given: Any, what: str) -> tuple[_Part, ...]:
+    """Return the parts of a tree as a tuple."""
+    parts = tuple(given) if isinstance(given, (tuple, list)) else None
+    if parts is None or not all(isinstance(part, kind) for part in parts):
+        raise invalid_parameter(f"{what} must be a tuple of {kind.__name__}, not {shown(given)}.")
+    return parts
+
+
 def _are_same(one: "Value", other: "Value") -> bool:
     """Say whether values are equal; true is not 1, though Python's are."""
     if isinstance(one, tuple) and isinstance(other, tuple):
@@ -33,17 +90,27 @@ def _are_same(one: "Value", other: "Value") -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Argument:
-    """One argument of a node.
+    """One argument of a node; lists become tuples, and all numbers doubles.
 
     Parameters
     ----------
     name : str or None
         Such as ``"size"`` or ``"$fn"``; None for an argument that goes by its position.
     value : Value
+
+    Raises
+    ------
+    InvalidParameterError
+        If the name or the value is none that a script can hold.
     """
 
     name: str | None
     value: Value
+
+    def __post_init__(self) -> None:
+        if self.name is not None and (not is_name(self.name) or self.name in WORDS):
+            raise invalid_parameter(f"{shown(self.name)} cannot be the name of an argument.")
+        object.__setattr__(self, "value", _plain(self.value))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Argument):
@@ -54,9 +121,13 @@ class Argument:
         return hash((self.name, self.value))
 
 
-@dataclass(frozen=True, slots=True)
+#: A node with the numbers of its children.
+_Row: TypeAlias = tuple[str, tuple[Argument, ...], list[int], str, Place]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Node:
-    """A node: a primitive, a transform or an operation on its children.
+    """A node: a primitive, a transform or an operation on its children; trees may be any depth.
 
     Parameters
     ----------
@@ -69,6 +140,11 @@ class Node:
         Some of ``#`` (kept), ``%`` and ``*`` (ignored) and ``!`` (this node alone counts).
     place : Place
         The place of its name; it does not count when nodes are compared.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a script cannot hold such a node.
     """
 
     name: str
@@ -77,10 +153,100 @@ class Node:
     modifiers: str = ""
     place: Place = field(default=NOWHERE, compare=False)
 
+    def __post_init__(self) -> None:
+        if not is_name(self.name):
+            raise invalid_parameter(f"{shown(self.name)} cannot be the name of a node.")
+        if not isinstance(self.modifiers, str) or set(self.modifiers) - set("#%!*"):
+            raise invalid_parameter(f"Modifiers are some of # % ! *, not {shown(self.modifiers)}.")
+        object.__setattr__(self, "arguments", _parts(Argument, self.arguments, "Arguments"))
+        object.__setattr__(self, "children", _parts(Node, self.children, "Children"))
+
     @property
     def is_ignored(self) -> bool:
         """True if a modifier takes the node out of the model."""
         return "%" in self.modifiers or "*" in self.modifiers
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Node):
+            return NotImplemented
+        waiting, seen = [(self, other)], set()
+        while waiting:
+            a, b = waiting.pop()
+            if a is b or (id(a), id(b)) in seen:
+                continue
+            seen.add((id(a), id(b)))
+            if _head(a) != _head(b):
+                return False
+            waiting.extend(zip(a.children, b.children, strict=True))
+        return True
+
+    def __hash__(self) -> int:
+        made: dict[int, int] = {}
+        for node in _distinct(self):
+            made[id(node)] = hash((_head(node), tuple(made[id(child)] for child in node.children)))
+        return made[id(self)]
+
+    def __repr__(self) -> str:
+        """Show all fields, as dataclasses do."""
+        parts: list[str] = []
+        waiting: list[Node | str] = [self]
+        while waiting:
+            item = waiting.pop()
+            if isinstance(item, str):
+                parts.append(item)
+                continue
+            parts.append(f"Node(name={item.name!r}, arguments={item.arguments!r}, children=(")
+            end = "," if len(item.children) == 1 else ""
+            waiting.append(f"{end}), modifiers={item.modifiers!r}, place={item.place!r})")
+            for number, child in reversed(list(enumerate(item.children))):
+                waiting += [child, ", "] if number else [child]
+        return "".join(parts)
+
+    def __copy__(self) -> "Node":
+        """Return the node itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, memo: dict[int, object]) -> "Node":
+        """Return the node itself, which never changes."""
+        return self
+
+    def __reduce__(self) -> tuple[Callable[[list[_Row]], "Node"], tuple[list[_Row]]]:
+        """Pickle the nodes one after another, each after its children."""
+        nodes = _distinct(self)
+        numbers = {id(node): number for number, node in enumerate(nodes)}
+        return _planted, (
+            [
+                (n.name, n.arguments, [numbers[id(c)] for c in n.children], n.modifiers, n.place)
+                for n in nodes
+            ],
+        )
+
+
+def _head(node: Node) -> tuple[str, tuple[Argument, ...], str, int]:
+    """Return all that a node says, and how many children it has."""
+    return node.name, node.arguments, node.modifiers, len(node.children)
+
+
+def _distinct(root: Node) -> list[Node]:
+    """Return the nodes of a tree, each once and after its children."""
+    waiting: list[tuple[Node, bool]] = [(root, False)]
+    done: dict[int, Node] = {}
+    while waiting:
+        node, is_ready = waiting.pop()
+        if is_ready:
+            done.setdefault(id(node), node)
+        elif id(node) not in done:
+            waiting.append((node, True))
+            waiting.extend((child, False) for child in node.children)
+    return list(done.values())
+
+
+def _planted(rows: list[_Row]) -> Node:
+    """Return the node of the last row."""
+    made: list[Node] = []
+    for name, arguments, children, modifiers, place in rows:
+        made.append(Node(name, arguments, tuple(made[k] for k in children), modifiers, place))
+    return made[-1]
 
 
 @dataclass(frozen=True)
@@ -102,6 +268,9 @@ class CsgTree:
     name: str = field(default="<csg>", compare=False)
     folder: Path = field(default_factory=Path, compare=False)
     intermediate: Intermediate | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "nodes", _parts(Node, self.nodes, "The nodes of a tree"))
 
     def explained(self, error: BspcsgError) -> BspcsgError:
         """Return an error about a node with all that is known about its place."""
