@@ -53,7 +53,7 @@ impl Precision {
 const FARTHEST: f64 = 4.0;
 
 /// Comparisons of boxes, at one to six nanoseconds each, after which mending gives up.
-const WORK: usize = 4_000_000_000;
+const WORK: usize = 2_000_000_000;
 
 /// The comparisons of boxes that take as long as one of triangles: between 20, where doubles decide,
 /// and a thousand, where both lie in a plane but for rounding (benchmark `triangles in doubles`).
