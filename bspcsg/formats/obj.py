@@ -277,6 +277,7 @@ def kept(said: Attributes) -> Attributes:
 
     Colours of vertices and materials of faces; texture coordinates and normals of corners.
     """
+    said = said.without_empty_material()
     given = _named_materials(said)
     names = _held_names({*np.unique(given).tolist(), *said.materials})
 
