@@ -185,10 +185,7 @@ class _Describing:
         if len(mesh.faces) == 0:
             self.empty += 1
             return None
-        own = mesh.attributes is not None and {"color", "material"}.intersection(
-            mesh.attributes.names
-        )
-        return SceneNode(name, matrix, mesh, None if own else color)
+        return SceneNode(name, matrix, mesh, None if _is_painted(mesh.attributes) else color)
 
     def _mesh(self, solid: Solid, name: str) -> RawMesh:
         if id(solid) not in self._meshes:
@@ -213,6 +210,11 @@ def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
     said = mesh.attributes.without_empty_material() if mesh.carried is not None else None
     return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
+
+
+def _is_painted(said: Attributes | None) -> bool:
+    """Say whether faces have colours of their own, which go before that of the part."""
+    return said is not None and not {"color", "material"}.isdisjoint(said.names)
 
 
 class _Held:
@@ -254,10 +256,11 @@ def _in_place(assembly: Assembly) -> RawMesh:
     pieces = []
     for part in assembly.parts:
         mesh = moved(part.shape, part.factors).normalized().to_mesh()
-        said = mesh.attributes if mesh.carried is not None else None
-        if part.color is not None and said is None:
+        said = mesh.attributes.without_empty_material()
+        if part.color is not None and not _is_painted(said):
             name = "#" + bytes(round(value * _BYTE) for value in part.color).hex()
-            face = {"material": np.full(len(mesh.faces), name)}
-            said = Attributes(mesh.faces, {}, {}, face, {name: Material(part.color)})
-        pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=said))
+            face = {**said.face, "material": np.full(len(mesh.faces), name)}
+            said = replace(said, face=face, materials={name: Material(part.color)})
+        own = None if said.is_empty else said
+        pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
     return joined(pieces)

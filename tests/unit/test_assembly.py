@@ -332,6 +332,30 @@ def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     assert b.Assembly.load(tmp_path / "x.stl").to_solid().volume == 8
 
 
+@pytest.mark.parametrize("suffix", [".3mf", ".obj"])
+def test_colours_of_parts_with_attributes_survive_files(tmp_path: Path, suffix: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    bare = b.Solid(
+        mesh.vertices, mesh.faces, face_attributes={"material": np.full(12, ""), "id": [7] * 12}
+    )
+    red = {"material": np.full(12, "red")}
+    own = b.Solid(
+        mesh.vertices, mesh.faces, face_attributes=red, materials={"red": b.Material(RED[:3])}
+    )
+    blue = (0.0, 0.0, 1.0, 1.0)
+    parts = [b.Assembly("bare", bare, color=blue), b.Assembly("own", own, color=blue)]
+    made = b.Assembly("both", [parts[0], parts[1].translate(3, 0, 0)])
+    (finding,) = made.save(tmp_path / f"x{suffix}")
+    assert finding.code == "attributes_left_out"
+    colors = []
+    for part in b.Assembly.load(tmp_path / f"x{suffix}"):
+        materials = part.solid.to_mesh().materials.values()
+        colors += [part.color] if part.color else [one.color for one in materials]
+    assert colors == [blue, RED]
+    united = made.to_solid().to_mesh().attributes
+    assert {tuple(one) for one in united.at_corners("color")[:, 0].tolist()} >= {(0, 0, 255, 255)}
+
+
 def test_what_cannot_be_written_or_read_is_refused(tmp_path: Path) -> None:
     with pytest.raises(b.FormatError) as caught:
         car().save(tmp_path / "x.stl")
