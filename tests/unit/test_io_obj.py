@@ -311,3 +311,8 @@ def test_bytes_have_nothing_beside_them(tmp_path: Path, monkeypatch: pytest.Monk
         assert not loads(member, "obj").to_mesh().materials
     with Path("x.obj").open("rb") as file:
         assert len(loads(file, "obj").to_mesh().materials) == 1
+
+
+def test_names_of_objects_that_are_no_utf_8_stay_apart() -> None:
+    text = f"{SQUARE}o \xe4\nf 1 2 3\no \xf6\nf 1 3 4\n".encode("latin-1")
+    assert decoded("x.obj", text, ".obj").objects == (("ä", 1), ("ö", 1))
