@@ -111,7 +111,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
         raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
     name = getattr(data, "name", None)
     called = name if isinstance(name, str) else "<bytes>"
-    files = None if _is_on_disk(data) else {}
+    files: dict[str, bytes] | None = None if _is_on_disk(data) else {}
     return solid_of(decoded(called, content, named, files), called, **options)
 
 

@@ -59,7 +59,8 @@ def test_units(tmp_path: Path, unit: str, size: float) -> None:
 def test_units_that_differ_from_part_to_part_are_told(tmp_path: Path, unit: str) -> None:
     space = 'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06"'
     path = package(
-        tmp_path / "x.3mf", model("", '<item objectid="1" p:path="/3D/o.model"/>', f"{unit} {space}")
+        tmp_path / "x.3mf",
+        model("", '<item objectid="1" p:path="/3D/o.model"/>', f"{unit} {space}"),
     )
     with zipfile.ZipFile(path, "a") as archive:
         archive.writestr("3D/o.model", model(CUBE, "", 'unit="inch"'))
