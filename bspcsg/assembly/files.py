@@ -93,15 +93,14 @@ class _Making:
         inner = (self._node(child) for child in node.children)
         content: Any = [child for child in inner if child is not None]
         if node.mesh is not None:
-            content = self._solid(node.mesh, node.color is not None)
+            content = self._solid(node.mesh)
         factor = transform.matrix_factor(node.matrix)
         made = Assembly(node.name, content, color=node.color)
         return made._moved((factor,))
 
-    def _solid(self, mesh: RawMesh, colored: bool) -> Solid:
+    def _solid(self, mesh: RawMesh) -> Solid:
         if id(mesh) not in self._solids:
-            plain = replace(mesh, attributes=None) if colored else mesh
-            self._solids[id(mesh)] = solid_of(plain, self._path, **self._options)
+            self._solids[id(mesh)] = solid_of(mesh, self._path, **self._options)
         return self._solids[id(mesh)]
 
 

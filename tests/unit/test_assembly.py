@@ -356,6 +356,24 @@ def test_colours_of_parts_with_attributes_survive_files(tmp_path: Path, suffix: 
     assert {tuple(one) for one in united.at_corners("color")[:, 0].tolist()} >= {(0, 0, 255, 255)}
 
 
+@pytest.mark.parametrize("name", ["uv", "heat"])
+def test_colours_and_attributes_of_parts_share_a_glb(tmp_path: Path, name: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    values = {name: np.arange(16.0).reshape(8, 2) / 16}
+    part = b.Assembly("part", b.Solid(mesh.vertices, mesh.faces, vertex_attributes=values))
+    parts = [b.Assembly("red", [part], color=RED), b.Assembly("grey", [part], color=GREY)]
+    b.Assembly("both", [*parts, parts[0].translate(3, 0, 0)]).save(tmp_path / "x.glb")
+    again = b.Assembly.load(tmp_path / "x.glb")
+    again.save(tmp_path / "x.glb")
+    found = list(b.Assembly.load(tmp_path / "x.glb"))
+    assert [one.color for one in found] == [one.color for one in again] == [RED, GREY, RED]
+    assert found[0].shape is found[2].shape
+    said = [one.solid.to_mesh().attributes for one in found]
+    assert [one.names for one in said] == [(name,)] * 3
+    corners = np.arange(16.0).reshape(8, 2)[mesh.faces] / 16
+    assert all((one.at_corners(name) == corners).all() for one in said)
+
+
 def test_what_cannot_be_written_or_read_is_refused(tmp_path: Path) -> None:
     with pytest.raises(b.FormatError) as caught:
         car().save(tmp_path / "x.stl")
