@@ -12,7 +12,7 @@ from .._types import FloatArray
 from ..attributes.attributes import Attributes
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
-from ..formats import single
+from ..formats import obj, single
 from ..formats.atomic import write_file
 from ..formats.files import form_of, read, write
 from ..formats.glb import scene as glb
@@ -119,7 +119,8 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":
-        return write(_in_place(assembly), path)
+        whole, lost = _in_place(assembly)
+        return (*write(whole, path), *_left_out(lost, suffix))
     form = form_of(path)
     if suffix not in _TREES:
         message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
@@ -243,6 +244,11 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
             names = () if held.mesh.attributes is None else held.mesh.attributes.names
             lost.update(set(node.mesh.attributes.names).difference(names))
+    return _left_out(lost, suffix)
+
+
+def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about attributes of some names, if there are any."""
     if not lost:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(lost))
@@ -250,9 +256,13 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
     return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
 
 
-def _in_place(assembly: Assembly) -> RawMesh:
-    """Return all parts as one mesh, each an object where it is."""
-    pieces = []
+def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
+    """Return all parts as one mesh, each an object where it is, and the attributes left out.
+
+    What OBJ does not hold is left out first: parts may have it in types that do not go together.
+    """
+    pieces: list[RawMesh] = []
+    lost: set[str] = set()
     for part in assembly.parts:
         mesh = moved(part.shape, part.factors).normalized().to_mesh()
         said = mesh.attributes.without_empty_material()
@@ -260,6 +270,8 @@ def _in_place(assembly: Assembly) -> RawMesh:
             name = "#" + bytes(round(value * _BYTE) for value in part.color).hex()
             face = {**said.face, "material": np.full(len(mesh.faces), name)}
             said = replace(said, face=face, materials={name: Material(part.color)})
-        own = None if said.is_empty else said
+        held = obj.kept(said)
+        lost.update(set(said.names).difference(held.names))
+        own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
-    return joined(pieces)
+    return joined(pieces), lost

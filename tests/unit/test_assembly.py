@@ -320,6 +320,22 @@ def test_what_files_cannot_hold_of_assemblies_is_named(tmp_path: Path, suffix: s
     assert ("single_precision" in found) == (suffix == ".glb")
 
 
+def test_parts_of_an_obj_may_have_attributes_of_other_types(tmp_path: Path) -> None:
+    parts = [b.Assembly(str(tag), b.cube(1).tagged(tag=tag)) for tag in ("a", 1)]
+    (finding,) = b.Assembly("both", parts).save(tmp_path / "x.obj")
+    assert finding.code == "attributes_left_out" and "“tag”" in finding.message
+    assert len(list(b.Assembly.load(tmp_path / "x.obj"))) == 2
+
+
+def test_parts_without_a_colour_are_white_in_an_obj(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    blue = {"color": np.full((8, 3), [0, 0, 255], "u1")}
+    painted = b.Solid(mesh.vertices, mesh.faces, vertex_attributes=blue)
+    b.Assembly("both", [painted, b.cube(1).translate(3, 0, 0)]).save(tmp_path / "x.obj")
+    colors = b.load(tmp_path / "x.obj").to_mesh().vertex_attributes["color"]
+    assert np.unique(colors, axis=0).tolist() == [[0, 0, 1], [1, 1, 1]]
+
+
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     car().save(tmp_path / "x.obj")
     again = b.Assembly.load(tmp_path / "x.obj")
