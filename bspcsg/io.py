@@ -88,6 +88,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
     Parameters
     ----------
     data : bytes or file
+        Materials and pictures that lie beside it are read only if it is a file on disk.
     suffix : str
         One of `FORMATS`, with or without its dot.
     **options
@@ -110,7 +111,17 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
         raise FormatError("A mesh is read from bytes; open the file with mode 'rb'.", "unreadable")
     name = getattr(data, "name", None)
     called = name if isinstance(name, str) else "<bytes>"
-    return solid_of(decoded(called, content, named), called, **options)
+    files: dict[str, bytes] | None = None if _is_on_disk(data) else {}
+    return solid_of(decoded(called, content, named, files), called, **options)
+
+
+def _is_on_disk(data: Any) -> bool:
+    """Say whether something is a file of the system; members of archives have names, too."""
+    try:
+        data.fileno()
+    except (AttributeError, OSError):
+        return False
+    return True
 
 
 def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> tuple[Finding, ...]:

@@ -12,7 +12,7 @@ from .._types import FloatArray
 from ..attributes.attributes import Attributes
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
-from ..formats import single
+from ..formats import obj, single
 from ..formats.atomic import write_file
 from ..formats.files import form_of, read_as, write
 from ..formats.glb import scene as glb
@@ -98,15 +98,14 @@ class _Making:
         inner = (self._node(child) for child in node.children)
         content: Any = [child for child in inner if child is not None]
         if node.mesh is not None:
-            content = self._solid(node.mesh, node.color is not None)
+            content = self._solid(node.mesh)
         factor = transform.matrix_factor(node.matrix)
         made = Assembly(node.name, content, color=node.color)
         return made._moved((factor,))
 
-    def _solid(self, mesh: RawMesh, colored: bool) -> Solid:
+    def _solid(self, mesh: RawMesh) -> Solid:
         if id(mesh) not in self._solids:
-            plain = replace(mesh, attributes=None) if colored else mesh
-            self._solids[id(mesh)] = solid_of(plain, self._path, **self._options)
+            self._solids[id(mesh)] = solid_of(mesh, self._path, **self._options)
         return self._solids[id(mesh)]
 
 
@@ -125,7 +124,8 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":
-        return write(_in_place(assembly), path)
+        whole, lost = _in_place(assembly)
+        return (*write(whole, path), *_left_out(lost, suffix))
     form = form_of(path)
     if suffix not in _TREES:
         message = f"{os.fspath(path)}: assemblies are written as 3MF, GLB, OBJ and .csg."
@@ -190,10 +190,7 @@ class _Describing:
         if len(mesh.faces) == 0:
             self.empty += 1
             return None
-        own = mesh.attributes is not None and {"color", "material"}.intersection(
-            mesh.attributes.names
-        )
-        return SceneNode(name, matrix, mesh, None if own else color)
+        return SceneNode(name, matrix, mesh, None if _is_painted(mesh.attributes) else color)
 
     def _mesh(self, solid: Solid, name: str) -> RawMesh:
         if id(solid) not in self._meshes:
@@ -218,6 +215,11 @@ def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
     vertices = mesh.vertices.astype(np.float32) if in_single else mesh.vertices
     said = mesh.attributes.without_empty_material() if mesh.carried is not None else None
     return RawMesh(vertices.astype(np.float64), mesh.faces, name, attributes=said)
+
+
+def _is_painted(said: Attributes | None) -> bool:
+    """Say whether faces have colours of their own, which go before that of the part."""
+    return said is not None and not {"color", "material"}.isdisjoint(said.names)
 
 
 class _Held:
@@ -247,6 +249,11 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
             names = () if held.mesh.attributes is None else held.mesh.attributes.names
             lost.update(set(node.mesh.attributes.names).difference(names))
+    return _left_out(lost, suffix)
+
+
+def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about attributes of some names, if there are any."""
     if not lost:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(lost))
@@ -254,15 +261,22 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
     return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
 
 
-def _in_place(assembly: Assembly) -> RawMesh:
-    """Return all parts as one mesh, each an object where it is."""
-    pieces = []
+def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
+    """Return all parts as one mesh, each an object where it is, and the attributes left out.
+
+    What OBJ does not hold is left out first: parts may have it in types that do not go together.
+    """
+    pieces: list[RawMesh] = []
+    lost: set[str] = set()
     for part in assembly.parts:
         mesh = moved(part.shape, part.factors).normalized().to_mesh()
-        said = mesh.attributes if mesh.carried is not None else None
-        if part.color is not None and said is None:
+        said = mesh.attributes.without_empty_material()
+        if part.color is not None and not _is_painted(said):
             name = "#" + bytes(round(value * _BYTE) for value in part.color).hex()
-            face = {"material": np.full(len(mesh.faces), name)}
-            said = Attributes(mesh.faces, {}, {}, face, {name: Material(part.color)})
-        pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=said))
-    return joined(pieces)
+            face = {**said.face, "material": np.full(len(mesh.faces), name)}
+            said = replace(said, face=face, materials={name: Material(part.color)})
+        held = obj.kept(said)
+        lost.update(set(said.names).difference(held.names))
+        own = None if held.is_empty else held
+        pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
+    return joined(pieces), lost

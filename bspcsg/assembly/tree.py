@@ -358,7 +358,7 @@ def _free(path: str, taken: dict[str, int]) -> str:
 
 
 def _tagged(part: Part) -> Solid:
-    said = part.solid.to_mesh().attributes.names
+    said = part.solid.to_mesh().attributes.without_empty_material().names
     values: dict[str, Any] = {"part": part.path}
     if part.color is not None and not {"color", "material"}.intersection(said):
         values["color"] = np.rint(np.array(part.color) * 255).astype(np.uint8)

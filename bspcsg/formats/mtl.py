@@ -8,7 +8,7 @@ import numpy as np
 
 from ..attributes.material import Material
 from ..errors import InvalidMeshError
-from .source import Source
+from .source import Source, as_text
 
 #: The colour of materials that say none.
 _PLAIN = (0.8, 0.8, 0.8)
@@ -39,12 +39,8 @@ class Libraries:
 
 
 def name_of(words: Sequence[bytes]) -> str:
-    """Return the name that some words are; what is no UTF-8 is taken for Latin-1."""
-    name = b" ".join(words)
-    try:
-        return name.decode("utf-8")
-    except UnicodeDecodeError:
-        return name.decode("latin-1")
+    """Return the name that some words are."""
+    return as_text(b" ".join(words))
 
 
 def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Libraries:

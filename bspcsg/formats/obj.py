@@ -17,7 +17,7 @@ from . import mtl
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
 from .said import as_floats, chosen, is_color, said_of
-from .source import Source, quoted, whole
+from .source import Source, as_text, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
 _DROPPED = {
@@ -209,7 +209,7 @@ def _objects(
         sum(triangles[start:end])
         for start, end in zip(starts, [*starts[1:], len(triangles)], strict=True)
     ]
-    names = [name.decode("utf-8", "replace") for name, _ in begun]
+    names = [as_text(name) for name, _ in begun]
     return tuple((name, count) for name, count in zip(names, counts, strict=True) if count)
 
 
@@ -277,6 +277,7 @@ def kept(said: Attributes) -> Attributes:
 
     Colours of vertices and materials of faces; texture coordinates and normals of corners.
     """
+    said = said.without_empty_material()
     given = _named_materials(said)
     names = _held_names({*np.unique(given).tolist(), *said.materials})
 

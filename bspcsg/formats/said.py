@@ -41,7 +41,8 @@ def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None])
         }
         for kind in KINDS
     )
-    materials = said.materials if "material" in face else {}
+    names = face.get("material")
+    materials = said.materials if names is not None and names.dtype.kind == "U" else {}
     return Attributes(said.faces, vertex, corner, face, materials)
 
 

@@ -194,6 +194,14 @@ def quoted(words: bytes) -> str:
     return f"“{short}”" if text else "nothing"
 
 
+def as_text(name: bytes) -> str:
+    """Return a name in a file as text; what is no UTF-8 is taken for Latin-1."""
+    try:
+        return name.decode("utf-8")
+    except UnicodeDecodeError:
+        return name.decode("latin-1")
+
+
 def whole(word: bytes) -> int:
     """Return a whole number; ``1_0``, which Python takes for 10, is none."""
     if b"_" in word or len(word) > _MOST_DIGITS:

@@ -16,10 +16,13 @@ from ..mesh.weld import welded
 from . import single
 from .blocks import blocks
 from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
-from .source import BYTE_ORDER_MARK, Source, quoted
+from .source import BYTE_ORDER_MARK, Source, as_text, quoted
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+#: The mark in a header before the colour of the whole, in bytes.
+_COLOR = b"COLOR="
 
 #: The lines of one facet, by their first word.
 _FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
@@ -65,8 +68,9 @@ def _read_binary(source: Source) -> RawMesh:
         corners = records["corners"].reshape(-1, 3).astype(np.float64)
     _check_finite(source, corners)
     extra = len(data) - _HEADER - count * _RECORD.itemsize
-    name = data[: _HEADER - 4].split(b"\0")[0].strip().decode("latin-1")
-    coloured = ("colours",) if records["attribute"].any() else ()
+    title, mark, _ = data[: _HEADER - 4].partition(_COLOR)
+    name = title.split(b"\0")[0].strip().decode("latin-1")
+    coloured = ("colours",) if mark or records["attribute"].any() else ()
     return replace(_joined(corners, name, _extra_bytes(extra)), dropped=coloured)
 
 
@@ -113,7 +117,7 @@ def _read_text(source: Source) -> RawMesh:
         )
     raw = _joined(source.coordinates(rows, lines), "", ())
     ends = [*(first for _, first in solids[1:]), len(rows)]
-    names = [name.decode("utf-8", "replace") for name, _ in solids]
+    names = [as_text(name) for name, _ in solids]
     starts = [first for _, first in solids]
     objects = [(n, (end - start) // 3) for n, start, end in zip(names, starts, ends, strict=True)]
     title = next(filter(None, names), "")

@@ -320,6 +320,22 @@ def test_what_files_cannot_hold_of_assemblies_is_named(tmp_path: Path, suffix: s
     assert ("single_precision" in found) == (suffix == ".glb")
 
 
+def test_parts_of_an_obj_may_have_attributes_of_other_types(tmp_path: Path) -> None:
+    parts = [b.Assembly(str(tag), b.cube(1).tagged(tag=tag)) for tag in ("a", 1)]
+    (finding,) = b.Assembly("both", parts).save(tmp_path / "x.obj")
+    assert finding.code == "attributes_left_out" and "“tag”" in finding.message
+    assert len(list(b.Assembly.load(tmp_path / "x.obj"))) == 2
+
+
+def test_parts_without_a_colour_are_white_in_an_obj(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    blue = {"color": np.full((8, 3), [0, 0, 255], "u1")}
+    painted = b.Solid(mesh.vertices, mesh.faces, vertex_attributes=blue)
+    b.Assembly("both", [painted, b.cube(1).translate(3, 0, 0)]).save(tmp_path / "x.obj")
+    colors = b.load(tmp_path / "x.obj").to_mesh().vertex_attributes["color"]
+    assert np.unique(colors, axis=0).tolist() == [[0, 0, 1], [1, 1, 1]]
+
+
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     car().save(tmp_path / "x.obj")
     again = b.Assembly.load(tmp_path / "x.obj")
@@ -330,6 +346,48 @@ def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     assert [one.color for one in told.materials.values()] == [RED]
     b.cube(2).save(tmp_path / "x.stl")
     assert b.Assembly.load(tmp_path / "x.stl").to_solid().volume == 8
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".obj"])
+def test_colours_of_parts_with_attributes_survive_files(tmp_path: Path, suffix: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    bare = b.Solid(
+        mesh.vertices, mesh.faces, face_attributes={"material": np.full(12, ""), "id": [7] * 12}
+    )
+    red = {"material": np.full(12, "red")}
+    own = b.Solid(
+        mesh.vertices, mesh.faces, face_attributes=red, materials={"red": b.Material(RED[:3])}
+    )
+    blue = (0.0, 0.0, 1.0, 1.0)
+    parts = [b.Assembly("bare", bare, color=blue), b.Assembly("own", own, color=blue)]
+    made = b.Assembly("both", [parts[0], parts[1].translate(3, 0, 0)])
+    (finding,) = made.save(tmp_path / f"x{suffix}")
+    assert finding.code == "attributes_left_out"
+    colors = []
+    for part in b.Assembly.load(tmp_path / f"x{suffix}"):
+        materials = part.solid.to_mesh().materials.values()
+        colors += [part.color] if part.color else [one.color for one in materials]
+    assert colors == [blue, RED]
+    united = made.to_solid().to_mesh().attributes
+    assert {tuple(one) for one in united.at_corners("color")[:, 0].tolist()} >= {(0, 0, 255, 255)}
+
+
+@pytest.mark.parametrize("name", ["uv", "heat"])
+def test_colours_and_attributes_of_parts_share_a_glb(tmp_path: Path, name: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    values = {name: np.arange(16.0).reshape(8, 2) / 16}
+    part = b.Assembly("part", b.Solid(mesh.vertices, mesh.faces, vertex_attributes=values))
+    parts = [b.Assembly("red", [part], color=RED), b.Assembly("grey", [part], color=GREY)]
+    b.Assembly("both", [*parts, parts[0].translate(3, 0, 0)]).save(tmp_path / "x.glb")
+    again = b.Assembly.load(tmp_path / "x.glb")
+    again.save(tmp_path / "x.glb")
+    found = list(b.Assembly.load(tmp_path / "x.glb"))
+    assert [one.color for one in found] == [one.color for one in again] == [RED, GREY, RED]
+    assert found[0].shape is found[2].shape
+    said = [one.solid.to_mesh().attributes for one in found]
+    assert [one.names for one in said] == [(name,)] * 3
+    corners = np.arange(16.0).reshape(8, 2)[mesh.faces] / 16
+    assert all((one.at_corners(name) == corners).all() for one in said)
 
 
 def test_what_cannot_be_written_or_read_is_refused(tmp_path: Path) -> None:

@@ -55,6 +55,22 @@ def test_units(tmp_path: Path, unit: str, size: float) -> None:
     assert [finding.code for finding in raw.findings] == (["unit"] if unit else [])
 
 
+@pytest.mark.parametrize("unit", ["", 'unit="inch"'])
+def test_units_that_differ_from_part_to_part_are_told(tmp_path: Path, unit: str) -> None:
+    space = 'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06"'
+    path = package(
+        tmp_path / "x.3mf",
+        model("", '<item objectid="1" p:path="/3D/o.model"/>', f"{unit} {space}"),
+    )
+    with zipfile.ZipFile(path, "a") as archive:
+        archive.writestr("3D/o.model", model(CUBE, "", 'unit="inch"'))
+    raw = read(path)
+    assert raw.vertices.max() == (25.4 if unit else 1)
+    (finding,) = raw.findings
+    assert (finding.code, finding.severity) == ("unit", "note" if unit else "warning")
+    assert unit or "3D/o.model (inch)" in finding.message
+
+
 def test_transforms_of_items_and_components(tmp_path: Path) -> None:
     pair = (
         '<object id="2"><components><component objectid="1"/>'
@@ -85,6 +101,7 @@ def test_support_is_left_out(tmp_path: Path) -> None:
         ('v1="0"', 'v1="-1"', "syntax"),
         ('<item objectid="1"/>', '<item objectid="7"/>', "index_out_of_range"),
         ('<item objectid="1"/>', '<item objectid="1" transform="1 0 0"/>', "syntax"),
+        ('<item objectid="1"/>', f'<item objectid="1" transform="1_0{" 0" * 11}"/>', "syntax"),
         ("<model ", '<!DOCTYPE x [<!ENTITY a "a">]><model ', "syntax"),
         ("</build>", "", "syntax"),
         ("<model ", '<model unit="parsec" ', "syntax"),

@@ -441,6 +441,30 @@ def test_faces_without_any_material_have_their_colours(tmp_path: Path, suffix: s
     assert b.Assembly.load(tmp_path / f"y{suffix}").parts[0].color == blue
 
 
+def test_an_obj_of_faces_without_any_material_is_written_without(tmp_path: Path) -> None:
+    mesh = b.cube(1).to_mesh()
+    bare = {"material": np.full(12, "")}
+    plain = b.Solid(mesh.vertices, mesh.faces, face_attributes=bare)
+    plain.save(tmp_path / "x.obj")
+    assert read(tmp_path / "x.obj").attributes is None
+    assert not (tmp_path / "x.mtl").exists()
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".obj", ".3mf", ".glb"])
+def test_numbers_called_materials_name_none(tmp_path: Path, suffix: str) -> None:
+    mesh = b.cube(1).to_mesh()
+    solid = b.Solid(
+        mesh.vertices,
+        mesh.faces,
+        face_attributes={"material": np.arange(12)},
+        materials={"red": b.Material((1, 0, 0))},
+    )
+    solid.save(tmp_path / f"x{suffix}")
+    said = read(tmp_path / f"x{suffix}").attributes
+    assert (said is None) == (suffix != ".ply")
+    assert said is None or said.face["material"].tolist() == list(range(12))
+
+
 def test_a_picture_fit_for_a_part_has_no_name_of_another_material(tmp_path: Path) -> None:
     mesh = b.cube(1).to_mesh()
     said = b.Solid(

@@ -14,6 +14,7 @@ from bspcsg.io import RawMesh, read
 from corpus.broken import glb_of
 from support.glb import Numbers, Scene
 from support.io import refusal
+from support.pictures import PIXEL
 from support.shapes import cube
 
 
@@ -224,6 +225,37 @@ def test_what_is_not_read_is_named(tmp_path: Path) -> None:
     four = scene.add(np.zeros((8, 4), "f4"))
     scene.primitive["attributes"] |= dict.fromkeys(["COLOR_1", "TANGENT", "WEIGHTS_0"], four)
     assert read_back(scene, tmp_path).dropped == ("further colours", "tangents", "weights")
+
+
+@pytest.mark.parametrize(
+    ("texture", "is_kept"),
+    [
+        ({"source": 1}, True),
+        ({"source": 0}, False),
+        ({"extensions": {"EXT_texture_webp": {"source": 0}}}, False),
+        ({"extensions": {"KHR_texture_basisu": {"source": 0}}}, False),
+        ({"source": 1, "extensions": {"EXT_texture_webp": {"source": 0}}}, True),
+    ],
+)
+def test_pictures_that_are_not_kept_are_told(
+    tmp_path: Path, texture: dict[str, Any], is_kept: bool
+) -> None:
+    scene = scene_of()
+    webp = b"RIFF\x10\0\0\0WEBPVP8 "
+    views = [scene.view(np.frombuffer(picture, "u1")) for picture in (webp, PIXEL)]
+    scene.tree["images"] = [
+        {"bufferView": view, "mimeType": f"image/{kind}"}
+        for view, kind in zip(views, ("webp", "png"), strict=True)
+    ]
+    scene.tree["textures"] = [texture]
+    scene.tree["materials"] = [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]
+    scene.primitive["material"] = 0
+    mesh = read_back(scene, tmp_path)
+    assert mesh.attributes is not None
+    (material,) = mesh.attributes.materials.values()
+    assert material.texture == (PIXEL if is_kept else None)
+    told = ("pictures other than PNG and JPEG in the file",)
+    assert mesh.dropped == (() if is_kept else told)
 
 
 def test_a_compressed_mesh_is_refused(tmp_path: Path) -> None:

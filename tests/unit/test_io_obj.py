@@ -1,6 +1,7 @@
 """OBJ: references of all kinds, polygons, continued lines, and what is refused."""
 
 import math
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.errors import held
-from bspcsg.io import RawMesh, decoded, read, write
+from bspcsg.io import RawMesh, decoded, loads, read, write
 from support.io import area, cube_mesh, read_text, refusal, same_mesh, signed_area
 from support.pictures import PIXEL
 
@@ -298,3 +299,20 @@ def test_a_link_and_its_obj_have_one_library(tmp_path: Path) -> None:
     of_color(BLUE).save(tmp_path / "link.obj")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["in", "link.obj"]
     assert color_in(tmp_path / "in" / "x.obj") == color_in(tmp_path / "link.obj") == BLUE
+
+
+def test_bytes_have_nothing_beside_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    of_color((1, 0, 0)).save(tmp_path / "x.obj")
+    monkeypatch.chdir(tmp_path)
+    assert not loads(Path("x.obj").read_bytes(), "obj").to_mesh().materials
+    with zipfile.ZipFile("x.zip", "w") as archive:
+        archive.write("x.obj")
+    with zipfile.ZipFile("x.zip") as archive, archive.open("x.obj") as member:
+        assert not loads(member, "obj").to_mesh().materials
+    with Path("x.obj").open("rb") as file:
+        assert len(loads(file, "obj").to_mesh().materials) == 1
+
+
+def test_names_of_objects_that_are_no_utf_8_stay_apart() -> None:
+    text = f"{SQUARE}o \xe4\nf 1 2 3\no \xf6\nf 1 3 4\n".encode("latin-1")
+    assert decoded("x.obj", text, ".obj").objects == (("ä", 1), ("ö", 1))

@@ -229,3 +229,19 @@ def test_lists_of_vertices_are_refused_as_such(tmp_path: Path, form: str) -> Non
     body = "0 0 0 0\n" * 6 if form == "ascii" else "\0" * 25 * 6
     message = refusal(tmp_path / "x.ply", text + body + "3 0 1 2\n" * 3, "syntax")
     assert "vertices with list properties cannot be read" in message
+
+
+@pytest.mark.parametrize("name", ["vertex", "face"])
+def test_an_element_of_two_blocks_is_refused(tmp_path: Path, name: str) -> None:
+    axes = "".join(f"property float {axis}\n" for axis in "xyz")
+    blocks = {
+        "vertex": (f"element vertex 4\n{axes}", "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"),
+        "face": (
+            "element face 2\nproperty list uchar int vertex_indices\n",
+            "3 0 2 1\n3 0 1 3\n",
+        ),
+    }
+    told = [blocks[one] for one in sorted(["vertex", "face", name], reverse=True)]
+    heads, data = ("".join(parts) for parts in zip(*told, strict=True))
+    text = f"ply\nformat ascii 1.0\n{heads}end_header\n{data}"
+    assert name in refusal(tmp_path / "x.ply", text, "syntax")

@@ -8,7 +8,7 @@ import pytest
 
 from bspcsg.errors import FormatError
 from bspcsg.io import RawMesh, read, write
-from support.io import cube_mesh, refusal, same_mesh
+from support.io import cube_mesh, read_text, refusal, same_mesh
 
 
 def binary_stl(corners: object, header: bytes = b"", promised: int | None = None) -> bytes:
@@ -157,3 +157,19 @@ def test_beyond_single_precision(tmp_path: Path) -> None:
         write(cube_mesh(1e300), tmp_path / "huge.stl")
     assert caught.value.code == "too_large"
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("title", [b"", b"part "])
+def test_the_colour_in_a_header_is_told(tmp_path: Path, title: bytes) -> None:
+    path = tmp_path / "x.stl"
+    path.write_bytes(binary_stl(cube_corners(), title + b"COLOR=\xff\x80\x80\xff,MATERIAL="))
+    raw = read(path)
+    assert (raw.name, raw.dropped) == (title.decode().strip() or "x", ("colours",))
+
+
+def test_names_of_solids_that_are_no_utf_8_stay_apart(tmp_path: Path) -> None:
+    write(cube_mesh(), tmp_path / "x.stl", text=True)
+    one = (tmp_path / "x.stl").read_bytes()
+    two = b"".join(one.replace(b"cube", name) for name in (b"\xe4", b"\xf6"))
+    raw = read_text(tmp_path / "y.stl", two)
+    assert raw.objects == (("ä", 12), ("ö", 12))

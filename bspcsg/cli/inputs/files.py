@@ -139,7 +139,7 @@ class Inputs:
         if self.is_script(path):
             raw = self._mesh_of_script(path)
         elif str(path) == STREAM:
-            raw = decoded(STREAM, sys.stdin.buffer.read(), self.suffix)
+            raw = decoded(STREAM, sys.stdin.buffer.read(), self.suffix, {})
         else:
             raw = read_as(path, self.suffix_of(path))
         if raw.unit or self.unit is None:

@@ -24,7 +24,7 @@ from ..said import said_of
 from ..source import Source
 from .container import container_of
 from .nodes import Shown, shown
-from .said import Pictures, called, columns_of
+from .said import Pictures, called, columns_of, dropped_pictures
 
 #: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
 TO_METRES = np.array(
@@ -58,7 +58,8 @@ def read(source: Source) -> RawMesh:
     if not np.isfinite(mesh.vertices).all():
         raise source.error("a coordinate is not a finite number.", "non_finite")
     findings = (*mesh.findings, *container.findings, *_hidden(hidden), _unit())
-    return replace(mesh, findings=findings, unit="mm", dropped=container.dropped)
+    dropped = (*container.dropped, *dropped_pictures(container.tree, container.data))
+    return replace(mesh, findings=findings, unit="mm", dropped=dropped)
 
 
 def _placed(one: Shown) -> PlacedMesh:

@@ -17,7 +17,7 @@ from ...attributes.material import Material
 from ...errors import InvalidMeshError
 from ..said import as_bytes, chosen, is_color
 from .accessors import fractions, numbers, stored
-from .container import Container, uv_of
+from .container import Container, picture_of, uv_of
 from .light import as_read, color_of, shown, to_light, words_of
 
 #: Names and materials of a file, in its order.
@@ -192,6 +192,15 @@ def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
         return Material(texture=picture).texture
     except (KeyError, IndexError, TypeError, InvalidMeshError):
         return None
+
+
+def dropped_pictures(tree: Mapping[str, Any], data: bytes) -> tuple[str, ...]:
+    """Return the words for pictures of materials that are not kept, as `RawMesh.dropped` has it."""
+    textures = range(len(tree.get("textures", [])))
+    named = [picture_of(material) for material in tree.get("materials", [])]
+    given = [told for told in named if told.get("index") in textures]
+    is_dropped = any(_texture(tree, data, told) is None for told in given)
+    return ("pictures other than PNG and JPEG in the file",) if is_dropped else ()
 
 
 class Pictures:

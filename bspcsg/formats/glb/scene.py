@@ -44,7 +44,7 @@ class _Reading:
     def __init__(self, held: Container) -> None:
         self._held = held
         self._nodes = held.tree.get("nodes", [])
-        self._meshes: dict[int, RawMesh] = {}
+        self._meshes: dict[int, tuple[RawMesh, tuple[float, ...] | None]] = {}
         self._materials = materials_of(held.tree, held.data)
 
     def root(self) -> SceneNode:
@@ -69,19 +69,20 @@ class _Reading:
         if not 0 <= number < len(self._nodes):
             raise IndexError(f"node {number} does not exist")
         told = self._nodes[number]
-        mesh = self._mesh(told["mesh"]) if "mesh" in told else None
+        mesh, color = self._mesh(told["mesh"]) if "mesh" in told else (None, None)
         children = tuple(self._node(child, _IDENTITY) for child in told.get("children", []))
         matrix = outer @ local_matrix(told)
         name = str(told.get("name") or (mesh.name if mesh is not None else ""))
         if mesh is not None and len(mesh.faces) == 0:
             mesh = None
         if mesh is None or not (children or instances_of(told)):
-            return SceneNode(name, matrix, *_painted(mesh), children)
+            return SceneNode(name, matrix, mesh, color, children)
         places = places_of(self._held, told)
-        own = (SceneNode(mesh.name, place, *_painted(mesh)) for place in places)
+        own = (SceneNode(mesh.name, place, mesh, color) for place in places)
         return SceneNode(name, matrix, None, None, (*own, *children))
 
-    def _mesh(self, number: int) -> RawMesh:
+    def _mesh(self, number: int) -> tuple[RawMesh, tuple[float, ...] | None]:
+        """Return a mesh and its colour, always the same object for all nodes."""
         if number not in self._meshes:
             told = self._held.tree["meshes"][number]
             vertices, faces, said = triangles_of(self._held, told, self._materials)
@@ -89,7 +90,8 @@ class _Reading:
             if not np.isfinite(points).all():
                 raise ValueError("a coordinate is not a finite number")
             name = str(told.get("name") or "")
-            self._meshes[number] = RawMesh(points, faces, name, unit="mm", attributes=said)
+            made = RawMesh(points, faces, name, unit="mm", attributes=said)
+            self._meshes[number] = _painted(made)
         return self._meshes[number]
 
 
@@ -119,16 +121,19 @@ class _Holding:
         return self._meshes[id(mesh)]
 
 
-def _painted(mesh: RawMesh | None) -> tuple[RawMesh | None, tuple[float, ...] | None]:
-    """Return a mesh and the colour that its one material is called after, if it says no more."""
-    said = None if mesh is None else mesh.attributes
-    if mesh is None or said is None or said.names != ("material",):
+def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
+    """Return a mesh, and the colour that its one material is called after instead of that."""
+    said = mesh.attributes
+    if said is None or "material" not in said.face or "color" in said.names or not len(mesh.faces):
         return mesh, None
     names = np.unique(said.face["material"]).tolist()
-    color = said.materials.get(names[0], Material()).color
+    material = said.materials.get(names[0], Material())
     # Colours that are the same in bytes have names that differ in a number behind them.
-    is_named = len(names) == 1 and names[0].partition(" ")[0] == _name_of(color)
-    return mesh, color if is_named else None
+    is_named = len(names) == 1 and names[0].partition(" ")[0] == _name_of(material.color)
+    if not is_named or material.texture is not None:
+        return mesh, None
+    rest = replace(said.without({"material"}), materials={})
+    return replace(mesh, attributes=None if rest.is_empty else rest), material.color
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:

@@ -107,7 +107,7 @@ def read_header(source: Source) -> Header:
         elif key == "format":
             form = words[1] if len(words) > 1 else ""
         elif key == "element":
-            elements.append(_element(source, number, words))
+            elements.append(_element(source, number, words, elements))
         elif key == "property" and elements:
             elements[-1].properties.append(_property(source, number, words))
         elif words[1:2] == ["TextureFile"]:
@@ -133,9 +133,12 @@ def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
     return data[start:stop], stop + 1
 
 
-def _element(source: Source, line: int, words: list[str]) -> Element:
+def _element(source: Source, line: int, words: list[str], others: list[Element]) -> Element:
     if len(words) != 3 or not words[2].isdecimal() or len(words[2]) > 18:
         raise source.error("expected “element NAME NUMBER”.", line=line)
+    if any(other.name == words[1] for other in others):
+        message = f"the header names the element {quoted(words[1].encode())} twice."
+        raise source.error(message, line=line)
     return Element(words[1], int(words[2]), [])
 
 

@@ -56,6 +56,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
         if triangles > _MOST_TRIANGLES:
             raise package.source.error("the build has too many triangles.", "too_large")
         pieces.append(_moved(mesh, (*transforms, unit)))
+    findings += _other_units(package, part.unit)
     findings += _ignored(beams, "beams")
     findings += _ignored(skipped, "objects that are support or surface")
     findings += _ignored(hollow, "objects without triangles")
@@ -118,6 +119,16 @@ def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:
         f"the file is in {part.unit}s; coordinates were multiplied by {MILLIMETRES[part.unit]}."
     )
     return (Finding("unit", "note", message, (), 1),)
+
+
+def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
+    """Return the finding about parts in other units than the root has, whose unit goes for all."""
+    others = [path for path, part in package.parts.items() if part.unit != unit]
+    if not others:
+        return ()
+    told = ", ".join(f"{path} ({package.parts[path].unit})" for path in others)
+    message = f"the unit of the model, {unit}, was taken for parts in other units: {told}."
+    return (Finding("unit", "warning", message, (), len(others)),)
 
 
 def _ignored(count: int, what: str) -> tuple[Finding, ...]:

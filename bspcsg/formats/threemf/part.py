@@ -312,6 +312,7 @@ class PartReader:
     def _placed(self, attributes: dict[str, str]) -> PlacedObject:
         path = attributes.get("path", "")
         words = attributes.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").split()
+        _refuse_underscores(words)
         matrix = np.array([float(word) for word in words])
         if len(matrix) != 12 or not np.isfinite(matrix).all():
             raise ValueError("a transform needs 12 finite numbers")
@@ -350,7 +351,7 @@ def _place(attributes: dict[str, str]) -> tuple[float, float]:
     return u, v
 
 
-def _refuse_underscores(words: tuple[str, ...]) -> None:
+def _refuse_underscores(words: Iterable[str]) -> None:
     """Refuse ``1_0``, which Python takes for 10."""
     if "_" in "".join(words):
         raise ValueError("a number must not contain “_”")
