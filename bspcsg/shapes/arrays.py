@@ -14,7 +14,7 @@ def from_arrays(vertices: FloatArray, faces: IndexArray) -> Solid:
 
 
 def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
-    """Say whether every triangle keeps its orientation when its corners move to the lattice."""
+    """Say whether corners move to the lattice without turning a triangle or meeting another."""
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
     sides = np.array(
         [
@@ -25,5 +25,6 @@ def _survives_snapping(vertices: FloatArray, faces: IndexArray) -> bool:
     )
     with np.errstate(all="ignore"):
         altitude = np.linalg.norm(np.cross(b - a, c - a), axis=1) / sides.max(axis=0)
+        thickness = min(altitude.min(), np.ptp(vertices, axis=0).min())
         # A thousand steps of the lattice that a solid of this size gets.
-        return bool(altitude.min() > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))
+        return bool(thickness > 1e-6 * max(1.0, np.abs(vertices).max() / 1000))

@@ -11,7 +11,6 @@ from ..geometry.polygon import directed_edges, runs_clockwise, triangulate
 from ..geometry.transform import cos_sin
 from ..mesh.weld import welded
 from ..solid.solid import Solid
-from .arrays import from_arrays
 
 #: Diagonals whose lengths differ by less than this part are equal.
 _EQUAL = 1e-5
@@ -91,7 +90,7 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     ]
     cap = triangulate(contours)
     faces = np.concatenate([cap[:, ::-1], *bands, cap + rise.slices * len(points)])
-    return _closed(np.concatenate(levels), faces, crossing=rise.twist != 0 or rise.inset != 0)
+    return _closed(np.concatenate(levels), faces)
 
 
 def _lean(contours: Sequence[FloatArray], inset: float) -> FloatArray:
@@ -150,10 +149,12 @@ def _is_flat(level: FloatArray) -> bool:
     return bool((np.ptp(level[:, :2], axis=0) == 0).any())
 
 
-def _closed(vertices: FloatArray, faces: IndexArray, *, crossing: bool) -> Solid:
-    """Return the solid of a mesh in which corners may coincide, and faces may cross or not."""
+def _closed(vertices: FloatArray, faces: IndexArray) -> Solid:
+    """Return the solid of a mesh in which corners may coincide, and faces may cross.
+
+    Contours may cross, and walls that turn or shrink unequally are no planes.
+    """
     points, same = welded(vertices)
     triangles = same[faces]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    kept = np.ascontiguousarray(triangles[proper])
-    return Solid(points, kept) if crossing else from_arrays(points, kept)
+    return Solid(points, np.ascontiguousarray(triangles[proper]))

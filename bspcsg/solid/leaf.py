@@ -87,7 +87,8 @@ class MeshLeaf:
         self._winding = winding
         self._tree: Once[Tree] = Once()
         self._rounded: str | None = None
-        self._given_pitch = pitch
+        #: The pitch that transforms keep, as far as its lattice reaches; None for one that suits.
+        self.given_pitch = pitch
         self._pitches = Pitches()
         self.last_moved: Last[FactorChain, ExpressionLeaf] = Last()
 
@@ -155,7 +156,7 @@ class MeshLeaf:
         said = SaidMesh(*self.arrays(), self._settled().attributes)
         found = None if self._trusted else sewn(said, self.grown())
         mesh = said if found is None else found.mesh
-        return MeshLeaf.moved(mesh, factors, self._given_pitch, self._winding)
+        return MeshLeaf.moved(mesh, factors, self.given_pitch, self._winding)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
         """Return whether rounding has made it cross itself, or would once put on the lattice.
@@ -172,10 +173,14 @@ class MeshLeaf:
         pitch: int | None = None,
         winding: WindingRule = "positive",
     ) -> "MeshLeaf":
-        """Return the leaf of a moved mesh; what that makes cross is mended before its first use."""
+        """Return the leaf of a moved mesh; what that makes cross is mended before its first use.
+
+        It is on the lattice of the given pitch, unless it reaches beyond that.
+        """
         moved = mesh.moved(factors)
-        leaf = cls(moved.vertices, moved.faces, pitch, False, winding, moved.attributes)
-        leaf._chosen_pitch = moved.suited_pitch() if pitch is None else pitch
+        held = moved.held_pitch(pitch)
+        leaf = cls(moved.vertices, moved.faces, held, False, winding, moved.attributes)
+        leaf._chosen_pitch = moved.suited_pitch() if held is None else held
         if leaf._chosen_pitch is not None:
             leaf._content = _Moved(moved, mesh.vertices, leaf._chosen_pitch)
         return leaf
@@ -266,12 +271,15 @@ class TreeLeaf:
     extent : Extent
     sayings : tuple of Attributes or None
         The values on each source of the tree; empty if there are none.
+    given_pitch : int or None
+        As for `MeshLeaf`.
     """
 
     result: Tree
     record: Record | None = None
     extent: "Extent" = None
     sayings: "Sayings" = ()
+    given_pitch: int | None = None
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
     last_moved: "Last[FactorChain, ExpressionLeaf]" = field(
         default_factory=Last, init=False, repr=False
@@ -310,7 +318,7 @@ class TreeLeaf:
         if mesh is None:
             return None
         made = run(Record(COMPLEMENT, (mesh,)))
-        return TreeLeaf(made.result, extent=False, sayings=made.sayings)
+        return replace(made, record=None, extent=False)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
         """Return whether a mesh in the tree would cross itself once put on the lattice."""
@@ -324,7 +332,7 @@ class TreeLeaf:
         """
         if self.extent is None:
             return self
-        return TreeLeaf(self.result, extent=self.extent, sayings=self.sayings)
+        return replace(self, record=None)
 
     @cached_property
     def shown(self) -> Tree:
@@ -351,6 +359,7 @@ class PlaneLeaf:
 
     plane: Hyperplane
     pitch: int | None = field(default=None, init=False)
+    given_pitch: int | None = field(default=None, init=False)
     extent: "Extent" = field(default=None, init=False)
     sayings: "Sayings" = field(default=(), init=False)
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
@@ -409,6 +418,7 @@ class ConstantLeaf:
 
     full: bool
     pitch: int | None = field(default=None, init=False)
+    given_pitch: int | None = field(default=None, init=False)
     sayings: "Sayings" = field(default=(), init=False)
 
     @property
@@ -503,6 +513,12 @@ def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
     return min(planes, default=DEFAULT_PITCH)
 
 
+def _given_pitch_of(leaves: Sequence[ExpressionLeaf], result: Tree) -> int | None:
+    """Return the pitch of what was made of leaves if it was given for all that have it."""
+    given = {leaf.given_pitch for leaf in leaves if leaf.pitch == result.pitch}
+    return result.pitch if given == {result.pitch} else None
+
+
 def run(record: Record) -> TreeLeaf:
     """Evaluate a program on its leaves, all on one lattice (see `_on_one_lattice`)."""
     extents = [leaf.extent for leaf in record.leaves]
@@ -511,7 +527,8 @@ def run(record: Record) -> TreeLeaf:
     with core_errors():
         result = Tree.evaluate(record.program, trees)
     operands = [(tree, leaf.sayings) for tree, leaf in zip(trees, leaves, strict=True)]
-    return TreeLeaf(result, record, extent, said_of(result, operands))
+    given = _given_pitch_of(record.leaves, result)
+    return TreeLeaf(result, record, extent, said_of(result, operands), given)
 
 
 def bounded_on_one_lattice(leaves: Sequence[ExpressionLeaf]) -> list[Tree]:
@@ -597,7 +614,7 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     with core_errors():
         vertices, faces = tree.to_mesh()
     said = attributes_of(tree, leaf.sayings) if leaf.sayings else None
-    return MeshLeaf.moved(SaidMesh(vertices, faces, said), factors)
+    return MeshLeaf.moved(SaidMesh(vertices, faces, said), factors, leaf.given_pitch)
 
 
 #: Something that is being moved: it asks for leaves under factors, and is sent them where they go.
@@ -638,7 +655,8 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     try:
         with core_errors():
             moved = tree_of(base).moved(list(motion.axes), list(motion.shift))
-        return TreeLeaf(moved, extent=base.extent, sayings=_after(motion, base.sayings))
+        sayings = _after(motion, base.sayings)
+        return TreeLeaf(moved, None, base.extent, sayings, base.given_pitch)
     except (LimitError, UnboundedError):
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
         # off by the border of the universe, which does not move with it.

@@ -59,6 +59,13 @@ class SaidMesh:
         left = np.isin(kept, found["crossings"])
         return Mended(SaidMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
 
+    def held_pitch(self, given: int | None) -> int | None:
+        """Return the given pitch if its lattice holds all vertices, else None."""
+        if given is None or not np.isfinite(self.vertices).all():
+            return given
+        largest = float(np.abs(self.vertices).max(initial=0))
+        return given if largest < (transform.LATTICE_REACH - 1) * 10.0**given else None
+
     def suited_pitch(self) -> int | None:
         """Return the pitch that its size suits; None if it has none, which its import tells."""
         if len(self.vertices) == 0 or not np.isfinite(self.vertices).all():

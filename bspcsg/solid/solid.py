@@ -73,6 +73,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         Indices of `vertices`, counter-clockwise seen from outside. Polygons are triangulated.
     pitch : int, optional
         The lattice step is ``10**pitch`` units. By default -9, or what the size asks for.
+        Transforms keep a given one, as far as its lattice reaches.
     trusted : bool
         Your word that faces meet in common edges and vertices only, which saves a check.
     winding : {"positive", "nonzero", "even-odd"}
@@ -349,7 +350,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             # If the check found nothing to change, the tree itself is the reduced one.
             if not _is_reduced(tree):
                 sayings = said_of(reduced, [(tree, self._sayings)])
-                self._reduced = from_leaf(TreeLeaf(reduced, sayings=sayings))
+                given = self._leaf().given_pitch
+                self._reduced = from_leaf(TreeLeaf(reduced, sayings=sayings, given_pitch=given))
         return self if self._reduced is None else self._reduced
 
     @counted
@@ -376,7 +378,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             for slot, old in enumerate(sayings)
         )
         record = leaf.record if isinstance(leaf, TreeLeaf) else None
-        return from_leaf(TreeLeaf(tree_of(leaf), record, leaf.extent, said))
+        return from_leaf(TreeLeaf(tree_of(leaf), record, leaf.extent, said, leaf.given_pitch))
 
     @counted
     def simplify(self, tolerance: float) -> "Solid":
@@ -430,7 +432,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             return self
         with core_errors():
             tree = self.normalized().tree.simplified(limit)
-        return self if tree is None else from_leaf(TreeLeaf(tree))
+        given = self._leaf().given_pitch
+        return self if tree is None else from_leaf(TreeLeaf(tree, given_pitch=given))
 
     @uncounted
     def _outside(self) -> "Solid":
@@ -494,11 +497,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
         What may have no mesh can be moved as long as its operands are known, which are not kept.
         """
-        content = evaluate(self._node)
-        if content.extent is None:
-            return _restored, (self.tree.dump(), (), *_kept(self.tree, self._sayings))
-        tree = tree_of(content)
-        return _restored, (tree.dump(), tuple(self._factors), *_kept(tree, content.sayings))
+        leaf, factors = evaluate(self._node), self._factors
+        if leaf.extent is None:
+            leaf, factors = self._leaf(), UNMOVED
+        tree = tree_of(leaf)
+        told = (_kept(tree, leaf.sayings), leaf.given_pitch)
+        needed = 2 if leaf.given_pitch is not None else 1 if leaf.sayings else 0
+        return _restored, (tree.dump(), tuple(factors), *told[:needed])
 
 
 @dataclass(frozen=True, eq=False)
@@ -551,6 +556,19 @@ def solid_with(vertices: Any, faces: Any, attributes: Attributes | None, **optio
     )
 
 
+def given_pitch(solid: Solid) -> int | None:
+    """Return the pitch that transforms of a solid keep, if it was given."""
+    return solid._leaf().given_pitch
+
+
+def keeping_pitch(solid: Solid, given: int | None) -> Solid:
+    """Return the solid of a mesh, its pitch kept by transforms only if it is the one given."""
+    leaf = solid._node.content
+    if isinstance(leaf, MeshLeaf):
+        leaf.given_pitch = given if leaf.pitch == given else None
+    return solid
+
+
 def from_leaf(leaf: ExpressionLeaf) -> Solid:
     """Return the solid of a leaf."""
     return Solid._of(ExpressionNode(leaf))
@@ -576,7 +594,9 @@ def with_record(last: LastOperation, factors: FactorChain) -> Solid:
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
     record = Record(last.program, leaves)
-    leaf = TreeLeaf(last.result.tree, record, sayings=last.result._sayings)
+    result = last.result
+    given = given_pitch(result)
+    leaf = TreeLeaf(result.tree, record, sayings=result._sayings, given_pitch=given)
     return from_node(ExpressionNode(leaf), factors)
 
 
@@ -597,15 +617,17 @@ def _is_reduced(tree: Tree) -> bool:
     return tree.simple is True
 
 
-def _kept(tree: Tree, sayings: Sayings) -> tuple[Sayings, ...]:
+def _kept(tree: Tree, sayings: Sayings) -> Sayings:
     """Return what is said of the sources whose faces may bound a solid, if anything is."""
     if not sayings:
         return ()
     kept = zip(tree.named, sayings, strict=True)
-    return (tuple(said if is_named else None for is_named, said in kept),)
+    return tuple(said if is_named else None for is_named, said in kept)
 
 
-def _restored(data: bytes, factors: Factors, sayings: Sayings = ()) -> Solid:
+def _restored(
+    data: bytes, factors: Factors, sayings: Sayings = (), given: int | None = None
+) -> Solid:
     with core_errors():
-        leaf = TreeLeaf(Tree.load(data), sayings=sayings)
+        leaf = TreeLeaf(Tree.load(data), sayings=sayings, given_pitch=given)
         return from_node(ExpressionNode(leaf), FactorChain.of(factors))

@@ -57,6 +57,27 @@ def test_holes_lean_into_the_material() -> None:
     assert solid.genus == 1
 
 
+def test_contours_that_cross_are_united_as_they_shrink() -> None:
+    two = [[(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 1), (3, 1), (3, 3), (1, 3)]]
+    bow = [(0, 0), (2, 2), (2, 0), (0, 2)]
+    # A frustum of areas a and a/4 holds a (1 + 1/2 + 1/4) / 3.
+    assert b.extrude(two, 1, scale=0.5).volume == pytest.approx(7 * 7 / 12)
+    assert b.extrude(bow, 1, scale=0.5).volume == pytest.approx(1 * 7 / 12)
+
+
+def test_walls_that_shrink_unequally_are_united() -> None:
+    corners = [(10, 0), (0, 10), (-10, 0), (0, -10)]
+    fine = [
+        (0.99 * (x * (8 - k) + z * k) / 8, 0.99 * (y * (8 - k) + w * k) / 8)
+        for (x, y), (z, w) in zip(corners, corners[1:] + corners[:1], strict=True)
+        for k in range(8)
+    ]
+    # The hole has more corners, and bulges through the walls around it.
+    frame = b.extrude([corners, fine], 10, scale=(1, 0.1))
+    assert frame.volume > 0
+    assert frame == b.extrude(corners, 10, scale=(1, 0.1)) - b.extrude(fine, 10, scale=(1, 0.1))
+
+
 def test_walls_that_meet_on_the_way_up_are_united() -> None:
     solid = KEYHOLE.extrude(1, taper=-45)
     # The mouth, one wide, is closed from half of the height on.

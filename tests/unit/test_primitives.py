@@ -127,6 +127,11 @@ def test_primitives_need_no_check_but_fine_ones_get_it() -> None:
     assert thin._node.content._trusted is False  # type: ignore[union-attr]
 
 
+def test_bodies_thinner_than_the_lattice_are_empty() -> None:
+    assert b.cone(1e-10, 1).is_empty
+    assert b.cylinder(h=1e-10, r1=1, r2=0.5).is_empty
+
+
 @pytest.mark.parametrize("turn", [1, -1])
 def test_contours_may_run_either_way_round(turn: int) -> None:
     assert b.extrude([SQUARE[::turn], HOLE[::-turn]], 1).volume == 12

@@ -277,6 +277,34 @@ def test_a_pitch_can_be_chosen() -> None:
     assert (coarse | b.cube(0.5)).pitch == -9
 
 
+def test_a_given_pitch_is_kept() -> None:
+    mesh = b.cube(0.37).to_mesh()
+    coarse = b.Solid(mesh.vertices, mesh.faces, pitch=-2)
+    turned = coarse.rotate(30)
+    assert pickle.loads(pickle.dumps(turned)) == turned
+    assert hash(pickle.loads(pickle.dumps(turned))) == hash(turned)
+    assert coarse.tagged(name="part").rotate(30).volume == turned.volume
+    for same in (
+        pickle.loads(pickle.dumps(coarse)),
+        coarse | b.Solid.empty(),
+        coarse & b.half_space("z", 9),
+        ~~coarse.tagged(layer=1),
+        coarse.normalized(),
+        coarse.warp(lambda points: points),
+        coarse.refine(2),
+        b.hull(coarse),
+    ):
+        assert same == coarse
+        assert same.rotate(30).pitch == -2
+    assert coarse.smooth(2).pitch == -2
+
+
+def test_a_pitch_that_nobody_gave_is_not_kept() -> None:
+    for body in (b.hull(b.cube(1)), b.cube(1).refine(2), b.cube(1) | b.cube(2)):
+        assert body.scale(1e-6).rotate(30).pitch < -9
+        assert body.scale(1e10).rotate(30).pitch == -3
+
+
 def test_wrong_winding_rules_are_refused() -> None:
     with pytest.raises(b.InvalidMeshError):
         b.Solid(CUBE.vertices, CUBE.faces, winding="odd")  # type: ignore[arg-type]

@@ -14,7 +14,7 @@ from ...mesh import interop
 from ...parameters import shown
 from ...solid.counting import counted
 from ...solid.leaf import MeshLeaf
-from ...solid.solid import Solid, from_leaf
+from ...solid.solid import Solid, from_leaf, given_pitch, keeping_pitch
 from ..planar.hulls import hull_of_figures
 
 #: Lattice coordinates are below this many steps.
@@ -68,9 +68,11 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     if any(_is_flat(one) for one in given):
         return hull_of_figures(given)
     clouds = [_points_of(one) for one in given]
-    pitches = [one.pitch for one in given if isinstance(one, Solid) and not one.is_empty]
+    solids = [one for one in given if isinstance(one, Solid) and not one.is_empty]
+    finest = min((solid.pitch for solid in solids), default=None)
+    kept = {given_pitch(solid) for solid in solids if solid.pitch == finest}
     points = np.concatenate(clouds) if clouds else np.zeros((0, 3))
-    return hull_of(points, min(pitches, default=None))
+    return keeping_pitch(hull_of(points, finest), finest if kept == {finest} else None)
 
 
 def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
@@ -90,7 +92,8 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
         vertices, faces, is_mended = hull_mesh(np.ascontiguousarray(points), chosen)
     if len(faces) == 0:
         return Solid.empty()
-    return from_leaf(MeshLeaf(vertices, faces, pitch=chosen, trusted=not is_mended))
+    leaf = MeshLeaf(vertices, faces, pitch=chosen, trusted=not is_mended)
+    return keeping_pitch(from_leaf(leaf), None)
 
 
 def _lattice_for(points: FloatArray, pitch: int | None) -> int:

@@ -9,7 +9,7 @@ from ...mesh.mesh import Mesh
 from ...operations.parts import connected_parts, sides_of_plane
 from ...shapes.primitives import half_space
 from ...solid.counting import counted, uncounted
-from ...solid.solid import Solid, solid_of_mesh
+from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_of_mesh
 
 #: The least positive double.
 _LEAST = float(np.nextafter(0, 1))
@@ -36,7 +36,8 @@ def decompose(solid: Solid) -> list[Solid]:
     if len(meshes) == 1:
         return [solid]
     parts = (_part(mesh, solid.pitch) for mesh in meshes)
-    return [part for part in parts if part is not None]
+    given = given_pitch(solid)
+    return [keeping_pitch(part, given) for part in parts if part is not None]
 
 
 def _part(mesh: Mesh, pitch: int) -> Solid | None:

@@ -11,7 +11,7 @@ from ...errors import LimitError, invalid_parameter
 from ...mesh.mesh import Mesh
 from ...parameters import at_least, positive
 from ...solid.counting import counted
-from ...solid.solid import Solid, solid_with
+from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_with
 
 #: Vertices, triangles, and which of the triangles before each lies in.
 Finer: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
@@ -40,7 +40,7 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
     else:
         finer = halved(mesh.vertices, mesh.faces, positive(edge_length, "edge_length"))
     said = None if mesh.carried is None else attributes_on(mesh, *finer)
-    return solid_with(*finer[:2], said, pitch=solid.pitch)
+    return keeping_pitch(solid_with(*finer[:2], said, pitch=solid.pitch), given_pitch(solid))
 
 
 def attributes_on(

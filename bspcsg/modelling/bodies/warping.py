@@ -13,7 +13,7 @@ from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
 from ...solid.counting import counted
 from ...solid.moving import SaidMesh
-from ...solid.solid import Solid, solid_with
+from ...solid.solid import Solid, given_pitch, solid_with
 
 #: A function of all corners at once: (n, 3) float64 to the same shape.
 PointMap: TypeAlias = Callable[[FloatArray], Any]
@@ -34,18 +34,22 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     said = None if mesh.carried is None else mesh.attributes.without(NORMALS)
     moved = SaidMesh(_moved(f, mesh.vertices), mesh.faces, said)
     if rule is None:
-        moved = _uncrossed(moved, mesh.vertices)
-    return solid_with(moved.vertices, moved.faces, moved.attributes, winding=rule or "nonzero")
+        moved = _uncrossed(moved, mesh.vertices, given_pitch(solid))
+    pitch = moved.held_pitch(given_pitch(solid))
+    return solid_with(
+        moved.vertices, moved.faces, moved.attributes, pitch=pitch, winding=rule or "nonzero"
+    )
 
 
-def _uncrossed(moved: SaidMesh, before: FloatArray) -> SaidMesh:
+def _uncrossed(moved: SaidMesh, before: FloatArray, given: int | None) -> SaidMesh:
     """Return a mesh that does not cross itself, given its vertices before they were moved.
 
     Surfaces that touched are mended where rounding makes them cross; more is refused.
     """
     if not certify(moved.vertices, moved.faces).crossings:
         return moved
-    pitch = moved.suited_pitch()
+    held = moved.held_pitch(given)
+    pitch = moved.suited_pitch() if held is None else held
     mended = None if pitch is None else moved.mended(before, pitch)
     if mended is None or len(mended.left):
         refuse_crossings(moved.vertices, moved.faces, "Where f moves them")
