@@ -5,6 +5,7 @@ names the parameter. Truth values and texts are no numbers here.
 """
 
 import math
+import numbers
 import operator
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -56,7 +57,8 @@ _WINDING_RULES: "tuple[WindingRule, ...]" = ("positive", "nonzero", "even-odd")
 
 def number(value: Any, name: str) -> float:
     """Return a finite float."""
-    if isinstance(value, (str, bytes, bytearray)) or _is_truth_value(value):
+    is_text = isinstance(value, (str, bytes, bytearray))
+    if is_text or _is_truth_value(value) or is_complex(value):
         raise invalid_parameter(f"{name} must be a number, not {shown(value)}.")
     try:
         result = float(value)
@@ -65,6 +67,11 @@ def number(value: Any, name: str) -> float:
     if not math.isfinite(result):
         raise invalid_parameter(f"{name} must be finite, not {result}.")
     return result
+
+
+def is_complex(value: Any) -> bool:
+    """Return whether a value is a complex number, of which `float` may take the real part."""
+    return isinstance(value, numbers.Complex) and not isinstance(value, numbers.Real)
 
 
 def positive(value: Any, name: str) -> float:

@@ -24,7 +24,7 @@ import numpy as np
 
 from .._core import normal_bits
 from ..errors import InvalidMeshError, invalid_parameter
-from ..parameters import MOST_PITCH, shown
+from ..parameters import MOST_PITCH, is_complex, shown
 from .arrays import is_masked
 
 #: Exponent of the lattice step for sets that any lattice can hold.
@@ -185,8 +185,8 @@ def exact_number(value: Any) -> Fraction:
     TypeError
         If it is no number.
     """
-    if isinstance(value, (bool, np.bool_, str, bytes)):
-        raise TypeError("truth values and texts are no numbers")
+    if isinstance(value, (bool, np.bool_, str, bytes)) or is_complex(value):
+        raise TypeError("truth values, texts and complex numbers are no numbers here")
     if isinstance(value, numbers.Rational):
         return Fraction(int(value.numerator), int(value.denominator))
     double = float(value)

@@ -18,7 +18,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
-from ..errors import invalid_parameter
+from ..errors import LimitError, invalid_parameter
 from ..parameters import number, shown
 from .arrays import doubles, doubles_or_none
 
@@ -193,7 +193,13 @@ def multiplied(matrices: Sequence[FloatArray]) -> FloatArray:
 
 
 def _dot(a: list[float], b: list[float]) -> float:
-    return math.fsum((a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]))
+    try:
+        value = math.fsum((a[0] * b[0], a[1] * b[1], a[2] * b[2], a[3] * b[3]))
+    except (OverflowError, ValueError):
+        value = math.inf
+    if not math.isfinite(value):
+        raise LimitError("These transforms together lead beyond all doubles.", "too_large")
+    return value
 
 
 def apply(matrix: FloatArray, points: FloatArray) -> FloatArray:

@@ -62,9 +62,10 @@ class Movable(ABC):
         >>> b.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
         [-2.0, 0.0, 0.0]
         """
-        if angle is not None and (x, y, z) != (0, 0, 0):
+        turns = number(x, "x"), number(y, "y"), number(z, "z")
+        if angle is not None and any(turns):
             raise invalid_parameter("A rotation is by an angle and an axis, or by x, y and z.")
-        turn: Any = (number(x, "x"), number(y, "y"), number(z, "z")) if angle is None else angle
+        turn: Any = turns if angle is None else angle
         is_one = axes_of(turn) == 0
         factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)
         return self._moved(transform.about(about, factors))

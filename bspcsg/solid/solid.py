@@ -454,7 +454,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             return None
         record = content.record
         operands = tuple(from_leaf(leaf) for leaf in record.leaves)
-        return LastOperation(record.program, operands, from_node(self._node))
+        program = [(name, list(lines)) for name, lines in record.program]
+        return LastOperation(program, operands, from_node(self._node))
 
     # As a value
 

@@ -262,3 +262,17 @@ def test_a_task_counts_in_the_block_that_it_was_started_in_while_that_is_open() 
         return u.solids
 
     assert [solid.volume for solid in asyncio.run(main())] == [1, 27]
+
+
+def test_what_a_solid_is_aligned_with_still_counts() -> None:
+    with b.union() as u:
+        table = b.box((8, 8, 1))
+        b.cube(2).align(x="center", z=("min", "max"), to=table)
+    assert u.solid.volume == 72
+
+
+def test_hulls_use_up_what_any_iterable_holds() -> None:
+    with b.xor() as x:
+        pins = [b.cube(1), b.cube(1).translate(3, 0, 0)]
+        b.hull(pin for pin in pins)
+    assert x.solid.volume == 4

@@ -119,3 +119,25 @@ def test_copies_are_bounded() -> None:
     for call in calls:
         with pytest.raises(b.LimitError):
             call()
+
+
+def test_copies_by_short_decimals_are_exact() -> None:
+    part = b.cube(1) & b.half_space((3, 5, 7), 4)
+    row = b.linear_pattern(part, 4, (1.1, 0, 0))
+    assert row.volume_exact == 4 * part.volume_exact
+    assert row == b.union(part.translate(x, 0, 0) for x in (0, 1.1, 2.2, 3.3))
+    grid = b.grid(part, (4, 1), (1.2, 1.1), center=True)
+    assert grid.volume_exact == 4 * part.volume_exact
+    beside = part.translate(0.1, 0, 0)
+    assert beside.align(x="min", to=(0.3, 0, 0)) == beside.translate(0.2, 0, 0)
+    with pytest.raises(b.LimitError):
+        b.linear_pattern(part, 4, (1e308, 0, 0))
+
+
+def test_arcs_end_on_the_axes() -> None:
+    assert b.arc((0, 0), 1, 270, 450)[[0, -1]].tolist() == [[0, -1], [0, 1]]
+    balls = [b.revolve(b.arc((0, 0), 1, first, first + 180)) for first in (-90, 270)]
+    assert balls[0] == balls[1] and balls[0].findings == ()
+    turns = np.linspace(-np.pi / 2, np.pi / 2, 17)
+    by_hand = b.revolve(np.column_stack([np.cos(turns + 2 * np.pi), np.sin(turns)]))
+    assert by_hand.findings == ()

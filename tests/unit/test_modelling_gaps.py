@@ -170,3 +170,14 @@ def test_squares_of_small_and_large_gaps() -> None:
     tiny = b.Solid(*b.cube(1).scale(1e-6).to_mesh(), pitch=-15)
     assert tiny.min_gap(tiny.translate(3e-6, 0, 0)) == pytest.approx(2e-6, rel=1e-12)
     assert Fraction(b.cube(1e6).min_gap(b.cube(1e6).translate(3e6, 0, 0))) == 2_000_000
+
+
+def test_what_is_common_may_be_too_thin_for_doubles() -> None:
+    far = 8e6
+    offset = 32_000_000 + Fraction(1, 10**9)
+    cut = b.half_space((1, 3, 0), offset)  # type: ignore[arg-type]
+    corner = b.box(2, 2, 1).translate(far - 1, far - 1, 0) & cut
+    box = b.box(1, 1, 1).translate(far, far, 0)
+    assert corner.min_gap(box) == 0
+    with pytest.raises(b.LimitError, match="too thin"):
+        corner.closest_points(box)

@@ -149,7 +149,9 @@ def test_winding_rules(call: Callable[[Any], Any]) -> None:
     call(np.str_("even-odd"))
 
 
-@pytest.mark.parametrize("value", ["1", b"1", True, np.False_, None, [1, 2], 1j, "nan"])
+@pytest.mark.parametrize(
+    "value", ["1", b"1", True, np.False_, None, [1, 2], 1j, np.complex64(1 + 2j), "nan"]
+)
 def test_what_is_no_number(value: Any) -> None:
     for check in (number, positive, not_negative, lambda v, name: at_least(0, v, name)):
         error = refusal(lambda check=check: check(value, "length"))  # type: ignore[misc]

@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from collections.abc import Callable
 from fractions import Fraction
 
 import numpy as np
@@ -213,3 +214,27 @@ def test_planes_are_named_by_the_axes_across_them() -> None:
     for other in (part.mirror, lambda axis: part.slice(0.5, axis)):
         with pytest.raises(b.InvalidParameterError, match="An axis is 'x', 'y', 'z' or a vector"):
             other("up")
+
+
+@pytest.mark.parametrize(
+    "moved",
+    [
+        lambda s: s.translate(1e308, 0, 0).translate(1e308, 0, 0),
+        lambda s: s.scale(1e200).scale(1e200),
+    ],
+)
+def test_what_leads_beyond_all_doubles_is_refused(moved: Callable[[b.Solid], b.Solid]) -> None:
+    with pytest.raises(b.LimitError, match="beyond all doubles"):
+        assert moved(b.cube(1)).volume
+
+
+def test_angles_are_numbers() -> None:
+    with pytest.raises(b.InvalidParameterError):
+        b.cube(1).rotate(10, x=np.array([1, 2]))  # type: ignore[arg-type]
+
+
+def test_the_program_that_is_told_is_a_copy() -> None:
+    part = b.half_space("z", 0) | b.cube(1)
+    assert not part.is_bounded and part.last_operation is not None
+    part.last_operation.program.clear()
+    assert (part.rotate(30) & b.cube(10, center=True)).volume > 500

@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
-from ...errors import invalid_parameter
+from ...errors import LimitError, invalid_parameter
 from ...geometry.hyperplane import exact_number
 from ...parameters import of_kind
 from ...solid.counting import uncounted
@@ -44,9 +44,17 @@ def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
         raise invalid_parameter("The empty set has no points, and no closest one.")
     found = _nearest(solid, other)
     if found is None:
-        common = (solid & other).vertices[0].copy()
+        common = _common_point(solid & other)
         return common, common.copy()
     return _rounded(found[1]), _rounded(found[2])
+
+
+def _common_point(common: Solid) -> FloatArray:
+    vertices = common.vertices
+    if len(vertices) == 0:
+        message = "What the solids have in common is too thin for points in doubles."
+        raise LimitError(message, "too_large")
+    return vertices[0].copy()
 
 
 @uncounted

@@ -27,7 +27,6 @@ def hull(*solids_or_points: Solid) -> Solid: ...
 def hull(*solids_or_points: Region) -> Region: ...
 @overload
 def hull(*solids_or_points: Any) -> Any: ...
-@counted
 def hull(*solids_or_points: Any) -> Solid | Region:
     """Return the convex hull: the least convex set that holds all that is given.
 
@@ -64,7 +63,11 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     >>> b.hull([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 6)]).volume
     1.0
     """
-    given = list(_entries(solids_or_points))
+    return _hull(list(_entries(solids_or_points)))
+
+
+@counted
+def _hull(given: list[Any]) -> Solid | Region:
     if any(_is_flat(one) for one in given):
         return hull_of_figures(given)
     clouds = [_points_of(one) for one in given]

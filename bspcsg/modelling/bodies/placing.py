@@ -1,24 +1,25 @@
 """Solids placed beside points and other solids."""
 
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from ..._types import FloatArray, Vector
 from ...errors import InvalidParameterError, invalid_parameter
+from ...geometry.hyperplane import exact_number
 from ...geometry.transform import vector3
 from ...parameters import shown
-from ...solid.counting import counted
+from ...solid.counting import uncounted
 from ...solid.solid import Solid
 
 #: The place of a solid and the place where it goes along an axis: one name for both, or one each.
 Anchor: TypeAlias = str | tuple[str, str]
 
-_SHARES = {"min": 0.0, "center": 0.5, "max": 1.0}
+_SHARES = {"min": Fraction(0), "center": Fraction(1, 2), "max": Fraction(1)}
 
 
-@counted
 def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") -> Solid:
     """Return the solid moved so that places of its box meet those of another (see `Solid.align`).
 
@@ -31,10 +32,11 @@ def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") 
     """
     named = [_names(axis, place) for axis, place in places.items()]
     own, other = _box(solid), _box(to)
-    move = np.zeros(3)
+    move = [0.0, 0.0, 0.0]
     for axis, names in enumerate(named):
         if names is not None:
-            move[axis] = _at(other, axis, names[1]) - _at(own, axis, names[0])
+            # Short decimals have a short difference, which is a whole number of lattice steps.
+            move[axis] = float(_at(other, axis, names[1]) - _at(own, axis, names[0]))
     return solid.translate(move)
 
 
@@ -57,6 +59,7 @@ def _wrong(axis: str, place: Any) -> InvalidParameterError:
     )
 
 
+@uncounted
 def _box(place: "Solid | Vector") -> FloatArray:
     """Return lowest and highest coordinates."""
     if not isinstance(place, Solid):
@@ -67,6 +70,6 @@ def _box(place: "Solid | Vector") -> FloatArray:
     return bounds
 
 
-def _at(box: FloatArray, axis: int, name: str) -> float:
-    low, high = box[:, axis].tolist()
-    return float(low + (high - low) * _SHARES[name])
+def _at(box: FloatArray, axis: int, name: str) -> Fraction:
+    low, high = map(exact_number, box[:, axis].tolist())
+    return low + (high - low) * _SHARES[name]

@@ -2,14 +2,14 @@
 
 import math
 from collections.abc import Sequence
+from fractions import Fraction
 from typing import Any, TypeVar
-
-import numpy as np
 
 from ..._types import Scalar, Vector
 from ...bsp import Region
 from ...errors import LimitError, invalid_parameter
 from ...geometry.arrays import doubles
+from ...geometry.hyperplane import exact_number
 from ...geometry.transform import vector3
 from ...operations.setops import union
 from ...parameters import at_least, number, shown, truth_value
@@ -135,7 +135,7 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
     for axis, (amount, length) in enumerate(zip(copies, lengths, strict=True)):
         step = [0.0] * axes
         step[axis] = number(length, "steps")
-        shift = [-entry * (amount - 1) / 2 * is_central for entry in step]
+        shift = _times(step, Fraction(1 - amount, 2)) if is_central else [0.0] * axes
         result = _row(result.translate(shift), amount, step)
     return result
 
@@ -154,9 +154,17 @@ def _entries(given: Any) -> list[Any]:
 
 
 def _row(shape: _Shape, copies: int, step: Vector) -> _Shape:
-    stride = np.array(_vector(shape, step, "step"))
-    united: _Shape = _united([shape.translate((stride * k).tolist()) for k in range(copies)])
+    stride = _vector(shape, step, "step")
+    united: _Shape = _united([shape.translate(_times(stride, k)) for k in range(copies)])
     return united
+
+
+def _times(step: Sequence[float], factor: int | Fraction) -> list[float]:
+    """Return a multiple of a step, each number the double nearest to that of its decimal."""
+    try:
+        return [float(exact_number(entry) * factor) for entry in step]
+    except OverflowError as error:
+        raise LimitError("The copies would lie beyond all doubles.", "too_large") from error
 
 
 def _turned(shape: Any, angle: float, axis: str | Vector) -> Any:

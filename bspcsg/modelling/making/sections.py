@@ -8,7 +8,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...errors import invalid_parameter
-from ...geometry.arrays import doubles
+from ...geometry.arrays import axes_of, doubles
 from ...geometry.polygon import contours_of, runs_clockwise, triangulate, triangulate_face
 from ...geometry.transform import apply, matrix_factor, translation
 from ...parameters import number, refuse_many_corners
@@ -66,7 +66,7 @@ def section_of(given: Any, place: int) -> Section:
 
 
 def _matrix(where: Any) -> FloatArray:
-    if np.ndim(where) == 0:
+    if axes_of(where) == 0:
         return translation((0.0, 0.0, number(where, "z"))).matrix
     return matrix_factor(where).matrix
 

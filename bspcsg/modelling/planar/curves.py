@@ -9,6 +9,7 @@ from ..._types import FloatArray, Scalar, Vector
 from ...bsp.sets.plane_queries import vector2
 from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
+from ...geometry.transform import cos_sin
 from ...parameters import number, positive, refuse_many_corners
 
 #: Control points that a curve may have; its points come of sums that cancel ever more beyond.
@@ -57,9 +58,18 @@ def arc(
     turn = abs(math.radians(last - first))
     steps = turn / widest if widest else math.inf
     refuse_many_corners(steps, "This arc")
-    angles = np.radians(np.linspace(first, last, max(math.ceil(steps), 1) + 1))
+    angles = np.linspace(first, last, max(math.ceil(steps), 1) + 1)
     middle = np.array(vector2(center, "center"))
-    return np.asarray(middle + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+    return np.asarray(middle + radius * _directions(angles))
+
+
+def _directions(angles: FloatArray) -> FloatArray:
+    """Return the points of the unit circle at angles in degrees, exact at whole quarters."""
+    turns = np.radians(angles)
+    points = np.column_stack([np.cos(turns), np.sin(turns)])
+    for at in np.flatnonzero(np.fmod(angles, 90) == 0):
+        points[at] = cos_sin(float(angles[at]))
+    return points
 
 
 def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
