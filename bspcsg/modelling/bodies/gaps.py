@@ -54,7 +54,7 @@ def _common_point(common: Solid) -> FloatArray:
     if len(vertices) == 0:
         message = "What the solids have in common is too thin for points in doubles."
         raise LimitError(message, "too_large")
-    return vertices[0].copy()
+    return np.array(vertices[0])
 
 
 @uncounted
