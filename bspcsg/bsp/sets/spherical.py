@@ -6,7 +6,6 @@ for directions of the plane, in space for those of space.
 """
 
 import math
-import operator
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import reduce
@@ -22,6 +21,7 @@ from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
 from ...parameters import shown
 from .objects import ObjectTree
+from .operators import SetOperators
 
 #: The lattice of cones: directions are whole numbers.
 _WHOLE = 0
@@ -30,7 +30,7 @@ _WHOLE = 0
 _LARGEST = 1 << 52
 
 
-class SphericalRegion:
+class SphericalRegion(SetOperators):
     """A set of directions of the plane or of space; an immutable value.
 
     Make one with `hemisphere`, `polygon`, `arc`, `empty` or `full`, and combine them with
@@ -116,22 +116,6 @@ class SphericalRegion:
         return reduce(lambda a, b: a & b, halves)
 
     # Set operations
-
-    def __or__(self, other: object) -> Self:
-        """Union."""
-        return self._combined(other, operator.or_)
-
-    def __and__(self, other: object) -> Self:
-        """Intersection."""
-        return self._combined(other, operator.and_)
-
-    def __sub__(self, other: object) -> Self:
-        """Difference."""
-        return self._combined(other, operator.sub)
-
-    def __xor__(self, other: object) -> Self:
-        """Symmetric difference."""
-        return self._combined(other, operator.xor)
 
     def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
         made: Self = NotImplemented

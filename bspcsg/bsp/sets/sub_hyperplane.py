@@ -3,7 +3,6 @@
 It is a hyperplane, and in it a set of one dimension less: intervals of a line, a region of a plane.
 """
 
-import operator
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Self, TypeAlias
 
@@ -15,6 +14,7 @@ from ...geometry.arrays import doubles
 from ...parameters import shown
 from .interval import Intervals
 from .objects import ObjectTree
+from .operators import SetOperators
 from .region import Region
 from .rows import hyperplane, hyperplane_row, point_rows
 from .slicing import plane_frame
@@ -30,7 +30,7 @@ _SAME = 1e-12
 _FARTHEST = 2**53 - 4
 
 
-class SubHyperplane:
+class SubHyperplane(SetOperators):
     """A part of a line in the plane, or of a plane in space; an immutable value.
 
     The hyperplane is exact only as far as its doubles are; what lies in it is an exact set.
@@ -231,22 +231,6 @@ class SubHyperplane:
         return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
 
     # Set operations
-
-    def __or__(self, other: object) -> Self:
-        """Union."""
-        return self._combined(other, operator.or_)
-
-    def __and__(self, other: object) -> Self:
-        """Intersection."""
-        return self._combined(other, operator.and_)
-
-    def __sub__(self, other: object) -> Self:
-        """Difference."""
-        return self._combined(other, operator.sub)
-
-    def __xor__(self, other: object) -> Self:
-        """Symmetric difference."""
-        return self._combined(other, operator.xor)
 
     def _combined(self, other: object, operation: Callable[[Any, Any], Any]) -> Self:
         made: Self = NotImplemented
