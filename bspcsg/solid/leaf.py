@@ -24,8 +24,9 @@ from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
 from ..once import Last, Once
 from ..parameters import MOST_PITCH
+from .extent import EXTENTS, Extent
 from .moving import SaidMesh
-from .program import COMPLEMENT, Algebra
+from .program import COMPLEMENT
 from .sewing import sewn
 
 
@@ -98,7 +99,7 @@ class MeshLeaf:
         return self.grown().pitch if self._chosen_pitch is None else self._chosen_pitch
 
     @property
-    def extent(self) -> "Extent":
+    def extent(self) -> Extent:
         """A closed mesh is bounded."""
         return True
 
@@ -277,7 +278,7 @@ class TreeLeaf:
 
     result: Tree
     record: Record | None = None
-    extent: "Extent" = None
+    extent: Extent = None
     sayings: "Sayings" = ()
     given_pitch: int | None = None
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
@@ -360,7 +361,7 @@ class PlaneLeaf:
     plane: Hyperplane
     pitch: int | None = field(default=None, init=False)
     given_pitch: int | None = field(default=None, init=False)
-    extent: "Extent" = field(default=None, init=False)
+    extent: Extent = field(default=None, init=False)
     sayings: "Sayings" = field(default=(), init=False)
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
         default_factory=WeakKeyDictionary, init=False, repr=False
@@ -422,7 +423,7 @@ class ConstantLeaf:
     sayings: "Sayings" = field(default=(), init=False)
 
     @property
-    def extent(self) -> "Extent":
+    def extent(self) -> Extent:
         """Nothing is bounded; the complement of everything is."""
         return not self.full
 
@@ -436,9 +437,6 @@ class ConstantLeaf:
         del factors
         return self
 
-
-#: The extent, without asking the core: True if the solid is bounded, False if its complement is.
-Extent: TypeAlias = bool | None
 
 #: Words on each source of a tree besides its shape; empty if nothing is said of any.
 Sayings: TypeAlias = tuple[Attributes | None, ...]
@@ -522,7 +520,7 @@ def _given_pitch_of(leaves: Sequence[ExpressionLeaf], result: Tree) -> int | Non
 def run(record: Record) -> TreeLeaf:
     """Evaluate a program on its leaves, all on one lattice (see `_on_one_lattice`)."""
     extents = [leaf.extent for leaf in record.leaves]
-    extent = _EXTENTS.evaluate(record.program, extents)
+    extent = EXTENTS.evaluate(record.program, extents)
     leaves, trees = _on_one_lattice(record.leaves, extent)
     with core_errors():
         result = Tree.evaluate(record.program, trees)
@@ -586,27 +584,6 @@ def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf 
     if isinstance(leaf, ConstantLeaf) or leaf.pitch is None or leaf.pitch >= pitch:
         return leaf
     return leaf if isinstance(leaf, TreeLeaf) and leaf.is_constant else leaf.coarsened(pitch)
-
-
-def _either(operands: Sequence[Extent]) -> Extent:
-    # One operand of bounded complement is enough; bounded ones must be all.
-    return False if False in operands else all(operands) or None
-
-
-def _both(operands: Sequence[Extent]) -> Extent:
-    return True if True in operands else None if None in operands else False
-
-
-def _odd(operands: Sequence[Extent]) -> Extent:
-    return None if None in operands else operands.count(False) % 2 == 0
-
-
-def _other(operand: Extent) -> Extent:
-    return None if operand is None else not operand
-
-
-#: The rules for the extent of a result.
-_EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)
 
 
 def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:

@@ -1,0 +1,30 @@
+"""The extent of solids and of what is made of them, without asking the core."""
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+from .program import Algebra
+
+#: True if a solid is bounded, False if its complement is, None if neither or unknown.
+Extent: TypeAlias = bool | None
+
+
+def _either(operands: Sequence[Extent]) -> Extent:
+    # One operand of bounded complement is enough; bounded ones must be all.
+    return False if False in operands else all(operands) or None
+
+
+def _both(operands: Sequence[Extent]) -> Extent:
+    return True if True in operands else None if None in operands else False
+
+
+def _odd(operands: Sequence[Extent]) -> Extent:
+    return None if None in operands else operands.count(False) % 2 == 0
+
+
+def _other(operand: Extent) -> Extent:
+    return None if operand is None else not operand
+
+
+#: The rules for the extent of a result.
+EXTENTS: Algebra[Extent] = Algebra(_either, _both, _odd, _other)
