@@ -330,3 +330,9 @@ def test_weights_in_slivers_are_as_exact_as_in_others() -> None:
     assert np.array_equal(found, [[0.25, 0.25, 0.5]])
     far = np.array([[[1e8, 0, 0], [1e8 + 1, 0, 0], [1e8, 0, 1]]])
     assert np.array_equal(weights(np.array([[1e8 + 0.25, 0, 0.5]]), far), [[0.25, 0.25, 0.5]])
+
+
+def test_tagged_half_spaces_are_turned_as_others_are() -> None:
+    room = b.box(20, 20, 20, center=True)
+    assert (b.half_space("z", 0).tagged(layer=1).rotate(30, "x") & room).volume == 4000
+    assert b.Solid.full().tagged(layer=1) == b.Solid.full()
