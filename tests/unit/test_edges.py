@@ -353,3 +353,10 @@ def test_blends_at_the_end_of_the_lattice(size: float, pitch: int | None) -> Non
             wanted = getattr(small, blend)(small.edges(), radius).volume
             found = getattr(large, blend)(large.edges(), radius * size / 8).volume
             assert found / (size / 8) ** 3 == pytest.approx(wanted, rel=1e-8)
+
+
+@pytest.mark.parametrize("turn", [0, 17])
+def test_attributes_follow_edges_that_are_blended_in_two_stages(turn: float) -> None:
+    part = (b.box(4, 4, 4) - b.box(2, 2, 5).translate(2, 2, 2)).tagged(layer=1)
+    turned = part.rotate(turn, (1, 2, 3))
+    assert 1 in turned.chamfer(turned.edges(), 0.2).to_mesh().face_attributes["layer"]

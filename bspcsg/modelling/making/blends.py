@@ -358,8 +358,10 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
         rest = chosen[~np.isin(chosen, list(blend.chosen))]
         if not len(rest):
             break
-        solid = _tidy(solid, blend)
-        after = skeleton_of(solid.normalized().to_mesh())
+        tidy = _tidy(solid, blend)
+        after = skeleton_of(tidy.normalized().to_mesh())
+        # What is tidied has no attributes any more.
+        solid = solid if mesh.carried is not None else tidy
         reach = float(blend.widths.max())
         chosen = carried(skeleton, rest, after, _new_ends(blend, rest), reach)
         skeleton = after
