@@ -256,3 +256,12 @@ def test_what_is_no_loft_is_refused(profiles: Any, word: str, where: tuple[int, 
     with pytest.raises(b.InvalidParameterError, match=word) as caught:
         b.loft(profiles)
     assert caught.value.where == where
+
+
+@pytest.mark.parametrize("far", [1e-200, 1e200])
+def test_paths_that_doubles_cannot_measure_are_refused(far: float) -> None:
+    square = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    with pytest.raises(b.LimitError, match="measure"):
+        b.sweep(square, [(0, 0, 0), (far, 0, 0)])
+    with pytest.raises(b.LimitError, match="measure"):
+        b.spline([(0, 0), (far, 0), (0, 1)])

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..._types import FloatArray, Scalar
-from ...errors import invalid_parameter
+from ...errors import LimitError, invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.transform import cos_sin
 from ...parameters import number, positive, refuse_many_corners, sides_around, truth_value
@@ -39,7 +39,7 @@ def helix(
     InvalidParameterError
         If a number is out of its range.
     LimitError
-        If there would be too many points.
+        If there would be too many points, or doubles cannot measure the distances between them.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     InvalidParameterError
         If there are too few points, or two in one place one after another (`where` names them).
     LimitError
-        If there would be too many points.
+        If there would be too many points, or doubles cannot measure the distances between them.
 
     Notes
     -----
@@ -102,7 +102,14 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     if not np.isfinite(given).all():
         raise invalid_parameter("The points of a spline must be finite.")
     refuse_many_corners(len(given) * chords, "This spline")
-    return _catmull_rom(_with_neighbours(given, is_ring), chords)
+    with np.errstate(all="ignore"):
+        curve = _catmull_rom(_with_neighbours(given, is_ring), chords)
+    if not np.isfinite(curve).all():
+        message = (
+            "Doubles cannot measure this spline: its points are too near each other, or too far."
+        )
+        raise LimitError(message, "too_large")
+    return curve
 
 
 def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 
 from ..._types import FloatArray
-from ...errors import invalid_parameter
+from ...errors import LimitError, invalid_parameter
 from ...geometry.arrays import doubles
 from ...parameters import word
 
@@ -68,6 +68,8 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
     ------
     InvalidParameterError
         If it has fewer than two points, another shape, or a coordinate that is not finite.
+    LimitError
+        If doubles cannot measure it.
     """
     points = doubles(path, invalid_parameter("A path is an array of points."))
     if points.ndim != 2 or points.shape[1] not in (2, 3):
@@ -80,7 +82,14 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
         points = points[np.concatenate([[True], fresh])]
     if len(points) < 2:
         raise invalid_parameter("A path needs two different points.")
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    with np.errstate(over="ignore"):
+        lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        size = float(np.linalg.norm(np.ptp(points, axis=0)))
+    if not (lengths > 0).all() or not math.isfinite(size):
+        message = (
+            "Doubles cannot measure this path: its points are too near each other, or too far."
+        )
+        raise LimitError(message, "too_large")
     closed = len(points) > 3 and math.dist(points[0], points[-1]) <= _SAME * size
     return (points[:-1] if closed else points), closed
 
