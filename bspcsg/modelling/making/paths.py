@@ -39,7 +39,7 @@ def helix(
     InvalidParameterError
         If a number is out of its range.
     LimitError
-        If there would be too many points, or doubles cannot measure the distances between them.
+        If there would be too many points.
 
     Examples
     --------
@@ -105,9 +105,7 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     with np.errstate(all="ignore"):
         curve = _catmull_rom(_with_neighbours(given, is_ring), chords)
     if not np.isfinite(curve).all():
-        message = (
-            "Doubles cannot measure this spline: its points are too near each other, or too far."
-        )
+        message = "Doubles cannot measure this spline: points are too near each other, or too far."
         raise LimitError(message, "too_large")
     return curve
 

@@ -86,9 +86,7 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         size = float(np.linalg.norm(np.ptp(points, axis=0)))
     if not (lengths > 0).all() or not math.isfinite(size):
-        message = (
-            "Doubles cannot measure this path: its points are too near each other, or too far."
-        )
+        message = "Doubles cannot measure this path: points are too near each other, or too far."
         raise LimitError(message, "too_large")
     closed = len(points) > 3 and math.dist(points[0], points[-1]) <= _SAME * size
     return (points[:-1] if closed else points), closed
