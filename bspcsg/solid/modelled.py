@@ -117,7 +117,7 @@ class Modelled:
         Raises
         ------
         UnboundedError
-            If one of them reaches to infinity.
+            If one of them reaches to infinity, and they do not overlap.
 
         Notes
         -----
@@ -144,7 +144,7 @@ class Modelled:
         InvalidParameterError
             If one of them is empty.
         UnboundedError
-            If one of them reaches to infinity.
+            If one of them reaches to infinity, and they do not overlap.
 
         Examples
         --------
@@ -164,7 +164,7 @@ class Modelled:
         Raises
         ------
         UnboundedError
-            If one of them reaches to infinity.
+            If one of them reaches to infinity, and they do not overlap.
 
         Examples
         --------
