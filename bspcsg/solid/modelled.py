@@ -164,7 +164,7 @@ class Modelled:
         Raises
         ------
         UnboundedError
-            If one of them reaches to infinity, and they do not overlap.
+            If one of them reaches to infinity.
 
         Examples
         --------
