@@ -10,6 +10,7 @@ import bspcsg as b
 
 BOX = b.box(4, 3, 2)
 STEP = b.box(4, 4, 2) - b.box(2, 2, 2).translate(2, 2, 0)
+NOTCH = b.box(4, 4, 4) - b.box(2, 2, 5).translate(2, 2, 2)
 STAR = b.loft([([(2, 0), (0.5, 0.5), (0, 2), (-0.5, 0.5), (-2, 0), (0, -0.5)], 0), [(0, 0, 3)]])
 POST = b.box(6, 6, 1).translate(-3, -3, -1) | b.box(2, 2, 3).translate(-1, -1, 0)
 FLUSH = b.box(6, 6, 1) | b.box(2, 2, 3).translate(0, 2, 1)
@@ -290,6 +291,20 @@ def test_turned_parts_lose_as_much(part: b.Solid) -> None:
     soft = turned.chamfer(turned.edges(), 0.25)
     assert soft.genus == 0 and soft.to_mesh().certificate.ok
     assert turned.volume - soft.volume == pytest.approx(loss, rel=1e-6)
+
+
+@pytest.mark.parametrize("turn", [(30, "x"), (17, "z"), (17, (1, 2, 3)), (40, (3, 1, 2))])
+@pytest.mark.parametrize("part", [NOTCH, STEP, POST], ids=["notch", "step", "post"])
+def test_turned_parts_become_as_round(part: b.Solid, turn: Any) -> None:
+    turned = part.rotate(*turn)
+    soft = turned.fillet(turned.edges(), 0.2, 8)
+    assert soft.genus == 0 and soft.to_mesh().certificate.ok
+    assert soft.volume == pytest.approx(part.fillet(part.edges(), 0.2, 8).volume, rel=1e-6)
+
+
+def test_attributes_stay_where_both_kinds_are_blended() -> None:
+    part = NOTCH.tagged(layer=1).rotate(17, (1, 2, 3))
+    assert list(part.chamfer(part.edges(), 0.2).to_mesh().face_attributes) == ["layer"]
 
 
 def test_blends_count_once_in_a_block() -> None:

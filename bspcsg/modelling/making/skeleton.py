@@ -111,10 +111,8 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
     is_thin = _are_thin(vertices, triangles, areas)
     pairs = _with_one_plane(owners[is_flat], away[is_flat], is_thin)
     face = _groups(pairs, len(triangles))
-    normals = np.zeros((face.max() + 1, 3))
-    np.add.at(normals, face, areas)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    normals /= np.where(lengths > 0, lengths, 1)
+    face = _mended(vertices, triangles, areas, face, owners[is_flat], is_thin)
+    normals, _ = _facing(areas, face)
     sides = face[owners]
     sharp = sides[:, 0] != sides[:, 1]
     ends, sides = _runs(vertices, *_ascending(segments[sharp], sides[sharp]))
@@ -191,6 +189,54 @@ def _with_one_plane(flat: IndexArray, away: FloatArray, is_thin: BoolArray) -> I
     # Faces of nothing but thin triangles.
     kept.append(flat[~is_placed[flat].any(axis=1)])
     return np.concatenate(kept)
+
+
+def _facing(areas: FloatArray, face: IndexArray) -> tuple[FloatArray, FloatArray]:
+    """Return the unit normals of faces, (f, 3), and twice their areas."""
+    normals = np.zeros((face.max() + 1, 3))
+    np.add.at(normals, face, areas)
+    lengths = np.linalg.norm(normals, axis=1)
+    return normals / np.where(lengths > 0, lengths, 1)[:, None], lengths
+
+
+def _mended(
+    vertices: FloatArray,
+    triangles: IndexArray,
+    areas: FloatArray,
+    face: IndexArray,
+    flat: IndexArray,
+    is_thin: BoolArray,
+) -> IndexArray:
+    """Return the face of each triangle once those of one plane are one.
+
+    A thin triangle between two goes with one of them, and keeps them apart.
+    """
+    is_wide = np.bincount(face, ~is_thin) > 0
+    pairs = np.unique(face[flat], axis=0)
+    pairs = pairs[(pairs[:, 0] != pairs[:, 1]) & is_wide[pairs].all(axis=1)]
+    normals, sizes = _facing(areas, face)
+    is_first = sizes[pairs[:, 0]] >= sizes[pairs[:, 1]]
+    large, small = (np.where(one, *pairs.T) for one in (is_first, ~is_first))
+    corners = vertices[triangles] - vertices.mean(axis=0)
+    middles = np.einsum("ij,ij->i", corners.mean(axis=1), normals[face])
+    weights = np.linalg.norm(areas, axis=1)
+    totals = np.bincount(face, weights)
+    offsets = np.bincount(face, weights * middles) / np.where(totals > 0, totals, 1)
+    own, pair = _members(face, small)
+    heights = np.einsum("ijk,ik->ij", corners[own], normals[large[pair]])
+    away = np.zeros(len(pairs))
+    np.maximum.at(away, pair, np.abs(heights - offsets[large[pair], None]).max(axis=1))
+    ahead = np.einsum("ij,ij->i", normals[small], normals[large]) > 0
+    return _groups(pairs[ahead & (away <= flatness(vertices))], len(is_wide))[face]
+
+
+def _members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return the triangles of chosen faces, and the place of each one's face among these."""
+    counts = np.bincount(face)
+    starts, sizes = np.cumsum(counts) - counts, counts[chosen]
+    place = np.repeat(np.arange(len(chosen)), sizes)
+    rank = np.arange(len(place)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    return np.argsort(face, kind="stable")[starts[chosen][place] + rank], place
 
 
 def _groups(pairs: IndexArray, count: int) -> IndexArray:
