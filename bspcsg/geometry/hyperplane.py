@@ -185,8 +185,10 @@ def exact_number(value: Any) -> Fraction:
     TypeError
         If it is no number.
     """
-    if isinstance(value, (bool, np.bool_, str, bytes)) or is_complex(value):
-        raise TypeError("truth values, texts and complex numbers are no numbers here")
+    # Spans of time would pass for whole numbers.
+    no_numbers = (bool, np.bool_, np.timedelta64, str, bytes)
+    if isinstance(value, no_numbers) or is_complex(value):
+        raise TypeError("truth values, texts, times and complex numbers are no numbers here")
     if isinstance(value, numbers.Rational):
         return Fraction(int(value.numerator), int(value.denominator))
     double = float(value)

@@ -272,6 +272,8 @@ def test_round_edges() -> None:
         lambda s: s.offset(float("nan")),
         lambda s: s.offset("1"),
         lambda s: s.offset(1, segments=3),
+        lambda s: s.offset(0, segments="x"),
+        lambda s: s.offset(1e-25),
         lambda s: s.rounded(0),
         lambda s: s.rounded(-1),
     ],

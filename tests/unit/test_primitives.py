@@ -241,7 +241,9 @@ def test_parameters_that_make_no_solid_are_refused(name: str) -> None:
     assert len(str(caught.value)) > 10
 
 
-@pytest.mark.parametrize("normal", [(0, 0, 0), (NAN, 0, 1), (1, 2), "up", 3])
+@pytest.mark.parametrize(
+    "normal", [(0, 0, 0), (NAN, 0, 1), (1, 2), "up", 3, (0, 0, np.timedelta64(3))]
+)
 def test_half_spaces_need_a_normal(normal: Any) -> None:
     with pytest.raises(b.InvalidMeshError) as caught:
         b.half_space(normal, 0)

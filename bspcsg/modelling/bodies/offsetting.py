@@ -1,20 +1,24 @@
 """Solids thickened, made thinner and rounded by a ball."""
 
 from ..._types import Scalar
+from ...errors import invalid_parameter
 from ...parameters import number, positive, sides_around, truth_value
 from ...shapes.primitives import sphere
 from ...solid.counting import counted
 from ...solid.solid import Solid
 from .sums import minkowski
 
+#: Ten steps of the finest lattice: smaller balls are nothing there.
+_SMALLEST = 1e-21
+
 
 @counted
 def offset(solid: Solid, r: Scalar, segments: int = 16) -> Solid:
     """Return the solid with its surface moved outwards (see `Solid.offset`)."""
-    distance = number(r, "r")
-    ball = _ball(abs(distance), segments) if distance else None
-    if ball is None:
+    distance, around = number(r, "r"), sides_around(4, segments, "segments")
+    if not distance:
         return solid
+    ball = _ball(abs(distance), around)
     return minkowski(solid, ball) if distance > 0 else ~minkowski(~solid, ball)
 
 
@@ -26,7 +30,11 @@ def rounded(solid: Solid, r: Scalar, segments: int = 16, inside: bool = False) -
     return offset(offset(solid, first, segments), -first, segments)
 
 
-def _ball(r: float, segments: int) -> Solid:
+def _ball(r: float, around: int) -> Solid:
     """Return a ball with corners at r along each axis, so that faces across them move by r."""
-    around = sides_around(4, segments, "segments")
+    if r < _SMALLEST:
+        message = (
+            f"r is {r:g}, less than the finest lattice shows; choose 0, or {_SMALLEST:g} at least."
+        )
+        raise invalid_parameter(message)
     return sphere(r, segments=around + -around % 4)
