@@ -235,12 +235,3 @@ def test_partition_trees_are_equal_if_facets_and_cuts_are() -> None:
 def test_nothing_is_no_point(kind: Kind) -> None:
     with pytest.raises(b.InvalidParameterError, match="A point has coordinates"):
         _ = () in kind.box(0, 1)
-
-
-def test_equal_solids_hash_alike_once_they_are_turned() -> None:
-    turned = [one.rotate(31, (1, 2, 3)) for one in (b.cube(3), b.cube(3).refine(3))]
-    alike = [(one, one | b.Solid.empty()) for one in turned]
-    assert all(one == other and hash(one) == hash(other) for one, other in alike)
-    for first, second in zip(*alike, strict=True):
-        assert (first == second) == (hash(first) == hash(second))
-    assert (alike[0][0] == alike[1][0]) == (alike[0][1] == alike[1][1])
