@@ -274,6 +274,8 @@ class TreeLeaf:
         The values on each source of the tree; empty if there are none.
     given_pitch : int or None
         As for `MeshLeaf`.
+    tags : mapping of str to object
+        The attributes that `tagged` gave to all faces, for when the record is run again.
     """
 
     result: Tree
@@ -281,6 +283,7 @@ class TreeLeaf:
     extent: Extent = None
     sayings: "Sayings" = ()
     given_pitch: int | None = None
+    tags: Mapping[str, object] = field(default_factory=dict)
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
     last_moved: "Last[FactorChain, ExpressionLeaf]" = field(
         default_factory=Last, init=False, repr=False
@@ -487,7 +490,25 @@ def said_of(result: Tree, operands: Sequence[tuple[Tree, Sayings]]) -> Sayings:
     return found if any(said is not None for said in found) else ()
 
 
-def tagged(
+def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
+    """Return a leaf of which every face says so; half-spaces have none.
+
+    Its sources have identities of their own, as others of the same leaf may say something else.
+    """
+    if not values or isinstance(leaf, (PlaneLeaf, ConstantLeaf)):
+        return leaf
+    with core_errors():
+        tree = tree_of(leaf).renamed()
+    said = tuple(
+        None if (arrays := tree.source_arrays(slot)) is None else _tagged(old, arrays, values)
+        for slot, old in enumerate(leaf.sayings or (None,) * len(tree.sources))
+    )
+    if isinstance(leaf, MeshLeaf):
+        return TreeLeaf(tree, None, leaf.extent, said, leaf.given_pitch)
+    return replace(leaf, result=tree, sayings=said, tags={**leaf.tags, **values})
+
+
+def _tagged(
     old: Attributes | None, arrays: SourceArrays, values: Mapping[str, object]
 ) -> Attributes:
     """Return what is said of a source, and one value more of all its faces for each name."""
@@ -662,7 +683,7 @@ def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     leaves = []
     for operand in leaf.record.leaves:
         leaves.append((yield operand, factors))
-    return run(Record(leaf.record.program, tuple(leaves)))
+    return tagged(run(Record(leaf.record.program, tuple(leaves))), leaf.tags)
 
 
 def _after(motion: transform.LatticeMotion, sayings: Sayings) -> Sayings:

@@ -34,7 +34,6 @@ from .leaf import (
     ConstantLeaf,
     ExpressionLeaf,
     MeshLeaf,
-    PlaneLeaf,
     Record,
     Sayings,
     TreeLeaf,
@@ -373,16 +372,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         [1, 2]
         """
         leaf = self._leaf()
-        if isinstance(leaf, (PlaneLeaf, ConstantLeaf)):
-            return self
-        tree = self.tree
-        sayings = leaf.sayings or (None,) * len(tree.sources)
-        said = tuple(
-            None if (arrays := tree.source_arrays(slot)) is None else tagged(old, arrays, values)
-            for slot, old in enumerate(sayings)
-        )
-        record = leaf.record if isinstance(leaf, TreeLeaf) else None
-        return from_leaf(TreeLeaf(tree_of(leaf), record, leaf.extent, said, leaf.given_pitch))
+        told = tagged(leaf, values)
+        return self if told is leaf else from_leaf(told)
 
     @counted
     def simplify(self, tolerance: float) -> "Solid":

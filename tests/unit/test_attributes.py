@@ -336,3 +336,45 @@ def test_tagged_half_spaces_are_turned_as_others_are() -> None:
     room = b.box(20, 20, 20, center=True)
     assert (b.half_space("z", 0).tagged(layer=1).rotate(30, "x") & room).volume == 4000
     assert b.Solid.full().tagged(layer=1) == b.Solid.full()
+
+
+def layers_and_sides(solid: b.Solid) -> set[tuple[int, bool]]:
+    """Return the layers that faces have with whether they lie beyond x = 2."""
+    mesh = solid.to_mesh()
+    beyond = mesh.vertices[mesh.faces].mean(axis=1)[:, 0] > 2
+    layers = mesh.face_attributes["layer"]
+    return set(zip(layers[layers > 0].tolist(), beyond[layers > 0].tolist(), strict=True))
+
+
+@pytest.mark.parametrize("shift", [(0, 0, 0), (0, 0, 5)])
+def test_each_of_two_tags_of_one_solid_stays_where_it_was_said(
+    shift: tuple[float, float, float],
+) -> None:
+    body = b.cube(4)
+    left, right = b.box(1, 9, 9).translate(-0.5, -1, -1), b.box(9, 9, 9).translate(3, -1, -1)
+    for tags in ((1, 2), (0, 2)):
+        first, second = (body.tagged(layer=tag) if tag else body for tag in tags)
+        both = (first & left).translate(*shift) | (second & right).translate(*shift)
+        wanted = {(tags[0], False), (tags[1], True)}
+        assert layers_and_sides(both) == {(tag, beyond) for tag, beyond in wanted if tag}
+    assert first.sources == body.sources
+    assert not set(second.sources) & set(body.sources)
+
+
+def test_tags_change_nothing_but_names() -> None:
+    worn = b.sphere(5, segments=40).rotate(20, "x") - b.cube(4) - b.sphere(2).translate(0, 0, -4)
+    said = worn.tagged(layer=3)
+    for kind in (worn, worn.normalized()):
+        told = kind.tagged(layer=3).to_mesh()
+        assert np.array_equal(told.vertices, kind.to_mesh().vertices)
+        assert np.array_equal(told.faces, kind.to_mesh().faces)
+    assert said.volume_exact == worn.volume_exact
+    assert said == worn and len(said.sources) == len(worn.sources)
+    assert set(said.normalized().to_mesh().face_attributes["layer"].tolist()) == {3}
+
+
+def test_tags_of_what_reaches_to_infinity_stay_when_it_is_turned() -> None:
+    wedge = (b.cube(4) | b.half_space((1, 0, 0), -3)).tagged(layer=7).tagged(kind=1)
+    mesh = (wedge.rotate(30, (1, 2, 3)) & b.sphere(5)).to_mesh()
+    assert set(mesh.face_attributes["layer"].tolist()) == {0, 7}
+    assert set(mesh.face_attributes["kind"].tolist()) == {0, 1}

@@ -538,3 +538,21 @@ def test_needle_fans_in_single_precision_are_measured_at_once() -> None:
     solids = [b.Solid(vertices + shift, faces, trusted=True) for shift in (0, 0.01)]
     common, joint = solids[0] & solids[1], solids[0] | solids[1]
     assert common.volume + joint.volume == pytest.approx(2 * volume, rel=1e-9)
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_numbers_of_sources_do_not_tell_what_was_asked_for(asked: bool) -> None:
+    def seen(solid: b.Solid) -> b.Solid:
+        if asked:
+            assert solid.volume >= 0
+        return solid
+
+    first = b.box(1, 1, 2).translate(2, 0, 3)
+    second = b.box(2, 3, 2).translate(1, 0, 2)
+
+    def moved() -> b.Solid:
+        return seen(seen(second.translate(-2, 1, -2)).mirror((1, 0, 0)))
+
+    kept = seen(seen(first.mirror((1, 0, 0))) - moved())
+    solid = seen(seen(kept - seen(moved() ^ moved())) | moved())
+    assert set(solid.to_mesh().source[:, 0].tolist()) == {0, 1}

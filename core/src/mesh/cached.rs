@@ -15,6 +15,13 @@ impl<T> Default for Cached<T> {
     }
 }
 
+impl<T: Clone> Clone for Cached<T> {
+    /// The same value, if somebody has made it.
+    fn clone(&self) -> Self {
+        self.get().cloned().map_or_else(Self::new, Self::of)
+    }
+}
+
 impl<T> Cached<T> {
     /// No value yet.
     pub const fn new() -> Self {

@@ -8,6 +8,7 @@ use super::chain::is_closed;
 use super::finding::{Finding, Severity};
 use super::grid::Pitch;
 use super::handle::{FaceId, VertexId};
+use super::images::Images;
 use super::links;
 use super::topology::{open_edges, Topology};
 use super::triangles::TriangleMesh;
@@ -30,11 +31,12 @@ pub struct Source {
     cell: Cached<Option<Cell>>,
     snapped: [Cached<bool>; 8],
     close: Cached<Vec<[u32; 2]>>,
+    images: Images<Self>,
     findings: Vec<Finding>,
 }
 
 /// The faces and vertices of a source.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Shape {
     /// Triangles on the lattice.
     Mesh(TriangleMesh),
@@ -65,6 +67,7 @@ impl Source {
             cell: Cached::new(),
             snapped: Default::default(),
             close: Cached::new(),
+            images: Images::default(),
             findings,
         }
     }
@@ -98,6 +101,23 @@ impl Source {
             close: Cached::of(pairs),
             ..self
         }
+    }
+
+    /// A source of the same shape, of which other things may be said.
+    #[must_use]
+    pub fn renamed(&self) -> Self {
+        let named = Self::new(self.pitch, self.shape.clone(), self.findings.clone());
+        Self {
+            open: self.open.clone(),
+            cell: self.cell.clone(),
+            close: self.close.clone(),
+            ..named
+        }
+    }
+
+    /// The images that motions have made of it.
+    pub fn images(&self) -> &Images<Self> {
+        &self.images
     }
 
     /// A number that tells sources apart.

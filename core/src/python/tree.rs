@@ -560,9 +560,14 @@ impl Tree {
     fn moved(&self, py: Python<'_>, axes: [i64; 3], shift: [i64; 3]) -> PyResult<Self> {
         let motion = motion(axes, shift).map_err(|e| to_python(py, &e))?;
         self.run(py, "moved", 0, self.size(), || {
-            let data = Snapshot::movable(&self.solid, &motion)?;
-            mapped(&data, &motion, self.solid.pitch())
+            Ok(Self::of(Snapshot::image(&self.solid, &motion)?))
         })
+    }
+
+    /// The same tree of sources with new identities.
+    fn renamed(&self, py: Python<'_>) -> PyResult<Self> {
+        let renamed = || Ok(Self::of(self.solid.renamed()));
+        self.run(py, "renamed", 0, self.size(), renamed)
     }
 
     fn refined(&self, py: Python<'_>, pitch: i64) -> PyResult<Self> {
@@ -616,10 +621,6 @@ impl Tree {
         }
         Ok(dict)
     }
-}
-
-fn mapped(data: &Snapshot, motion: &Motion, pitch: Pitch) -> Result<Tree> {
-    Ok(Tree::of(data.moved(motion, pitch)?.solid()?))
 }
 
 fn term(name: &str, arguments: Vec<u32>) -> Result<Term> {

@@ -144,11 +144,12 @@ impl Snapshot {
     /// `BadSnapshot` if the data contradict themselves.
     pub fn solid(&self) -> Result<Solid> {
         let pitch = Pitch::new(self.pitch)?;
-        let sources = self
-            .sources
-            .iter()
-            .map(|s| Ok(Arc::new(s.source(pitch)?)))
-            .collect::<Result<Vec<_>>>()?;
+        let made = |s: &SourceData| Ok(Arc::new(s.source(pitch)?));
+        let sources: Result<Vec<_>> = self.sources.iter().map(made).collect();
+        self.solid_of(pitch, &sources?)
+    }
+
+    fn solid_of(&self, pitch: Pitch, sources: &[Arc<Source>]) -> Result<Solid> {
         let cell = sources
             .iter()
             .filter_map(|s| s.cell())
@@ -177,7 +178,7 @@ impl Snapshot {
         }
         for p in &self.parts {
             poll();
-            leaf.parts.push(p.element(&sources, cell)?);
+            leaf.parts.push(p.element(sources, cell)?);
         }
         let node = Arc::new(Node::Deferred(leaf));
         let root = Branch {
@@ -194,26 +195,30 @@ impl Snapshot {
         ))
     }
 
-    /// The data of a solid that a motion is going to move.
+    /// The image of a solid under a motion of its lattice; one motion makes one image of a source.
     ///
     /// A motion takes vertices to doubles of the lattice along axes on which it shifts them. If that
     /// makes a mesh cross itself, the solid is united with itself, and its doubles are the lattice's
     /// already.
     ///
     /// # Errors
-    /// `Internal`.
-    pub fn movable(solid: &Solid, motion: &Motion) -> Result<Self> {
-        if !crosses_once_snapped(solid, motion.shifted()) {
-            look_at_contacts(solid, motion);
-            return Ok(Self::of(solid));
+    /// `TooLarge` if something leaves the lattice; `Unbounded`, `Internal`.
+    pub fn image(solid: &Solid, motion: &Motion) -> Result<Solid> {
+        let pitch = solid.pitch();
+        if crosses_once_snapped(solid, motion.shifted()) {
+            let solid = normalize(solid, Rule::Positive)?;
+            look_at_contacts(&solid, motion);
+            let mut data = Self::of(&solid);
+            for source in &mut data.sources {
+                source.snap(pitch);
+            }
+            return data.moved(motion, pitch)?.solid();
         }
-        let solid = normalize(solid, Rule::Positive)?;
-        look_at_contacts(&solid, motion);
-        let mut data = Self::of(&solid);
-        for source in &mut data.sources {
-            source.snap(solid.pitch());
-        }
-        Ok(data)
+        look_at_contacts(solid, motion);
+        let data = Self::of(solid).moved(motion, pitch)?;
+        let each = solid.sources().iter().zip(&data.sources);
+        let images: Result<Vec<_>> = each.map(|(s, data)| data.image(s, motion)).collect();
+        data.solid_of(pitch, &images?)
     }
 
     /// The image under a motion of the lattice, on a lattice of the given pitch.
@@ -388,6 +393,19 @@ impl SourceData {
                 Ok(source.with_close_pairs(pairs.clone()))
             }
         }
+    }
+
+    /// The image of a source that these are the data of.
+    fn image(&self, source: &Source, motion: &Motion) -> Result<Arc<Source>> {
+        if let Some(known) = source.images().get(motion) {
+            return Ok(known);
+        }
+        let image = Arc::new(self.source(source.pitch())?);
+        // A source that bounds nothing has left only its place.
+        if image.face_count() == source.face_count() {
+            source.images().keep(motion, &image);
+        }
+        Ok(image)
     }
 
     /// The data as they are written: with close pairs only where some cross, which nobody would look for.

@@ -6,6 +6,7 @@ pub mod node;
 pub mod partition;
 pub mod pieces;
 pub mod plane;
+mod renaming;
 pub mod share;
 pub mod solid;
 pub mod stats;

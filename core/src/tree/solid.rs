@@ -129,6 +129,17 @@ impl Solid {
         self.doubts.is_some() || self.whole_mesh().is_some()
     }
 
+    /// The same solid as a tree of other sources, which are equal to its own.
+    pub(super) fn of_others(&self, root: Branch, sources: Table) -> Self {
+        Self {
+            root,
+            sources,
+            simple: self.simple.clone(),
+            united: Arc::default(),
+            ..self.clone()
+        }
+    }
+
     /// The mesh, if the solid is one as it was given.
     pub fn whole_mesh(&self) -> Option<&Arc<Source>> {
         let Node::Deferred(leaf) = &*self.root.node else {

@@ -8,7 +8,7 @@ use crate::geometry::plane::{Lattice, Plane};
 /// A map of the lattice into itself: a signed permutation of the axes, a scale and a shift.
 ///
 /// On the line and in the plane the axes that are not there stay as they are.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Motion {
     /// For each new axis the old axis it takes and its sign.
     pub axes: [(usize, i64); 3],
