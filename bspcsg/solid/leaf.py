@@ -18,7 +18,7 @@ from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
 from ..attributes.attributes import Attributes, Given, Later, array_of
 from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
-from ..errors import LimitError, UnboundedError, core_errors
+from ..errors import InvalidMeshError, LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
@@ -88,6 +88,7 @@ class MeshLeaf:
         self._winding = winding
         self._tree: Once[Tree] = Once()
         self._rounded: str | None = None
+        self._is_moved = False
         #: The pitch that transforms keep, as far as its lattice reaches; None for one that suits.
         self.given_pitch = pitch
         self._pitches = Pitches()
@@ -181,6 +182,7 @@ class MeshLeaf:
         moved = mesh.moved(factors)
         held = moved.held_pitch(pitch)
         leaf = cls(moved.vertices, moved.faces, held, False, winding, moved.attributes)
+        leaf._is_moved = True
         leaf._chosen_pitch = moved.suited_pitch() if held is None else held
         if leaf._chosen_pitch is not None:
             leaf._content = _Moved(moved, mesh.vertices, leaf._chosen_pitch)
@@ -199,6 +201,16 @@ class MeshLeaf:
         return content
 
     def _grow(self) -> Tree:
+        try:
+            return self._imported()
+        except InvalidMeshError as error:
+            # Rounding may leave nothing of what a transform has made too thin.
+            if not self._is_moved or error.code != "empty_mesh":
+                raise
+            pitch = DEFAULT_PITCH if self._chosen_pitch is None else self._chosen_pitch
+            return Tree.empty(pitch)
+
+    def _imported(self) -> Tree:
         with core_errors():
             tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted, self._rounded)
             # What crossed in doubles touches itself, and may cross on the lattice.

@@ -396,3 +396,24 @@ def test_every_verb_tells_its_options(capsys: Capture) -> None:
     assert all("--no-overwrite" in text and "--jobs" in text for text in shown.values())
     rounding = {verb for verb, text in shown.items() if "--digits" in text}
     assert rounding == {"convert", "eval", "run", "split", "union"}
+
+
+# options that would do nothing
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["render", "a.off", "-o", "x.svg", "--frames", "36"], "--frames is for a GIF only."),
+        (["render", "a.off", "-o", "x.png", "--seconds", "4"], "--seconds is for a GIF only."),
+        (["view", "a.off", "-o", "x.html", "--port", "0"], "--port goes with --live, or"),
+        (["run", "m.csg", "-o", "x.off", "--port", "8000"], "--port goes with --view only."),
+        (["run", "m.csg", "-o", "x.off", "--watch", "--port", "1"], "--port goes with --view"),
+    ],
+)
+def test_options_without_use_are_refused(
+    folder: Path, capsys: Capture, arguments: list[str], words: str
+) -> None:
+    code, out, err = ran(capsys, *arguments)
+    assert (code, out) == (2, "") and words in err
+    assert not list(folder.glob("x.*"))

@@ -98,6 +98,8 @@ def test_minkowski_of_what_is_far_from_convex() -> None:
 
 def test_sizes() -> None:
     assert volume("resize(newsize = [4, 0, 0]) cube(2);") == 16
+    assert volume("resize([4, 6]) cube(2);") == volume("resize([4, 6, 0]) cube(2);") == 48
+    assert volume("resize([]) cube(2);") == volume("resize() cube(2);") == 8
     assert volume("resize(newsize = [4, 0, 0], auto = [0, 1, 0]) cube(2);") == 32
     assert volume("resize(newsize = [4, 0, 6], auto = true) cube(2);") == 4 * 6 * 6
     assert volume("resize(newsize = [2, 0, 0], auto = [1, 1, 1, 1]) cube(1);") == 8

@@ -238,3 +238,13 @@ def test_the_program_that_is_told_is_a_copy() -> None:
     assert not part.is_bounded and part.last_operation is not None
     part.last_operation.program.clear()
     assert (part.rotate(30) & b.cube(10, center=True)).volume > 500
+
+
+@pytest.mark.parametrize("height", [1e-12, 1e-16, 1e-20, 1e-300])
+def test_what_is_too_thin_for_doubles_is_empty_however_it_is_turned(height: float) -> None:
+    plate = b.box(1, 1, 1).translate(1, 1, 1).scale((1, 1, height))
+    turned = plate.rotate(30, (1, 2, 3))
+    assert plate.is_empty and turned.is_empty and turned == b.Solid.empty()
+    assert (turned.rotate(10, "x") | b.cube(1)).volume == 1
+    with pytest.raises(b.InvalidMeshError, match="no face of positive area"):
+        b.Solid(np.zeros((3, 3)), [[0, 1, 2]]).rotate(30, "x").to_mesh()

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from click.core import ParameterSource
 
 from ...parameters import MOST_PITCH, MOST_SECONDS, MOST_THREADS
 from ..inputs.lengths import MILLIMETRES, as_length
@@ -223,6 +224,12 @@ PORT = click.option(
     default=0,
     help="Where a page that is served is found; by default one that is free.",
 )
+
+
+def is_given(name: str) -> bool:
+    """Say whether an option has a value that somebody gave."""
+    context = click.get_current_context()
+    return context.get_parameter_source(name) is not ParameterSource.DEFAULT
 
 
 def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:

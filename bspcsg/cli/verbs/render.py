@@ -11,7 +11,7 @@ from ..console.output import counted
 from ..drawing import Drawing
 from ..options.camera import camera_of, refuse_contradictions, seeing
 from ..options.patterns import files_argument
-from ..options.shared import SECONDS, common, drawing, numbers, reading
+from ..options.shared import SECONDS, common, drawing, is_given, numbers, reading
 from ..pages.seen import layers_of
 
 if TYPE_CHECKING:
@@ -159,7 +159,11 @@ class _Rendering(Drawing):
     def __init__(self, files: tuple[Path, ...], *paths: Any, **settings: Any) -> None:
         super().__init__(files[0], *paths, **settings)
         refuse_contradictions(settings)
-        if self.suffix == ".gif" and settings["seconds"] > _LONGEST * settings["frames"]:
+        if self.suffix != ".gif":
+            for name in ("frames", "seconds"):
+                if is_given(name):
+                    raise click.UsageError(f"--{name} is for a GIF only.")
+        elif settings["seconds"] > _LONGEST * settings["frames"]:
             message = (
                 f"--seconds: a GIF shows a picture for {_LONGEST} s at most; say more --frames."
             )

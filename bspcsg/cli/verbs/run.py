@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
-from click.core import ParameterSource
 
 from ...errors import FormatError, InvalidMeshError
 from ..console.output import Output
@@ -16,7 +15,7 @@ from ..inputs.files import ON_INVALID, STREAM, shown, stream_text
 from ..inputs.scripts import SUFFIXES, made_by
 from ..job import Job
 from ..options.patterns import file_argument
-from ..options.shared import PORT, TIMEOUT, common, making_or_showing
+from ..options.shared import PORT, TIMEOUT, common, is_given, making_or_showing
 from ..pages.watching import NOWHERE, Watching
 
 if TYPE_CHECKING:
@@ -175,6 +174,8 @@ def run(
     """
     if target is None and not shows:
         raise click.UsageError("say where the solid goes: -o part.stl; or look at it: --view.")
+    if not shows and is_given("port"):
+        raise click.UsageError("--port goes with --view only.")
 
     def job() -> Job:
         return _Run(script, target=NOWHERE if target is None else target, **given)
@@ -213,10 +214,8 @@ class _Run(Job):
         self._defines = {name: value(text) for name, text in texts}
 
     def _refuse_options(self) -> None:
-        context = click.get_current_context()
         for name, useless in _NOT_FOR.items():
-            given = context.get_parameter_source(name) is not ParameterSource.DEFAULT
-            if given and self._suffix in useless:
+            if self._suffix in useless and is_given(name):
                 option = _SPELLED.get(name, f"--{name.replace('_', '-')}")
                 raise click.UsageError(f"{option} is not for {self._suffix} files.")
 

@@ -14,7 +14,7 @@ from ..console.output import Output, counted
 from ..console.screen import has_screen
 from ..inputs.files import STREAM, Inputs, is_dropped, shown
 from ..options.patterns import files_argument
-from ..options.shared import PORT, common, reading
+from ..options.shared import PORT, common, is_given, reading
 from ..pages.seen import layers_of
 from ..pages.written import refuse_page, write_page
 
@@ -133,6 +133,8 @@ class _Viewing:
         serves = self._settings["live"] or self._folder is not None
         if serves and self._target is not None:
             raise click.UsageError("a page that is served follows its files; leave out -o.")
+        if not serves and is_given("port"):
+            raise click.UsageError("--port goes with --live, or with a folder.")
         if self._folder is not None:
             return
         if self._settings["live"] and any(str(path) == STREAM for path in self._files):

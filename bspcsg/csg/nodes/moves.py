@@ -80,11 +80,11 @@ def _is_row(row: object) -> bool:
 def resize(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Scale the children to new sizes along the axes; 0 keeps one, unless `auto` scales it too.
 
-    In the plane only the sizes along x and y count.
+    In the plane only the sizes along x and y count. Sizes that are left out are 0.
     """
     arguments = run.arguments(owner, ("newsize", "auto"))
     body = union_of(owner, children, run)
-    sizes = arguments.vector("newsize", 3, (0.0, 0.0, 0.0))
+    sizes = arguments.padded("newsize", 3)
     bounds = None if body is None else _bounds(body)
     if body is None or bounds is None:
         return body

@@ -85,6 +85,13 @@ class Arguments:
             raise self._wrong(name, f"{size} numbers within ±1e100", value)
         return tuple(float(entry) for entry in value[:size])
 
+    def padded(self, name: str, size: int) -> tuple[float, ...]:
+        """Return `size` such numbers, 0 for those that are not given."""
+        value = self._given(name, ())
+        if isinstance(value, tuple) and len(value) < size and _all_usable(value):
+            return (*map(float, value), *(0.0,) * (size - len(value)))
+        return self.vector(name, size)
+
     def points(self, name: str, size: int) -> list[tuple[float, ...]]:
         """Return points of `size` such numbers each."""
         value = self._given(name, None)
