@@ -492,10 +492,11 @@ def said_of(result: Tree, operands: Sequence[tuple[Tree, Sayings]]) -> Sayings:
     """Return what is said of the sources of a tree that was made of others."""
     if not any(sayings for _, sayings in operands):
         return ()
+    # Nothing and all of space have left their sources behind on other lattices.
     known = {
         identity: said
         for tree, sayings in operands
-        if sayings
+        if sayings and tree.sources
         for identity, said in zip(tree.sources, sayings, strict=True)
     }
     found = tuple(known.get(identity) for identity in result.sources)

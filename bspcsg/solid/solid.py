@@ -625,5 +625,7 @@ def _restored(
     data: bytes, factors: Factors, sayings: Sayings = (), given: int | None = None
 ) -> Solid:
     with core_errors():
-        leaf = TreeLeaf(Tree.load(data), sayings=sayings, given_pitch=given)
+        tree = Tree.load(data)
+        # Nothing and all of space are stored without sources.
+        leaf = TreeLeaf(tree, sayings=sayings if tree.sources else (), given_pitch=given)
         return from_node(ExpressionNode(leaf), FactorChain.of(factors))

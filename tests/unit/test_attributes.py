@@ -378,3 +378,15 @@ def test_tags_of_what_reaches_to_infinity_stay_when_it_is_turned() -> None:
     mesh = (wedge.rotate(30, (1, 2, 3)) & b.sphere(5)).to_mesh()
     assert set(mesh.face_attributes["layer"].tolist()) == {0, 7}
     assert set(mesh.face_attributes["kind"].tolist()) == {0, 1}
+
+
+@pytest.mark.parametrize("full", [False, True])
+def test_nothing_that_was_tagged_comes_back_from_other_lattices(full: bool) -> None:
+    tagged, other = b.cube(1).tagged(layer=1), b.cube(1).translate(5, 5, 5)
+    empty = tagged & other
+    constant = ~empty if full else empty
+    for copy in (pickle.loads(pickle.dumps(constant)), constant):
+        again = pickle.loads(pickle.dumps(copy)).tagged(layer=2)
+        for kind in (copy, again):
+            assert ((kind | other) if not full else (kind & other)).volume == 1
+            assert (kind ^ b.Solid(other.vertices, other.faces, pitch=-12)).is_bounded != full
