@@ -30,6 +30,7 @@ __all__ = [
     "mesh_faults",
     "mesh_in_single",
     "mesh_measures",
+    "mesh_moments",
     "mesh_moved",
     "normal_bits",
     "numbers_in_rows",
@@ -120,6 +121,11 @@ def mesh_measures(
     triangles: npt.NDArray[np.int64],
     middle: tuple[float, float, float],
 ) -> tuple[float, float]: ...
+def mesh_moments(
+    vertices: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    middle: tuple[float, float, float],
+) -> tuple[float, list[float], list[list[float]]]: ...
 
 @final
 class Tree:

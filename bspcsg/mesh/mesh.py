@@ -3,7 +3,6 @@
 This layer knows arrays only; it does not know how a mesh was made.
 """
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .._core import mesh_counts, mesh_measures
+from .._core import mesh_counts, mesh_measures, mesh_moments
 from .._core import surfaces_of as triangle_surfaces
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes, Later, Values
@@ -123,14 +122,7 @@ class Mesh:
     @property
     def centroid(self) -> FloatArray:
         """Centre of volume, (3,) float64, in model units; NaN if the mesh has no volume."""
-        middle = self._middle()
-        weights = self._signed_volumes(middle)
-        volume = math.fsum(weights.tolist())
-        if volume == 0:
-            return np.full(3, np.nan)
-        # The fourth corner of every tetrahedron is the middle, which is the origin here.
-        moments = sum(corner - middle for corner in self._corners()) * weights[:, None] / 4
-        return middle + np.array([math.fsum(axis.tolist()) for axis in moments.T]) / volume
+        return self._moments[0].copy()
 
     @property
     def inertia(self) -> FloatArray:
@@ -138,15 +130,7 @@ class Mesh:
 
         In model units to the fifth power.
         """
-        centroid = self.centroid
-        if np.isnan(centroid).any():
-            return np.full((3, 3), np.nan)
-        weights = self._signed_volumes(centroid)
-        corners = [corner - centroid for corner in self._corners()]
-        # A tetrahedron with a corner at the origin and p, q, r: V/20 times the sum of the products
-        # of p, q, r and of p + q + r, each with itself, is the integral of x x'.
-        points = [*corners, sum(corners)]
-        second = sum(np.einsum("m,mi,mj->ij", weights, point, point) for point in points) / 20
+        second = self._moments[1]
         moments: FloatArray = np.trace(second) * np.eye(3) - second
         return moments
 
@@ -183,28 +167,27 @@ class Mesh:
         """Number of handles, summed over all connected surfaces."""
         return self.components - self.euler_number // 2
 
-    def _corners(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        return (
-            self.vertices[self.faces[:, 0]],
-            self.vertices[self.faces[:, 1]],
-            self.vertices[self.faces[:, 2]],
-        )
-
     def _middle(self) -> FloatArray:
         # Measuring from inside the mesh keeps the digits that a far origin would cancel.
         bounds = self.bounds
         return np.zeros(3) if bounds is None else bounds[0] + (bounds[1] - bounds[0]) / 2
-
-    def _signed_volumes(self, middle: FloatArray) -> FloatArray:
-        a, b, c = self._corners()
-        volumes: FloatArray = np.einsum("ij,ij->i", np.cross(b - a, c - a), a - middle) / 6
-        return volumes
 
     @cached_property
     def _measures(self) -> tuple[float, float]:
         x, y, z = self._middle().tolist()
         with core_errors():
             return mesh_measures(self.vertices, self.faces, (x, y, z))
+
+    @cached_property
+    def _moments(self) -> tuple[FloatArray, FloatArray]:
+        """The centroid, and the second moments about it; NaN without volume."""
+        middle = self._middle()
+        x, y, z = middle.tolist()
+        with core_errors():
+            volume, centroid, second = mesh_moments(self.vertices, self.faces, (x, y, z))
+        if volume == 0:
+            return np.full(3, np.nan), np.full((3, 3), np.nan)
+        return middle + centroid, np.array(second)
 
     @cached_property
     def _counts(self) -> tuple[int, int, int, int]:

@@ -174,6 +174,8 @@ def test_what_simplifying_leaves_as_it_is() -> None:
     assert Region.empty().simplify(1).is_empty and Region.full().simplify(1).is_full
     assert (~RING).simplify(0.1) == ~RING
     assert Region.rectangle(10, 0.1).simplify(1).is_empty
+    with pytest.raises(b.UnboundedError):
+        (Region.half_plane((7, 3)) | RING).simplify(1)
     with pytest.raises(b.InvalidParameterError):
         RING.simplify(-1)
 

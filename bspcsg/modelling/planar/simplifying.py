@@ -12,7 +12,7 @@ def simplify_region(figure: Region, tolerance: Scalar) -> Region:
     limit = not_negative(tolerance, "tolerance")
     if limit == 0 or figure.is_empty or figure.is_full:
         return figure
-    if not figure.is_bounded:
+    if not figure.is_bounded and (~figure).is_bounded:
         return ~simplify_region(~figure, limit)
     thinned = [thinned_loop(loop, limit) for loop in figure.to_polygons()]
     return Region([loop for loop in thinned if len(loop) >= 3], pitch=figure.pitch)

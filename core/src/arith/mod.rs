@@ -5,6 +5,7 @@
 
 pub mod bounds;
 pub mod convert;
+mod double_double;
 mod filtered;
 mod gcd;
 mod int;
@@ -17,6 +18,7 @@ mod round;
 mod sign;
 mod sum;
 
+pub use double_double::DoubleDouble;
 pub use filtered::Filtered;
 pub use gcd::{gcd, gcd_u128};
 pub use int::Int;

@@ -81,7 +81,8 @@ impl Sum {
 }
 
 /// The rounded sum and what it lacks.
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+#[inline]
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let (large, small) = if a.abs() < b.abs() { (b, a) } else { (a, b) };
     let sum = large + small;
     (sum, small - (sum - large))

@@ -102,5 +102,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(surfaces::surfaces_of, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::mesh_counts, module)?)?;
     module.add_function(wrap_pyfunction!(surfaces::mesh_measures, module)?)?;
+    module.add_function(wrap_pyfunction!(surfaces::mesh_moments, module)?)?;
     Ok(())
 }

@@ -8,7 +8,7 @@ use super::calls::errors::to_python;
 use super::calls::run::run;
 use crate::error::{Error, ErrorKind};
 use crate::extract::outlines::triangulate_outlines;
-use crate::mesh::measures::measures;
+use crate::mesh::measures::{measures, moments};
 use crate::mesh::surfaces::{counts, surfaces};
 use crate::mesh::weld::welded;
 
@@ -106,4 +106,20 @@ pub fn mesh_measures(
         Ok(measures(&vertices, &triangles, middle))
     })?;
     Ok((found.volume, found.area))
+}
+
+/// Volume, centroid seen from a point, and second moments seen from the centroid.
+#[pyfunction]
+pub fn mesh_moments(
+    py: Python<'_>,
+    vertices: PyReadonlyArray2<'_, f64>,
+    triangles: PyReadonlyArray2<'_, i64>,
+    middle: [f64; 3],
+) -> PyResult<(f64, [f64; 3], [[f64; 3]; 3])> {
+    let vertices = rows(&vertices, "vertices").map_err(|e| to_python(py, &e))?;
+    let triangles = triangles_of(&triangles, vertices.len()).map_err(|e| to_python(py, &e))?;
+    let found = run(py, 0, triangles.len(), || {
+        Ok(moments(&vertices, &triangles, middle))
+    })?;
+    Ok((found.volume, found.centroid, found.second))
 }
