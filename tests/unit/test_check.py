@@ -3,6 +3,7 @@
 import json
 import math
 from collections import Counter
+from fractions import Fraction
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
@@ -317,20 +318,36 @@ def test_counts_of_random_triangles() -> None:
         assert mesh.euler_number == len(linked) - len(edges) + len(faces)
 
 
-def test_sums_are_rounded_once() -> None:
+def soup(digits: int) -> b.Mesh:
+    """Return triangles between points of very different distances, 10 to the power of ± digits."""
     rng = np.random.default_rng(2)
-    vertices = rng.normal(size=(20, 3)) * 10.0 ** rng.integers(-9, 9, (20, 1))
-    faces = rng.integers(0, 20, (500, 3))
-    mesh = b.Mesh(vertices, faces, np.zeros((500, 2), np.int64))
+    vertices = rng.normal(size=(20, 3)) * 10.0 ** rng.integers(-digits, digits, (20, 1))
+    return b.Mesh(vertices, rng.integers(0, 20, (500, 3)), np.zeros((500, 2), np.int64))
+
+
+def test_sums_are_rounded_once() -> None:
+    mesh = soup(2)
     low, high = np.asarray(mesh.bounds)
-    a, p, q = (
-        vertices[faces[:, 0]],
-        *(vertices[faces[:, k]] - vertices[faces[:, 0]] for k in (1, 2)),
-    )
+    a, *ends = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
+    p, q = (end - a for end in ends)
     n = [p[:, k - 2] * q[:, k - 1] - p[:, k - 1] * q[:, k - 2] for k in range(3)]
     out = (a - (low + (high - low) / 2)).T
     parts = (n[0] * out[0] + n[1] * out[1] + n[2] * out[2]) / 6
     assert mesh.volume == math.fsum(parts.tolist())
+
+
+def test_sums_that_drown_in_the_rounding_of_their_parts_are_exact() -> None:
+    mesh = soup(9)
+    low, high = np.asarray(mesh.bounds).tolist()
+    middle = [Fraction(x + (y - x) / 2) for x, y in zip(low, high, strict=True)]
+    exact = Fraction(0)
+    for face in mesh.faces.tolist():
+        a, c, d = ([Fraction(x) for x in mesh.vertices[k].tolist()] for k in face)
+        p, q, out = (
+            [x - y for x, y in zip(*two, strict=True)] for two in ((c, a), (d, a), (a, middle))
+        )
+        exact += sum(out[k] * (p[k - 2] * q[k - 1] - p[k - 1] * q[k - 2]) for k in range(3)) / 6
+    assert abs(Fraction(mesh.volume) / exact - 1) < 1e-15
 
 
 def test_inverted_operands_are_empty_to_both() -> None:
