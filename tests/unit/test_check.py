@@ -346,7 +346,8 @@ def test_sums_that_drown_in_the_rounding_of_their_parts_are_exact() -> None:
         p, q, out = (
             [x - y for x, y in zip(*two, strict=True)] for two in ((c, a), (d, a), (a, middle))
         )
-        exact += sum(out[k] * (p[k - 2] * q[k - 1] - p[k - 1] * q[k - 2]) for k in range(3)) / 6
+        n = [p[k - 2] * q[k - 1] - p[k - 1] * q[k - 2] for k in range(3)]
+        exact += (out[0] * n[0] + out[1] * n[1] + out[2] * n[2]) / 6
     assert abs(Fraction(mesh.volume) / exact - 1) < 1e-15
 
 
