@@ -83,6 +83,15 @@ def test_what_lies_in_one_plane_and_crosses_itself_bounds_nothing(winding: Windi
     assert b.Solid.from_mesh(twice, winding=winding).volume == (winding != "even-odd")
 
 
+def test_sheets_turned_on_each_other_in_one_plane_are_united_at_once() -> None:
+    solid = b.Solid.from_mesh(stack(80, 111.3, 1e-9))
+    assert seconds(solid.normalized) < 5
+    united = solid.normalized()
+    assert len(united.to_mesh().faces) == 12
+    # Halves are cut out of the sheets as they were given.
+    assert sum(half.volume_exact for half in solid.split("x", 0.125)) == united.volume_exact
+
+
 def test_thin_layers_with_a_plane_in_common_are_combined_at_once() -> None:
     def rest(rows: int) -> b.Solid:
         return b.Solid.from_mesh(stack(rows, 33, 1e-3)) ^ b.cube(1)

@@ -151,6 +151,11 @@ impl Round {
         self.alone
     }
 
+    /// Return whether the last three halvings left most elements in one part.
+    pub fn kept_most(&self) -> bool {
+        self.stuck
+    }
+
     /// After the halvings that lead from a cell with so many elements, in a box so long, to one around
     /// all of them, or to the first one in between in which halving seems stuck; with that cell.
     pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {

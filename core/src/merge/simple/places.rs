@@ -5,7 +5,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::interrupt::poll;
-use crate::merge::descent::choice::LEAF;
+use crate::merge::descent::choice::{Round, LEAF};
 use crate::merge::kernels::trees::LeafTree;
 use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
@@ -33,7 +33,7 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
                 let list = List::open(leaf, &branch, &sources);
-                if any_small_cell(&sources, &(branch.cell, list), places, overlaps) {
+                if any_small_cell(&sources, &(branch.cell, list), places, 0, overlaps) {
                     return true;
                 }
             }
@@ -47,23 +47,27 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
 }
 
 /// Calls `look` with the small cells around places in a cell, their elements, and the places there,
-/// until it returns true; returns whether it did. Cells are small where halving separates no more.
+/// until it returns true; returns whether it did. Cells are small where halving separates no more; of
+/// at most `most` elements also where three halvings leave most of them in one part.
 pub(super) fn any_small_cell<P>(
     sources: &Sources,
     within: &(Cell, List),
     places: Vec<(Lattice, P)>,
+    most: usize,
     mut look: impl FnMut(&Cell, &List, &[(Lattice, P)]) -> bool,
 ) -> bool {
     if places.is_empty() {
         return false;
     }
-    let mut open = vec![(within.0, within.1.clone(), places)];
-    while let Some((cell, list, places)) = open.pop() {
+    let mut open = vec![(within.0, within.1.clone(), places, Round::START)];
+    while let Some((cell, list, places, round)) = open.pop() {
         poll();
         if places.is_empty() || list.is_empty() {
             continue;
         }
-        let stuck = || list.len() <= STUCK && list.reaching_out(&cell) * 8 > list.len() * 7;
+        let reaches_out = || list.reaching_out(&cell) * 8 > list.len() * 7;
+        let stuck =
+            || list.len() <= most && round.kept_most() || list.len() <= STUCK && reaches_out();
         let Some(cut) = cell.cut().filter(|_| list.len() > LEAF && !stuck()) else {
             if look(&cell, &list, &places) {
                 return true;
@@ -72,8 +76,10 @@ pub(super) fn any_small_cell<P>(
         };
         let (below, above) = places.into_iter().partition(|p| p.0[cut.axis] < cut.at);
         let (minus, plus) = list.divide(&cell, cut, sources);
-        open.push((cell.half(cut, Half::Minus), minus, below));
-        open.push((cell.half(cut, Half::Plus), plus, above));
+        for (half, list, places) in [(Half::Minus, minus, below), (Half::Plus, plus, above)] {
+            let round = round.next(list.len());
+            open.push((cell.half(cut, half), list, places, round));
+        }
     }
     false
 }

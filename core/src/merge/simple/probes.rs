@@ -79,13 +79,19 @@ fn probe(
         Some((probe.place, (i, probe.point)))
     });
     let probes: Vec<(Lattice, (usize, Vertex))> = probes.collect();
-    any_small_cell(sources, within, probes, |cell, list, probes| {
-        let count = Count::new(cell, list, sources);
-        for (_, (i, point)) in probes {
-            found[*i] = count.sides_at(&pieces[*i], point);
-        }
-        false
-    });
+    any_small_cell(
+        sources,
+        within,
+        probes,
+        MOST_PASSED,
+        |cell, list, probes| {
+            let count = Count::new(cell, list, sources);
+            for (_, (i, point)) in probes {
+                found[*i] = count.sides_at(&pieces[*i], point);
+            }
+            false
+        },
+    );
 }
 
 /// Tells the numbers of pieces that are too thin to hold a point: a local tree is grown around each.
@@ -98,7 +104,7 @@ fn grow_trees_for(
     let open = (0..pieces.len()).filter(|i| found[*i].is_none());
     let middle = |i: usize| aim(pieces[i].polygon, 0).map(|x| as_whole(x.round()));
     let places: Vec<(Lattice, usize)> = open.map(|i| (middle(i), i)).collect();
-    any_small_cell(sources, within, places, |cell, list, places| {
+    any_small_cell(sources, within, places, 0, |cell, list, places| {
         let leaf = LeafTree::new(list, cell, sources);
         for (_, i) in places {
             let part = pieces[*i].polygon.clone().clipped(cell);
@@ -107,6 +113,10 @@ fn grow_trees_for(
         false
     });
 }
+
+/// Faces that a path may be compared with where halvings do not part them, as in sheets of which each
+/// covers all others: that costs less than the fifty lists down to the least cell.
+const MOST_PASSED: usize = 1 << 14;
 
 /// So many points are tried inside a piece: its middle, and others nearer to a corner.
 const ATTEMPTS: usize = 4;

@@ -5,6 +5,7 @@
 //! merging the trees (which `merge::merge` does, and tests compare): it labels the same regions,
 //! but cuts only fragments, never regions.
 
+mod coverage;
 mod local_tree;
 mod operand;
 mod overlay;

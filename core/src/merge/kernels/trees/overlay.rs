@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::coverage::partitioned;
 use super::local_tree::extent;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::plane::Plane;
@@ -23,13 +24,32 @@ pub struct Fragment {
     pub intact: bool,
 }
 
+/// Pieces that a fragment may meet on average where fragments are carved out of each other; beyond
+/// that their plane is partitioned. Of 636 triangles between squares turned on each other in one
+/// plane it takes 1.2 s with this number, 3.8 with 32, 32 without; of few fragments partitions make
+/// more pieces.
+const MOST_MET: usize = 8;
+
 /// Makes the fragments disjoint: where some overlap, the first keeps the place and the sum.
 ///
 /// Pieces whose multiplicities add up to nothing bound nothing and are left out. The flag says
 /// whether any did overlap.
 pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     let mut overlap = false;
-    let mut planes: Vec<Vec<Placed>> = Vec::new();
+    let mut all = Vec::with_capacity(fragments.len());
+    for group in by_planes(fragments) {
+        let (placed, met) = carved(group);
+        overlap |= met;
+        all.extend(placed);
+    }
+    all.retain(|f: &Fragment| f.weight != 0);
+    all.sort_by_key(|f| f.face);
+    (all, overlap)
+}
+
+/// The fragments in groups of one plane each.
+fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
+    let mut groups: Vec<Vec<Fragment>> = Vec::new();
     let mut names: Vec<Arc<Plane>> = Vec::new();
     for fragment in fragments {
         poll();
@@ -37,15 +57,40 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
         let known = names.iter().position(|p| p.coincides(support).is_some());
         let at = known.unwrap_or_else(|| {
             names.push(Arc::clone(support));
-            planes.push(Vec::new());
-            planes.len() - 1
+            groups.push(Vec::new());
+            groups.len() - 1
         });
-        overlap |= add(&mut planes[at], fragment);
+        groups[at].push(fragment);
     }
-    let placed = planes.into_iter().flatten().map(|p| p.fragment);
-    let mut all: Vec<Fragment> = placed.filter(|f| f.weight != 0).collect();
-    all.sort_by_key(|f| f.face);
-    (all, overlap)
+    groups
+}
+
+/// Fragments of one plane carved out of each other, or out of a partition of it, and whether any
+/// overlapped.
+fn carved(group: Vec<Fragment>) -> (Vec<Fragment>, bool) {
+    let most = MOST_MET * group.len();
+    if group.len() <= MOST_MET {
+        return placed_one_by_one(group, usize::MAX).unwrap_or_default();
+    }
+    match placed_one_by_one(group.clone(), most) {
+        Some(found) => found,
+        None => (partitioned(&group), true),
+    }
+}
+
+/// Fragments of one plane, each carved out of those before it; `None` if that meets more than `most`
+/// pieces.
+fn placed_one_by_one(group: Vec<Fragment>, most: usize) -> Option<(Vec<Fragment>, bool)> {
+    let (mut placed, mut met) = (Vec::new(), 0);
+    for fragment in group {
+        poll();
+        met += add(&mut placed, fragment);
+        if met > most {
+            return None;
+        }
+    }
+    let fragments = placed.into_iter().map(|p| p.fragment).collect();
+    Some((fragments, met > 0))
 }
 
 /// A fragment with a box around it.
@@ -67,38 +112,38 @@ impl Placed {
     }
 }
 
-/// Adds a fragment to disjoint fragments of its plane; says whether it overlapped any.
-fn add(placed: &mut Vec<Placed>, new: Fragment) -> bool {
+/// Adds a fragment to disjoint fragments of its plane; returns how many of its pieces met one.
+fn add(placed: &mut Vec<Placed>, new: Fragment) -> usize {
     let mut rest = vec![Placed::of(new)];
     let mut carved = Vec::new();
-    let mut overlap = false;
+    let mut met = 0;
     let mut i = 0;
     while i < placed.len() && !rest.is_empty() {
         poll();
         if rest.iter().any(|r| !placed[i].lies_beside(r)) {
             let old = placed.remove(i).fragment;
             let pieces = rest.into_iter().map(|r| r.fragment).collect();
-            let (remaining, met) = combine(&old, pieces, &mut carved);
+            let (remaining, inside) = combine(&old, pieces, &mut carved);
             rest = remaining.into_iter().map(Placed::of).collect();
-            overlap |= met;
+            met += inside;
         } else {
             i += 1;
         }
     }
     placed.extend(carved.into_iter().map(Placed::of));
     placed.append(&mut rest);
-    overlap
+    met
 }
 
-/// Overlays one placed fragment with the pieces of a new one; returns the pieces outside it, and
-/// whether any was inside.
+/// Overlays one placed fragment with the pieces of a new one; returns the pieces outside it, and how
+/// many were inside.
 fn combine(
     old: &Fragment,
     rest: Vec<Fragment>,
     carved: &mut Vec<Fragment>,
-) -> (Vec<Fragment>, bool) {
+) -> (Vec<Fragment>, usize) {
     let mut remaining = Vec::new();
-    let mut met = false;
+    let mut met = 0;
     let mut old_pieces = vec![old.clone()];
     for piece in rest {
         poll();
@@ -107,7 +152,7 @@ fn combine(
             remaining.push(piece);
             continue;
         }
-        met = true;
+        met += 1;
         remaining.extend(outside.into_iter().map(|p| part_of(&piece, p)));
         old_pieces = old_pieces
             .into_iter()

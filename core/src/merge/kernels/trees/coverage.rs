@@ -1,0 +1,319 @@
+//! Many fragments in one place of a plane: the plane is partitioned by their edges.
+//!
+//! To carve them out of each other one by one costs their number times that of the pieces they
+//! make. Here an edge is followed only through the cells that it crosses: what covers a cell is a
+//! number there.
+
+use std::sync::Arc;
+
+use smallvec::SmallVec;
+
+use super::overlay::Fragment;
+use crate::arith::convert::as_number;
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Plane;
+use crate::geometry::polygon::{straddle, Polygon, PolygonSplit};
+use crate::geometry::side::Orientation;
+use crate::interrupt::poll;
+
+/// The fragments of one plane made disjoint: what lies over each other has the sum of the weights,
+/// and is of the first one's face.
+pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
+    let Some(region) = fragments
+        .first()
+        .and_then(|f| Polygon::span(f.polygon.support(), &Cell::UNIVERSE))
+    else {
+        return Vec::new();
+    };
+    let mut partition = Partition {
+        shapes: fragments.iter().map(|f| Shape::of(f, &region)).collect(),
+        cells: vec![Covered::of(region)],
+    };
+    partition.grow();
+    partition.pieces(fragments)
+}
+
+/// A fragment by its edges.
+struct Shape {
+    /// Planes through the edges, the fragment on their minus sides.
+    walls: SmallVec<[Arc<Plane>; 4]>,
+    /// The jump of the winding number, seen from the plane that is partitioned.
+    weight: i32,
+}
+
+impl Shape {
+    fn of(fragment: &Fragment, region: &Polygon) -> Self {
+        let support = fragment.polygon.support();
+        let edges = fragment.polygon.edges();
+        let walls = edges.map(|(_, _, edge)| Arc::new(edge.plane(support)));
+        let same = support.coincides(region.support()) == Some(Orientation::Same);
+        Self {
+            walls: walls.collect(),
+            weight: if same {
+                fragment.weight
+            } else {
+                -fragment.weight
+            },
+        }
+    }
+}
+
+/// Fragments that cover a cell, in numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Cover {
+    weight: i32,
+    /// The place of the first one.
+    first: Option<u32>,
+}
+
+impl Cover {
+    fn with(self, place: u32, weight: i32) -> Self {
+        Self {
+            weight: self.weight + weight,
+            first: Some(self.first.map_or(place, |first| first.min(place))),
+        }
+    }
+
+    /// Return whether two cells beside each other are one.
+    fn is_like(self, other: Self) -> bool {
+        self.weight == other.weight && (self.weight == 0 || self.first == other.first)
+    }
+}
+
+/// A cell of the partition.
+struct Covered {
+    region: Polygon,
+    cover: Cover,
+    /// The halves on the minus and the plus side of the cell's cut.
+    children: Option<[usize; 2]>,
+}
+
+impl Covered {
+    fn of(region: Polygon) -> Self {
+        Self {
+            region,
+            cover: Cover::default(),
+            children: None,
+        }
+    }
+}
+
+/// A fragment that covers a part of a cell, and its walls that cross the cell.
+#[derive(Clone)]
+struct Crossing {
+    place: u32,
+    walls: SmallVec<[u32; 4]>,
+}
+
+struct Partition {
+    shapes: Vec<Shape>,
+    cells: Vec<Covered>,
+}
+
+impl Partition {
+    /// Divides the first cell until no wall crosses a cell.
+    fn grow(&mut self) {
+        let all = (0u32..).zip(&self.shapes).map(|(place, shape)| Crossing {
+            place,
+            walls: (0..as_number(shape.walls.len())).collect(),
+        });
+        let mut open = vec![(0, all.collect::<Vec<_>>())];
+        while let Some((cell, crossing)) = open.pop() {
+            let crossing = self.settle(cell, crossing);
+            let Some(halves) = self.halves(cell, &crossing) else {
+                continue;
+            };
+            let first = self.cells.len();
+            self.cells[cell].children = Some([first, first + 1]);
+            let cover = self.cells[cell].cover;
+            let made = halves.map(Covered::of);
+            self.cells
+                .extend(made.map(|half| Covered { cover, ..half }));
+            open.push((first, crossing.clone()));
+            open.push((first + 1, crossing));
+        }
+    }
+
+    /// Counts the fragments that cover a cell, and returns those that cover a part of it.
+    fn settle(&mut self, cell: usize, crossing: Vec<Crossing>) -> Vec<Crossing> {
+        let mut left = Vec::with_capacity(crossing.len());
+        for one in crossing {
+            poll();
+            let Some(walls) = self.walls_across(cell, &one) else {
+                continue;
+            };
+            if walls.is_empty() {
+                let cover = &mut self.cells[cell].cover;
+                *cover = cover.with(one.place, self.shapes[one.place as usize].weight);
+            } else {
+                left.push(Crossing { walls, ..one });
+            }
+        }
+        left
+    }
+
+    /// The walls of a fragment that cross a cell; `None` if the cell lies beyond one.
+    fn walls_across(&self, cell: usize, crossing: &Crossing) -> Option<SmallVec<[u32; 4]>> {
+        let shape = &self.shapes[crossing.place as usize];
+        let mut across = SmallVec::new();
+        for &wall in &crossing.walls {
+            let sides = self.cells[cell].region.sides(&shape.walls[wall as usize]);
+            match straddle(&sides) {
+                (true, true) => across.push(wall),
+                (true, false) => {}
+                (false, _) => return None,
+            }
+        }
+        Some(across)
+    }
+
+    /// The halves of a cell, divided by a wall of a fragment in the middle of the list.
+    fn halves(&self, cell: usize, crossing: &[Crossing]) -> Option<[Polygon; 2]> {
+        let one = crossing.get(crossing.len() / 2)?;
+        let wall = *one.walls.first()?;
+        let cut = &self.shapes[one.place as usize].walls[wall as usize];
+        match self.cells[cell].region.split(cut) {
+            PolygonSplit::Both(minus, plus) => Some([minus, plus]),
+            _ => None,
+        }
+    }
+
+    /// The covered cells; halves that are alike are one.
+    fn pieces(mut self, fragments: &[Fragment]) -> Vec<Fragment> {
+        for cell in (0..self.cells.len()).rev() {
+            poll();
+            let Some([minus, plus]) = self.cells[cell].children.map(|c| c.map(|k| &self.cells[k]))
+            else {
+                continue;
+            };
+            let ends = minus.children.is_none() && plus.children.is_none();
+            if ends && minus.cover.is_like(plus.cover) {
+                self.cells[cell].cover = minus.cover;
+                self.cells[cell].children = None;
+            }
+        }
+        let mut pieces = Vec::new();
+        let mut open = vec![0];
+        while let Some(cell) = open.pop() {
+            poll();
+            let Covered {
+                region,
+                cover,
+                children,
+            } = &self.cells[cell];
+            match (children, cover.first) {
+                (Some(halves), _) => open.extend(halves),
+                (None, Some(first)) if cover.weight != 0 => {
+                    pieces.push(piece(region, cover.weight, &fragments[first as usize]));
+                }
+                (None, _) => {}
+            }
+        }
+        pieces
+    }
+}
+
+/// A region as a piece of a fragment, oriented as that is.
+fn piece(region: &Polygon, weight: i32, of: &Fragment) -> Fragment {
+    let same = of.polygon.support().coincides(region.support()) == Some(Orientation::Same);
+    Fragment {
+        polygon: if same {
+            region.clone()
+        } else {
+            region.flipped()
+        },
+        weight: if same { weight } else { -weight },
+        face: of.face,
+        intact: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::plane::Lattice;
+    use crate::geometry::side::Side;
+    use crate::merge::scenes::triangle;
+    use crate::mesh::handle::{FaceId, Slot, SourceFace};
+
+    fn fragments(triangles: &[[Lattice; 3]]) -> Vec<Fragment> {
+        let fragment = |(k, corners): (u32, &[Lattice; 3])| Fragment {
+            polygon: triangle(*corners),
+            weight: 1,
+            face: SourceFace::new(Slot(0), FaceId(k)),
+            intact: true,
+        };
+        (0u32..).zip(triangles).map(fragment).collect()
+    }
+
+    fn told(triangles: &[[Lattice; 3]]) -> Vec<(u32, i32)> {
+        let pieces = partitioned(&fragments(triangles));
+        let mut told: Vec<_> = pieces.iter().map(|f| (f.face.id.0, f.weight)).collect();
+        told.sort_unstable();
+        told
+    }
+
+    #[test]
+    fn the_first_keeps_the_place_and_the_sum() {
+        let one = [[0, 0, 0], [8, 0, 0], [0, 8, 0]];
+        let turned = [[0, 0, 0], [0, 8, 0], [8, 0, 0]];
+        assert_eq!(told(&[one]), [(0, 1)]);
+        assert_eq!(told(&[one, one, one]), [(0, 3)]);
+        assert_eq!(told(&[one, turned]), []);
+        assert_eq!(told(&[turned, one, turned]), [(0, 1)]);
+        let beside = [[8, 8, 0], [0, 8, 0], [8, 0, 0]];
+        assert_eq!(told(&[one, beside]), [(0, 1), (1, 1)]);
+        // The second covers a corner of the first one.
+        let inner = [[0, 0, 0], [4, 0, 0], [0, 4, 0]];
+        assert_eq!(told(&[one, inner]), [(0, 1), (0, 2)]);
+        assert_eq!(told(&[inner, one]), [(0, 2), (1, 1)]);
+    }
+
+    /// Return whether a lattice point lies in a convex polygon; `None` on the line of an edge.
+    fn contains(polygon: &Polygon, point: &Lattice) -> Option<bool> {
+        let support = polygon.support();
+        let planes = polygon.edges().map(|(_, _, edge)| edge.plane(support));
+        let sides: Vec<Side> = planes.map(|plane| plane.side_of_lattice(point)).collect();
+        let decided = !sides.contains(&Side::On);
+        decided.then(|| sides.iter().all(|side| *side == Side::Minus))
+    }
+
+    #[test]
+    fn points_have_the_weight_of_all_that_covers_them() {
+        let mut state = 1u64;
+        let mut draw = |most: u64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            i64::try_from((state >> 33) % most).expect("small")
+        };
+        let mut points = |count: usize| -> Vec<Lattice> {
+            (0..count).map(|_| [draw(97), draw(89), 0]).collect()
+        };
+        let corners = points(90);
+        let triangles = corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]);
+        let fragments = fragments(&triangles.collect::<Vec<_>>());
+        let pieces = partitioned(&fragments);
+        let upward = |f: &Fragment| f.polygon.support().normal()[2].signum() as i32;
+        let mut seen = 0;
+        for point in points(500) {
+            let over = |all: &[Fragment]| -> Option<Vec<(u32, i32)>> {
+                let mut told = Vec::new();
+                for f in all {
+                    if contains(&f.polygon, &point)? {
+                        told.push((f.face.id.0, f.weight * upward(f)));
+                    }
+                }
+                Some(told)
+            };
+            let (Some(given), Some(found)) = (over(&fragments), over(&pieces)) else {
+                continue;
+            };
+            let sum: i32 = given.iter().map(|(_, weight)| weight).sum();
+            let wanted = (sum != 0).then(|| (given[0].0, sum));
+            assert_eq!(found, wanted.into_iter().collect::<Vec<_>>());
+            seen += 1;
+        }
+        assert!(seen > 100);
+    }
+}
