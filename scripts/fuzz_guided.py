@@ -28,6 +28,9 @@ FLAGS = [
 #: One input may take this long, and this much memory.
 SECONDS, MEGABYTES = 10, 2048
 
+#: An input is stopped after so many times as long: it may have waited for the processor.
+PATIENCE = 10
+
 #: Longer inputs are no other scenes.
 LONGEST = 2000
 
@@ -69,34 +72,49 @@ class Guided:
 
     def _has_waited(self, found: Found) -> bool:
         """Say whether an input took long only because other programs had the processor."""
-        if found.kind != "hang":
+        if found.kind != "hang" or not found.place:
             return False
         clock = CpuClock()
         words = [*self._command, f"-timeout={100 * SECONDS}", found.place]
         subprocess.run(words, capture_output=True, check=False)
         return clock.seconds() < SECONDS
 
+    def _slow(self) -> set[Path]:
+        """Return the inputs that took long, but ended."""
+        return set(self._found.glob("slow-unit-*"))
+
     def _once(self, seed: int, until: float) -> Outcome:
+        most, slow = max(1, round(until - time.monotonic())), self._slow()
         options = {
             "seed": seed % 2**31,
-            "max_total_time": max(1, round(until - time.monotonic())),
+            "max_total_time": most,
             "max_len": LONGEST,
             "len_control": 0,
-            "timeout": SECONDS,
+            "timeout": PATIENCE * SECONDS,
+            "report_slow_units": SECONDS,
             "rss_limit_mb": MEGABYTES,
             "print_final_stats": 1,
             "artifact_prefix": f"{self._found}/",
         }
         words = [f"-{name}={value}" for name, value in options.items()]
-        done = subprocess.run(
-            [*self._command, *words, str(self._corpus)],
-            capture_output=True,
-            text=True,
-            errors="replace",
-            env={**os.environ, "RUST_BACKTRACE": "0"},
-            check=False,
-        )
-        return outcome_of(done.stderr, done.returncode)
+        try:
+            done = subprocess.run(
+                [*self._command, *words, str(self._corpus)],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                env={**os.environ, "RUST_BACKTRACE": "0"},
+                timeout=most + 2 * PATIENCE * SECONDS,
+                check=False,
+            )
+        except subprocess.TimeoutExpired as late:
+            # What interrupts an input may itself wait for ever, for memory that the input held.
+            outcome = outcome_of(_text(late.stderr), 0)
+            outcome.found.append(Found("hang", "stopped from outside; its input is lost", ""))
+        else:
+            outcome = outcome_of(_text(done.stderr), done.returncode)
+        late_ones = sorted(self._slow() - slow)
+        outcome.found += [Found("hang", f"more than {SECONDS} s", str(one)) for one in late_ones]
+        return outcome
 
 
 class Core(Guided):
@@ -133,6 +151,10 @@ def built(folder: Path) -> Path:
         check=True,
     )
     return target / host / "release"
+
+
+def _text(said: bytes | None) -> str:
+    return (said or b"").decode(errors="replace")
 
 
 def outcome_of(said: str, code: int) -> Outcome:

@@ -68,6 +68,39 @@ else:
     assert len(target.run(1, time.monotonic() + 60).found) == count
 
 
+@pytest.mark.parametrize(("seconds", "count"), [(0.0, 0), (0.3, 1)])
+def test_inputs_that_ended_late_hang_by_processor_time(
+    seconds: float, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that tells of a slow input and goes on, as libFuzzer does."""
+    program = tmp_path / "target.py"
+    program.write_text(
+        f"""import pathlib, sys, time
+if "slow-unit" in sys.argv[-1]:
+    while time.process_time() < {seconds}:
+        pass
+else:
+    pathlib.Path({str(tmp_path)!r}, "any", "found", "slow-unit-12").touch()
+"""
+    )
+    monkeypatch.setattr("fuzz_guided.SECONDS", 0.2)
+    target = Guided("any", [sys.executable, str(program)], tmp_path)
+    found = target.run(1, time.monotonic() + 2).found
+    assert [each.place[-12:] for each in found] == ["slow-unit-12"] * count
+
+
+def test_programs_that_never_end_are_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fuzz_guided.SECONDS", 0.01)
+    monkeypatch.setattr("fuzz_guided.ENOUGH", 1)
+    program = tmp_path / "target.py"
+    program.write_text("import time\ntime.sleep(1000)\n")
+    target = Guided("any", [sys.executable, str(program)], tmp_path)
+    [found] = target.run(1, time.monotonic() + 2).found
+    assert (found.kind, found.place) == ("hang", "")
+
+
 def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(fuzz_record, "RECORDS", tmp_path)
     add_to_record("scenes", 1, Outcome(10, 60.0, None, [Found("hang", "slow", "here")]))
