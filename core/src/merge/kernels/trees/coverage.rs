@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::overlay::Fragment;
+use super::fragment::Fragment;
 use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Plane;

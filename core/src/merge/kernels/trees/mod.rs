@@ -6,6 +6,7 @@
 //! but cuts only fragments, never regions.
 
 mod coverage;
+mod fragment;
 mod local_tree;
 mod operand;
 mod overlay;
@@ -18,10 +19,11 @@ use crate::interrupt::poll;
 use crate::merge::expression::Expression;
 use crate::merge::rule::Rule;
 use crate::tree::node::Node;
+pub(in crate::merge) use fragment::Fragment;
 use local_tree::{LocalTree, Sided};
 pub use operand::LeafTree;
 use operand::Operand;
-pub(in crate::merge) use overlay::{disjoint, Fragment};
+pub(in crate::merge) use overlay::disjoint;
 
 /// Pushes fragments through local trees.
 ///

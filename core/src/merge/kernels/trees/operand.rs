@@ -1,7 +1,8 @@
 //! One operand in a small cell: its fragments and its local tree.
 
+use super::fragment::Fragment;
 use super::local_tree::{LocalTree, Weighted};
-use super::overlay::{disjoint, Fragment};
+use super::overlay::disjoint;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;

@@ -3,26 +3,13 @@
 use std::sync::Arc;
 
 use super::coverage::partitioned;
+use super::fragment::Fragment;
 use super::local_tree::extent;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::plane::Plane;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
-use crate::mesh::handle::SourceFace;
-
-/// A fragment of an operand's boundary in a cell.
-#[derive(Clone, Debug)]
-pub struct Fragment {
-    /// The fragment.
-    pub polygon: Polygon,
-    /// The jump of the winding number from the support's plus to its minus side.
-    pub weight: i32,
-    /// The face.
-    pub face: SourceFace,
-    /// True if the fragment is all of a whole face inside the cell.
-    pub intact: bool,
-}
 
 /// Pieces that a fragment may meet on average where fragments are carved out of each other; beyond
 /// that their plane is partitioned. Of 636 triangles between squares turned on each other in one
@@ -212,6 +199,7 @@ fn carve(polygon: &Polygon, by: &Polygon) -> (Option<Polygon>, Vec<Polygon>) {
 mod tests {
     use super::*;
     use crate::merge::scenes::triangle;
+    use crate::mesh::handle::SourceFace;
 
     fn fragment(polygon: Polygon) -> Fragment {
         Fragment {
