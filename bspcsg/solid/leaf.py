@@ -16,8 +16,7 @@ import numpy as np
 
 from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
-from ..attributes.attributes import Attributes, Given, Later, array_of
-from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
+from ..attributes.attributes import Attributes
 from ..errors import InvalidMeshError, LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
@@ -27,6 +26,7 @@ from ..parameters import MOST_PITCH
 from .extent import EXTENTS, Extent
 from .moving import SaidMesh
 from .program import COMPLEMENT
+from .sayings import Sayings, after_motion, all_tagged, attributes_of, patched, said_of
 from .sewing import sewn
 
 
@@ -105,7 +105,7 @@ class MeshLeaf:
         return True
 
     @property
-    def sayings(self) -> "Sayings":
+    def sayings(self) -> Sayings:
         """The attributes of the mesh."""
         said = self._settled().attributes
         return () if said is None else (said,)
@@ -293,7 +293,7 @@ class TreeLeaf:
     result: Tree
     record: Record | None = None
     extent: Extent = None
-    sayings: "Sayings" = ()
+    sayings: Sayings = ()
     given_pitch: int | None = None
     tags: Mapping[str, object] = field(default_factory=dict)
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
@@ -377,7 +377,7 @@ class PlaneLeaf:
     pitch: int | None = field(default=None, init=False)
     given_pitch: int | None = field(default=None, init=False)
     extent: Extent = field(default=None, init=False)
-    sayings: "Sayings" = field(default=(), init=False)
+    sayings: Sayings = field(default=(), init=False)
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
         default_factory=WeakKeyDictionary, init=False, repr=False
     )
@@ -435,7 +435,7 @@ class ConstantLeaf:
     full: bool
     pitch: int | None = field(default=None, init=False)
     given_pitch: int | None = field(default=None, init=False)
-    sayings: "Sayings" = field(default=(), init=False)
+    sayings: Sayings = field(default=(), init=False)
 
     @property
     def extent(self) -> Extent:
@@ -453,9 +453,6 @@ class ConstantLeaf:
         return self
 
 
-#: Words on each source of a tree besides its shape; empty if nothing is said of any.
-Sayings: TypeAlias = tuple[Attributes | None, ...]
-
 ExpressionLeaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
 
@@ -471,38 +468,6 @@ def shown_tree(leaf: ExpressionLeaf) -> Tree:
     return tree_of(leaf)
 
 
-def patched(tree: Tree, sayings: Sayings) -> Tree:
-    """Return a tree whose mesh joins only faces of which the same is said."""
-    return tree.patched(patches_of(sayings)) if sayings else tree
-
-
-def attributes_of(tree: Tree, sayings: Sayings) -> Attributes:
-    """Return the attributes of a tree's mesh."""
-    with core_errors():
-        surface = Surface(*tree.to_mesh(), tree.origins(), tree.flips())
-    return carried(surface, sayings, tree.source_arrays)
-
-
-def later_attributes(tree: Tree, sayings: Sayings) -> Later | None:
-    """Return the attributes of a tree's mesh for when they are asked for, if there are any."""
-    return Later(lambda: attributes_of(tree, sayings)) if sayings else None
-
-
-def said_of(result: Tree, operands: Sequence[tuple[Tree, Sayings]]) -> Sayings:
-    """Return what is said of the sources of a tree that was made of others."""
-    if not any(sayings for _, sayings in operands):
-        return ()
-    # Nothing and all of space have left their sources behind on other lattices.
-    known = {
-        identity: said
-        for tree, sayings in operands
-        if sayings and tree.sources
-        for identity, said in zip(tree.sources, sayings, strict=True)
-    }
-    found = tuple(known.get(identity) for identity in result.sources)
-    return found if any(said is not None for said in found) else ()
-
-
 def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
     """Return a leaf of which every face says so; half-spaces have none.
 
@@ -512,28 +477,10 @@ def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf
         return leaf
     with core_errors():
         tree = tree_of(leaf).renamed()
-    said = tuple(
-        None if (arrays := tree.source_arrays(slot)) is None else _tagged(old, arrays, values)
-        for slot, old in enumerate(leaf.sayings or (None,) * len(tree.sources))
-    )
+    said = all_tagged(tree, leaf.sayings, values)
     if isinstance(leaf, MeshLeaf):
         return TreeLeaf(tree, None, leaf.extent, said, leaf.given_pitch)
     return replace(leaf, result=tree, sayings=said, tags={**leaf.tags, **values})
-
-
-def _tagged(
-    old: Attributes | None, arrays: SourceArrays, values: Mapping[str, object]
-) -> Attributes:
-    """Return what is said of a source, and one value more of all its faces for each name."""
-    count = int(arrays[3].max(initial=-1)) + 1
-    faces = np.zeros((count, 3), dtype=np.int64) if old is None else old.faces
-    said = Attributes(faces) if old is None else old.without(values)
-    given = {name: array_of(value, name) for name, value in values.items()}
-    face = {
-        name: np.broadcast_to(value, (len(faces), *value.shape)) for name, value in given.items()
-    }
-    more = Given(face=face).over(0, faces)
-    return said if more is None else replace(said, face={**said.face, **more.face})
 
 
 def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
@@ -666,7 +613,7 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     try:
         with core_errors():
             moved = tree_of(base).moved(list(motion.axes), list(motion.shift))
-        sayings = _after(motion, base.sayings)
+        sayings = after_motion(motion, base.sayings)
         return TreeLeaf(moved, None, base.extent, sayings, base.given_pitch)
     except (LimitError, UnboundedError):
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
@@ -697,16 +644,3 @@ def _transforming(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     for operand in leaf.record.leaves:
         leaves.append((yield operand, factors))
     return tagged(run(Record(leaf.record.program, tuple(leaves))), leaf.tags)
-
-
-def _after(motion: transform.LatticeMotion, sayings: Sayings) -> Sayings:
-    """Return what is said of sources after a motion, by which the core moved them."""
-    if not sayings:
-        return ()
-    linear = motion.linear
-    mirrored = np.linalg.det(linear) < 0
-    turned = [None if said is None else said.turned(linear) for said in sayings]
-    if not mirrored:
-        return tuple(turned)
-    # The core exchanges the last two corners of every face that is mirrored.
-    return tuple(None if said is None else said.reordered([0, 2, 1]) for said in turned)

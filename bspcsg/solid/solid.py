@@ -35,11 +35,8 @@ from .leaf import (
     ExpressionLeaf,
     MeshLeaf,
     Record,
-    Sayings,
     TreeLeaf,
     bounded_on_one_lattice,
-    later_attributes,
-    said_of,
     shown_tree,
     tagged,
     tree_of,
@@ -49,6 +46,7 @@ from .modelled import Modelled
 from .movable import Movable
 from .point_set import PointSet
 from .program import Operator
+from .sayings import Sayings, later_attributes, said_of
 
 #: Faces of results whose mesh is made for `repr`: that takes some hundredths of a second.
 _SMALL = 20_000

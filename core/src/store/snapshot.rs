@@ -397,14 +397,16 @@ impl SourceData {
 
     /// The image of a source that these are the data of.
     fn image(&self, source: &Source, motion: &Motion) -> Result<Arc<Source>> {
+        let made = || Ok(Arc::new(self.source(source.pitch())?));
+        // A source that bounds nothing has left only its place, whoever else has its image.
+        if matches!(self, Self::Mesh(mesh) if mesh.faces.is_empty()) {
+            return made();
+        }
         if let Some(known) = source.images().get(motion) {
             return Ok(known);
         }
-        let image = Arc::new(self.source(source.pitch())?);
-        // A source that bounds nothing has left only its place.
-        if image.face_count() == source.face_count() {
-            source.images().keep(motion, &image);
-        }
+        let image = made()?;
+        source.images().keep(motion, &image);
         Ok(image)
     }
 
