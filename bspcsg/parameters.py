@@ -224,6 +224,16 @@ def of_kind(kind: type[_Kind], value: Any, name: str) -> _Kind:
     raise invalid_parameter(f"{name} must be a {kind.__name__}, not {shown(value)}.")
 
 
+def no_options(options: Mapping[str, Any], solid: object) -> None:
+    """Refuse options that say how a mesh is read, given with what is a solid already."""
+    if options:
+        given = ", ".join(options)
+        raise invalid_parameter(
+            f"{given}: says how a mesh is read, but this {type(solid).__name__} is a solid. "
+            "Give it where the solid is made, or pass the mesh of the solid instead."
+        )
+
+
 def pitch_exponent(value: Any) -> int:
     """Return the exponent of a lattice step.
 

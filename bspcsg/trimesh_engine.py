@@ -85,7 +85,7 @@ def boolean(
         Refuse meshes whose ``is_volume`` is false: open, inconsistent or inside out. Without it,
         meshes still have to be closed.
     **options
-        As for `Solid`: ``pitch``, ``trusted``, ``winding``.
+        As for `Solid`: ``pitch``, ``trusted``, ``winding``; of meshes, not of a `Solid` among them.
 
     Returns
     -------
@@ -98,7 +98,7 @@ def boolean(
         A ValueError, if a mesh is refused, the operation is another, or a difference is asked of
         fewer than two meshes.
     """
-    given = list(meshes)
+    given: list[Any] = list(meshes)
     if operation not in _KNOWN:
         known = ", ".join(_KNOWN)
         raise invalid_parameter(f"Unknown operation {operation!r}; this engine has {known}.")
@@ -106,7 +106,9 @@ def boolean(
         raise invalid_parameter("A difference needs at least two meshes.")
     if check_volume:
         _refuse_surfaces(given)
-    solids = [Solid.from_mesh(mesh, **options) for mesh in given]
+    solids = [
+        mesh if isinstance(mesh, Solid) else Solid.from_mesh(mesh, **options) for mesh in given
+    ]
     return OPERATIONS[operation](*solids).to_trimesh()
 
 

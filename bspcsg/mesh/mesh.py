@@ -6,6 +6,7 @@ This layer knows arrays only; it does not know how a mesh was made.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -25,9 +26,9 @@ from .certificate import Certificate, certify
 class Mesh:
     """A closed triangle mesh, counter-clockwise when seen from outside.
 
-    The arrays of a solid's mesh are read-only, because the solid hands out the same ones again;
-    copy them before you change them. Measures are kept once they were asked for, so that a mesh
-    whose arrays changed has to be made anew.
+    The arrays of a solid's mesh are read-only, and its attributes cannot be exchanged, because the
+    solid hands out the same ones again; copy them before you change them. Measures are kept once
+    they were asked for, so that a mesh whose arrays changed has to be made anew.
 
     Parameters
     ----------
@@ -83,22 +84,22 @@ class Mesh:
         What was given of vertices is here as long as all faces at each vertex agree, else in
         `corner_attributes`: along cuts both sides keep their own values.
         """
-        return self.attributes.vertex
+        return MappingProxyType(self.attributes.vertex)
 
     @property
     def corner_attributes(self) -> Mapping[str, Values]:
         """Values of the corners of each face, (m, 3, …) arrays by their names."""
-        return self.attributes.corner
+        return MappingProxyType(self.attributes.corner)
 
     @property
     def face_attributes(self) -> Mapping[str, Values]:
         """Values of faces, (m, …) arrays by their names."""
-        return self.attributes.face
+        return MappingProxyType(self.attributes.face)
 
     @property
     def materials(self) -> Mapping[str, Material]:
         """The materials that the names in the face attribute ``"material"`` stand for."""
-        return self.attributes.materials
+        return MappingProxyType(self.attributes.materials)
 
     def carrying(self, carried: Later) -> "Mesh":
         """Return this mesh with attributes."""

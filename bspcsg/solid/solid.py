@@ -23,7 +23,15 @@ from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
-from ..parameters import not_negative, of_kind, optional_pitch, positive, truth_value, winding_rule
+from ..parameters import (
+    no_options,
+    not_negative,
+    of_kind,
+    optional_pitch,
+    positive,
+    truth_value,
+    winding_rule,
+)
 from ..tracebacks import shortened
 from .convertible import Convertible
 from .counting import count, counted, uncounted
@@ -180,7 +188,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             A trimesh, manifold3d, pymeshlab, open3d, pyvista, vtk or meshio mesh, a CadQuery or
             build123d shape, an `Assembly`, a pair (vertices, faces) as libigl has it, a path, the
             bytes of a file or an open one, or anything that has ``vertices`` and ``faces``. A
-            `Solid` is returned as it is; a mesh without vertices and faces is the empty set.
+            `Solid` is returned as it is and takes no options, nor does an `Assembly`. A mesh
+            without vertices and faces is the empty set.
         format : str, optional
             Of bytes and open files: a suffix, such as ``"stl"``.
         tolerance : float
@@ -192,6 +201,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         ------
         InvalidMeshError
             If the object holds no mesh, or as for `Solid`.
+        InvalidParameterError
+            If options are given with what is a solid already.
         FormatError
             If a file cannot be read as what it should be.
 
@@ -204,12 +215,11 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         ``"color"``, its texture coordinates as ``"uv"``, its materials), manifold3d's as
         ``"properties"``, data of points and cells of pyvista and meshio.
         """
-        if isinstance(mesh, Solid):
-            return mesh
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
-        if hasattr(mesh, "to_solid"):
-            whole: Solid = mesh.to_solid()
+        if isinstance(mesh, Solid) or hasattr(mesh, "to_solid"):
+            no_options(options, mesh)
+            whole: Solid = mesh if isinstance(mesh, Solid) else mesh.to_solid()
             return whole
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
             suffix = None if format is None else of_kind(str, format, "format")

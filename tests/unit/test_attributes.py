@@ -279,6 +279,9 @@ def test_given_arrays_can_be_changed_afterwards() -> None:
     assert part.to_mesh().face_attributes["id"].tolist() == list(range(12))
     with pytest.raises(ValueError, match="read-only"):
         part.to_mesh().face_attributes["id"][0] = 3
+    handed_out: Any = part.to_mesh().face_attributes
+    with pytest.raises(TypeError):
+        handed_out["id"] = 3
 
 
 def test_trimesh_colours_textures_and_arrays_come_along() -> None:

@@ -244,6 +244,13 @@ def test_options_reach_the_solid() -> None:
     assert b.Solid.from_mesh((V, F), pitch=-6).pitch == -6
 
 
+@pytest.mark.parametrize("solid", [b.cube(1), b.Assembly("", b.cube(1))])
+def test_options_are_refused_where_they_would_do_nothing(solid: Any) -> None:
+    with pytest.raises(b.InvalidParameterError, match=f"^pitch: .* {type(solid).__name__} is a"):
+        b.Solid.from_mesh(solid, pitch=-6)
+    assert b.Solid.from_mesh(solid).volume == 1
+
+
 def test_exported_arrays_are_the_callers_own() -> None:
     solid = b.box((1, 2, 3))
     exported = solid.to_trimesh()
