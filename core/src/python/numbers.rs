@@ -93,16 +93,22 @@ const FACE: usize = 13;
 
 fn same_triangles(faces: &[u8], triangles: &[[i64; 3]]) -> bool {
     let (faces, rest) = faces.as_chunks::<FACE>();
-    // All bits that differ: with no branch on the way, no face waits for the one before.
-    let mut bits = 0;
+    if !rest.is_empty() || faces.len() != triangles.len() {
+        return false;
+    }
+    // All bits that differ, each number's by itself: no face waits for the one before.
+    let mut bits = [0; 4];
     for (face, [a, b, c]) in faces.iter().zip(triangles) {
         let corner = |k: usize| {
             let bytes = [face[k], face[k + 1], face[k + 2], face[k + 3]];
             i64::from(i32::from_le_bytes(bytes))
         };
-        bits |= i64::from(face[0] ^ 3) | (corner(1) ^ a) | (corner(5) ^ b) | (corner(9) ^ c);
+        bits[0] |= i64::from(face[0] ^ 3);
+        bits[1] |= corner(1) ^ a;
+        bits[2] |= corner(5) ^ b;
+        bits[3] |= corner(9) ^ c;
     }
-    rest.is_empty() && faces.len() == triangles.len() && bits == 0
+    bits == [0; 4]
 }
 
 /// A kind of number that a text can hold.
