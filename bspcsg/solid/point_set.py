@@ -51,7 +51,11 @@ class PointSet(ABC):
         return self.equals(other) if self._is_alike(other) else NotImplemented
 
     def __hash__(self) -> int:
-        """Return a number that equal sets share, from their exact size; this evaluates them."""
+        """Return a number that equal sets share, from their exact size; this evaluates them.
+
+        Solids that were turned together are equal if they were so before; the size is that after
+        rounding, and may differ if their boundaries were divided otherwise.
+        """
         return hash(self._size_key())
 
     @uncounted
