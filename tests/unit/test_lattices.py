@@ -32,6 +32,11 @@ def test_small_and_large_solids_meet_on_one_lattice(prepare: Callable[[Solid], S
     assert (LARGE ^ small).exact_volume() == LARGE.exact_volume() - inside.exact_volume()
 
 
+def test_a_lattice_that_is_too_coarse_for_a_mesh_is_named() -> None:
+    with pytest.raises(b.InvalidMeshError, match=r"at the pitch 10\^22"):
+        Solid(*CUBE.to_mesh(), pitch=22)
+
+
 @pytest.mark.parametrize("prepare", [lambda solid: solid, evaluated])
 def test_an_operand_that_has_to_be_rounded_says_so(prepare: Callable[[Solid], Solid]) -> None:
     ball = prepare(b.sphere(1, segments=12).rotate((10, 20, 30)))

@@ -8,8 +8,8 @@ use crate::geometry::spaces::motion::Motion;
 
 /// The images of a thing by the motions that made them. They are not kept alive.
 ///
-/// Nobody waits for another: in a process that was forked, a thread that is not there may hold the
-/// lock. Who does not get it makes an image of its own.
+/// Nobody waits for ever: in a process that was forked, a thread that is not there may hold the lock.
+/// Who does not get it has an image of its own.
 #[derive(Debug)]
 pub struct Images<T>(Mutex<Known<T>>);
 
@@ -20,6 +20,10 @@ struct Known<T> {
     /// were left last time, so that each costs two looks.
     full: usize,
 }
+
+/// Turns that others get before the lock counts as held for ever: each holds it while it looks up an
+/// image, which takes less than a turn.
+const TURNS: usize = 1000;
 
 impl<T> Default for Images<T> {
     fn default() -> Self {
@@ -34,24 +38,31 @@ impl<T> Images<T> {
         self.free()?.images.get(motion)?.upgrade()
     }
 
-    /// Remember an image for as long as somebody has it.
-    pub fn keep(&self, motion: &Motion, image: &Arc<T>) {
+    /// The image that somebody has by now, else this one, which is remembered.
+    pub fn keep(&self, motion: &Motion, image: Arc<T>) -> Arc<T> {
         let Some(mut known) = self.free() else {
-            return;
+            return image;
         };
-        known.images.insert(*motion, Arc::downgrade(image));
+        if let Some(found) = known.images.get(motion).and_then(Weak::upgrade) {
+            return found;
+        }
+        known.images.insert(*motion, Arc::downgrade(&image));
         if known.images.len() > known.full {
             known.images.retain(|_, image| image.strong_count() > 0);
             known.full = 2 * known.images.len();
         }
+        image
     }
 
     fn free(&self) -> Option<MutexGuard<'_, Known<T>>> {
-        match self.0.try_lock() {
-            Ok(known) => Some(known),
-            Err(TryLockError::Poisoned(known)) => Some(known.into_inner()),
-            Err(TryLockError::WouldBlock) => None,
+        for _ in 0..TURNS {
+            match self.0.try_lock() {
+                Ok(known) => return Some(known),
+                Err(TryLockError::Poisoned(known)) => return Some(known.into_inner()),
+                Err(TryLockError::WouldBlock) => std::thread::yield_now(),
+            }
         }
+        None
     }
 }
 
@@ -63,13 +74,29 @@ mod tests {
     fn an_image_is_one_as_long_as_somebody_has_it() {
         let up = |k| Motion::of_axes(&[1, 2, 3], &[0, 0, k]).expect("a motion");
         let (images, image) = (Images::default(), Arc::new(0));
-        images.keep(&up(0), &image);
+        images.keep(&up(0), Arc::clone(&image));
         for k in 1..1000 {
-            images.keep(&up(k), &Arc::new(k));
+            images.keep(&up(k), Arc::new(k));
         }
         let found = images.get(&up(0)).expect("somebody has it");
         assert!(Arc::ptr_eq(&found, &image));
         assert!(images.get(&up(999)).is_none());
         assert!(images.free().expect("nobody holds it").images.len() < 10);
+    }
+
+    #[test]
+    fn threads_that_make_an_image_at_once_share_one() {
+        let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, 1]).expect("a motion");
+        for _ in 0..100 {
+            let images = Images::default();
+            let made = std::thread::scope(|scope| {
+                let threads = [0, 1, 2].map(|k| {
+                    let images = &images;
+                    scope.spawn(move || images.keep(&motion, Arc::new(k)))
+                });
+                threads.map(|thread| thread.join().expect("it ends"))
+            });
+            assert!(made.iter().all(|image| Arc::ptr_eq(image, &made[0])));
+        }
     }
 }

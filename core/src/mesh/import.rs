@@ -55,7 +55,8 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
     let (volume, flat) = weigh(&mesh);
     drop_faces(&mut mesh, flat, &mut findings);
     if mesh.faces.is_empty() {
-        let text = "the mesh has no face of positive area";
+        let exponent = pitch.exponent();
+        let text = format!("the mesh has no face of positive area at the pitch 10^{exponent}");
         return Err(Error::new(ErrorKind::EmptyMesh, text));
     }
     let open = close(&mut mesh, &mut findings)?;

@@ -405,9 +405,7 @@ impl SourceData {
         if let Some(known) = source.images().get(motion) {
             return Ok(known);
         }
-        let image = made()?;
-        source.images().keep(motion, &image);
-        Ok(image)
+        Ok(source.images().keep(motion, made()?))
     }
 
     /// The data as they are written: with close pairs only where some cross, which nobody would look for.
