@@ -29,7 +29,8 @@ class Certificate:
     open_edges : int
         Directed edges without exactly one opposite, by index.
     crossings : tuple of (int, int)
-        Pairs of triangles that cross or overlap. Surfaces may touch.
+        Pairs of triangles that cross or overlap. Surfaces may touch. At an edge of more than two
+        triangles they cross if they do however these are paired.
     flat : tuple of int
         Triangles without area.
 

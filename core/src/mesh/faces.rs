@@ -3,12 +3,13 @@
 use super::handle::VertexId;
 use crate::geometry::doubles::{Point, Triangle};
 
-/// A mesh in doubles, closed by index.
+/// A mesh in doubles, closed.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces<'a> {
     /// The vertices.
     pub vertices: &'a [Point],
-    /// The triangles, each directed edge with one opposite.
+    /// The triangles, each directed edge with one opposite, but where vertices were joined by their
+    /// places: there an edge has as many in either direction.
     pub triangles: &'a [[VertexId; 3]],
 }
 

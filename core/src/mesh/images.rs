@@ -21,8 +21,8 @@ struct Known<T> {
     full: usize,
 }
 
-/// Turns that others get before the lock counts as held for ever: each holds it while it looks up an
-/// image, which takes less than a turn.
+/// Turns that others get before the lock counts as held for ever. A thread holds it while it looks up
+/// an image, and at times while it goes through all of them; a process forked meanwhile never gets it.
 const TURNS: usize = 1000;
 
 impl<T> Default for Images<T> {

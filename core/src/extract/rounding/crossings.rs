@@ -3,16 +3,13 @@
 //! Surfaces may touch: points and edges that two parts of a mesh share are no crossings, whether or
 //! not they are vertices and edges of both.
 
-use rustc_hash::FxHashMap as HashMap;
-
 use super::company::in_company;
+use super::edges::crossing;
 use super::image::Image;
 use super::star::is_star_shaped;
 use crate::arith::convert::as_number;
-use crate::geometry::doubles::meeting::{
-    are_clear, folds_over, has_no_area, interleave, meeting_of, passes, Meeting,
-};
-use crate::geometry::doubles::{Facing, Point, Triangle};
+use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meeting_of, Meeting};
+use crate::geometry::doubles::Facing;
 use crate::interrupt::poll;
 use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
 use crate::mesh::faces::Faces;
@@ -126,9 +123,6 @@ fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// For directed edges the third corner of the triangle there, if there is one.
-type Apexes = HashMap<[VertexId; 2], Option<VertexId>>;
-
 /// Triangles that one thread compares: half a millisecond of work or more.
 const SHARE: usize = 512;
 
@@ -189,7 +183,7 @@ trait Kept: Default + Send {
 #[derive(Default)]
 struct Found {
     crossings: Vec<[u32; 2]>,
-    /// Pairs that meet along edges: whether surfaces cross there depends on neighbours.
+    /// Pairs that meet along edges: the neighbours there say whether surfaces cross.
     doubtful: Vec<([u32; 2], Meeting)>,
 }
 
@@ -247,56 +241,11 @@ fn ordered<'a>(p: &'a Candidate, q: &'a Candidate) -> [&'a Candidate; 2] {
 }
 
 impl Found {
-    /// The crossings in ascending order, with those of the doubtful pairs that the neighbours across the edges at which
-    /// they meet show to be some.
+    /// The crossings in ascending order, with those of the doubtful pairs that are some.
     fn settled(mut self, faces: &Faces) -> Vec<[u32; 2]> {
-        let ends = |triangle: u32, edge: usize| {
-            let corners = &faces.triangles[triangle as usize];
-            [corners[edge], corners[(edge + 1) % 3]]
-        };
-        let edges = |(pair, meeting): &([u32; 2], Meeting)| match *meeting {
-            Meeting::FirstEdge(i) => vec![ends(pair[0], i)],
-            Meeting::SecondEdge(j) => vec![ends(pair[1], j)],
-            Meeting::Edges(i, j) => vec![ends(pair[0], i), ends(pair[1], j)],
-            _ => Vec::new(),
-        };
-        let wanted = self.doubtful.iter().flat_map(edges).map(|[a, b]| [b, a]);
-        let apexes = apexes(faces, wanted.map(|e| (e, None)).collect());
-        for (pair, meeting) in self.doubtful {
-            let mate = |which: usize, edge: usize| {
-                let [a, b] = ends(pair[which], edge);
-                let apex = apexes.get(&[b, a]).copied().flatten()?;
-                Some(faces.vertices[apex.place()])
-            };
-            let corners = pair.map(|t| faces.corners(t));
-            if crosses_at(meeting, &corners, mate) {
-                self.crossings.push(pair);
-            }
-        }
+        self.crossings.extend(crossing(faces, self.doubtful));
         ascending(self.crossings)
     }
-}
-
-/// The apexes of the triangles at some directed edges.
-fn apexes(faces: &Faces, mut at: Apexes) -> Apexes {
-    if at.is_empty() {
-        return at;
-    }
-    let mut is_end = vec![false; faces.vertices.len()];
-    for v in at.keys().flatten() {
-        is_end[v.place()] = true;
-    }
-    for &[a, b, c] in faces.triangles {
-        for [from, to, apex] in [[a, b, c], [b, c, a], [c, a, b]] {
-            if is_end[from.place()]
-                && is_end[to.place()]
-                && let Some(found) = at.get_mut(&[from, to])
-            {
-                *found = Some(apex);
-            }
-        }
-    }
-    at
 }
 
 /// A search for crossings.
@@ -370,28 +319,6 @@ impl<'a> Search<'a> {
         let before = std::mem::take(found);
         *found = looked.into_iter().fold(before, K::with);
     }
-}
-
-/// Return whether surfaces cross where two triangles meet like this; `mate` gives the apex of the
-/// triangle across an edge of the first or the second. What has no neighbour crosses what it lies
-/// in.
-pub fn crosses_at(
-    meeting: Meeting,
-    [p, q]: &[Triangle; 2],
-    mate: impl Fn(usize, usize) -> Option<Point>,
-) -> bool {
-    let apex = |t: &Triangle, edge: usize| t[(edge + 2) % 3];
-    let crossing = match meeting {
-        Meeting::Clear => Some(false),
-        Meeting::Crossing | Meeting::Overlap => Some(true),
-        Meeting::FirstEdge(i) => mate(0, i).map(|m| passes(q, [&apex(p, i), &m])),
-        Meeting::SecondEdge(j) => mate(1, j).map(|m| passes(p, [&apex(q, j), &m])),
-        Meeting::Edges(i, j) => mate(0, i).zip(mate(1, j)).map(|(m, n)| {
-            let axis = [&p[i], &p[(i + 1) % 3]];
-            interleave(axis, [&apex(p, i), &m], [&apex(q, j), &n])
-        }),
-    };
-    crossing.unwrap_or(true)
 }
 
 #[cfg(test)]

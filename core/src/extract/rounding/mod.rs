@@ -2,6 +2,7 @@
 
 pub mod company;
 pub mod crossings;
+mod edges;
 mod image;
 pub mod mend;
 pub mod places;

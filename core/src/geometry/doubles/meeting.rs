@@ -281,46 +281,6 @@ fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     })
 }
 
-/// Return whether the surface that bends from `p` to `p_mate` over their common edge a → b passes
-/// through the one that bends from `q` to `q_mate` over an edge on the same line, each given by its
-/// apex.
-///
-/// Half-planes that coincide have an area in common, which is found elsewhere; here they count as
-/// not passing.
-pub fn interleave(axis: [&Point; 2], [p, p_mate]: [&Point; 2], [q, q_mate]: [&Point; 2]) -> bool {
-    let turn = |u: &Point, v: &Point| side(&[*axis[0], *axis[1], *u], v);
-    // The sector counterclockwise from p to its mate, by what lies strictly inside it.
-    let inside = |x: &Point| match turn(p, p_mate) {
-        Side::Plus => turn(p, x) == Side::Plus && turn(x, p_mate) == Side::Plus,
-        Side::Minus => turn(p_mate, x) == Side::Minus || turn(x, p) == Side::Minus,
-        Side::On => turn(p, x) == Side::Plus,
-    };
-    let beside = |x: &Point| {
-        let same = |y: &Point| turn(y, x) == Side::On && is_same_half(axis, y, x);
-        same(p) || same(p_mate)
-    };
-    !beside(q) && !beside(q_mate) && inside(q) != inside(q_mate)
-}
-
-/// Return whether two points of one plane with a line lie on the same side of it.
-fn is_same_half(axis: [&Point; 2], x: &Point, y: &Point) -> bool {
-    let first = [*axis[0], *axis[1], *x];
-    let second = [*axis[0], *axis[1], *y];
-    (0..3).any(|along| {
-        let turns = [
-            turn(seen_along(&first, along)),
-            turn(seen_along(&second, along)),
-        ];
-        turns[0] != Sign::Zero && turns[0] == turns[1]
-    })
-}
-
-/// Return whether a surface that bends over an edge, given by the apexes of its two triangles,
-/// passes through the plane of a triangle in which the edge lies.
-pub fn passes(plane: &Triangle, [apex, mate]: [&Point; 2]) -> bool {
-    side(plane, apex).is_across_from(side(plane, mate))
-}
-
 /// Return whether a triangle has no area, so that its points all lie on its neighbours' edges.
 pub fn has_no_area(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;

@@ -1,9 +1,10 @@
 //! Changes carried out and taken back, and the faults that are left.
 
 use super::part::{Edit, Mending, Star, MEETING};
-use crate::extract::rounding::crossings::crosses_at;
+use crate::extract::rounding::edges::crosses_at;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::meeting::{has_no_area, meeting, Meeting};
+use crate::geometry::doubles::sheets::{Sheet, Sheets};
 use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
@@ -132,7 +133,13 @@ impl Mending {
             let apex = mate.iter().find(|v| **v != a && **v != b)?;
             Some(self.vertices[apex.place()])
         };
-        crosses_at(met, &[p, q], mate)
+        let sheets = |which: usize, edge: usize| {
+            let own = [&p, &q][which][(edge + 2) % 3];
+            let both = [(Some(own), true), (mate(which, edge), false)];
+            let sheet = |(apex, is_along)| Option::map(apex, |apex| Sheet { apex, is_along });
+            both.into_iter().filter_map(sheet).collect::<Sheets>()
+        };
+        crosses_at(met, &[p, q], sheets)
     }
 
     fn ends(&self, t: u32, edge: usize) -> Option<[VertexId; 2]> {

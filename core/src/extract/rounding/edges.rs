@@ -1,0 +1,190 @@
+//! Whether surfaces cross where triangles meet along edges.
+
+use rustc_hash::FxHashMap as HashMap;
+use smallvec::SmallVec;
+
+use crate::geometry::doubles::meeting::Meeting;
+use crate::geometry::doubles::sheets::{entwine, pass, Sheet, Sheets};
+use crate::geometry::doubles::Triangle;
+use crate::mesh::faces::{edges, Faces};
+use crate::mesh::handle::VertexId;
+
+/// Return whether surfaces cross where two triangles meet like this; `sheets` gives those at an edge
+/// of the first or the second. What has no neighbour crosses what it lies in.
+pub fn crosses_at(
+    meeting: Meeting,
+    [p, q]: &[Triangle; 2],
+    sheets: impl Fn(usize, usize) -> Sheets,
+) -> bool {
+    match meeting {
+        Meeting::Clear => false,
+        Meeting::Crossing | Meeting::Overlap => true,
+        Meeting::FirstEdge(i) => pass(q, &sheets(0, i)),
+        Meeting::SecondEdge(j) => pass(p, &sheets(1, j)),
+        Meeting::Edges(i, j) => entwine([&p[i], &p[(i + 1) % 3]], [&sheets(0, i), &sheets(1, j)]),
+    }
+}
+
+/// Return those of some pairs of triangles that meet along edges at which surfaces cross.
+///
+/// # Cost
+/// A pass over the triangles, and for each edge and what it meets the sheets there once, sorted.
+pub fn crossing(faces: &Faces, mut pairs: Vec<([u32; 2], Meeting)>) -> Vec<[u32; 2]> {
+    let there = AtEdges::of(faces, &pairs);
+    let mut known = HashMap::default();
+    pairs.retain(|(pair, meeting)| {
+        let place = Place::of(faces, *pair, *meeting);
+        *known
+            .entry(place)
+            .or_insert_with(|| there.cross_at(*pair, *meeting))
+    });
+    pairs.into_iter().map(|(pair, _)| pair).collect()
+}
+
+/// An edge by its vertices, the lower first.
+type Edge = [VertexId; 2];
+
+fn edge_of(faces: &Faces, triangle: u32, edge: usize) -> Edge {
+    sorted(edges(faces.triangles[triangle as usize])[edge])
+}
+
+fn sorted([a, b]: Edge) -> Edge {
+    [a.min(b), a.max(b)]
+}
+
+/// The edges at which two triangles meet.
+fn edges_at(faces: &Faces, [t, u]: [u32; 2], meeting: Meeting) -> SmallVec<[Edge; 2]> {
+    let of = |triangle, edge| edge_of(faces, triangle, edge);
+    match meeting {
+        Meeting::FirstEdge(i) => [of(t, i)].into_iter().collect(),
+        Meeting::SecondEdge(j) => [of(u, j)].into_iter().collect(),
+        Meeting::Edges(i, j) => [of(t, i), of(u, j)].into_iter().collect(),
+        Meeting::Clear | Meeting::Crossing | Meeting::Overlap => SmallVec::new(),
+    }
+}
+
+/// A place where surfaces meet: the same for all pairs of triangles that meet there.
+#[derive(PartialEq, Eq, Hash)]
+struct Place {
+    edges: SmallVec<[Edge; 2]>,
+    triangle: Option<u32>,
+}
+
+impl Place {
+    fn of(faces: &Faces, pair: [u32; 2], meeting: Meeting) -> Self {
+        let mut edges = edges_at(faces, pair, meeting);
+        edges.sort_unstable();
+        let triangle = match meeting {
+            Meeting::FirstEdge(_) => Some(pair[1]),
+            Meeting::SecondEdge(_) => Some(pair[0]),
+            _ => None,
+        };
+        Self { edges, triangle }
+    }
+}
+
+/// The sheets at edges where triangles meet.
+struct AtEdges<'a> {
+    faces: &'a Faces<'a>,
+    sheets: HashMap<Edge, Sheets>,
+}
+
+impl<'a> AtEdges<'a> {
+    fn of(faces: &'a Faces, pairs: &[([u32; 2], Meeting)]) -> Self {
+        let wanted = pairs
+            .iter()
+            .flat_map(|(pair, met)| edges_at(faces, *pair, *met));
+        let sheets = wanted.map(|e| (e, Sheets::new())).collect();
+        let mut there = Self { faces, sheets };
+        if !there.sheets.is_empty() {
+            there.collect();
+        }
+        there
+    }
+
+    /// Collect the sheets.
+    fn collect(&mut self) {
+        let mut is_end = vec![false; self.faces.vertices.len()];
+        for v in self.sheets.keys().flatten() {
+            is_end[v.place()] = true;
+        }
+        for &triangle in self.faces.triangles {
+            for (k, [a, b]) in edges(triangle).into_iter().enumerate() {
+                if is_end[a.place()]
+                    && is_end[b.place()]
+                    && let Some(found) = self.sheets.get_mut(&sorted([a, b]))
+                {
+                    let apex = self.faces.vertices[triangle[(k + 2) % 3].place()];
+                    let is_along = a < b;
+                    found.push(Sheet { apex, is_along });
+                }
+            }
+        }
+    }
+
+    fn cross_at(&self, pair: [u32; 2], meeting: Meeting) -> bool {
+        let sheets = |which: usize, edge: usize| {
+            let edge = edge_of(self.faces, pair[which], edge);
+            self.sheets.get(&edge).cloned().unwrap_or_default()
+        };
+        crosses_at(meeting, &pair.map(|t| self.faces.corners(t)), sheets)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::extract::rounding::crossings::all_faults;
+    use crate::geometry::doubles::Point;
+
+    const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    /// The places of a tetrahedron with a face in the plane z = 0, of an edge in that face, and of
+    /// apexes above and below it.
+    const PLACES: [Point; 12] = [
+        [-9.0, -9.0, 0.0],
+        [0.0, 18.0, 0.0],
+        [9.0, -9.0, 0.0],
+        [0.0, 0.0, -9.0],
+        [-1.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 3.0, 1.0],
+        [0.0, 2.0, 2.0],
+        [0.0, -2.0, 2.0],
+        [0.0, -3.0, 1.0],
+        [0.0, 3.0, -1.0],
+        [0.0, -3.0, -1.0],
+    ];
+
+    /// The number of crossings of the tetrahedron with wedges at the edge, which have vertices 4 and
+    /// 5 and these, in any order of their triangles.
+    fn crossings_with(wedges: &[[u32; 2]]) -> usize {
+        let tetrahedron = |v: [u32; 4]| TETRAHEDRON.map(|t| t.map(|k| v[k as usize]));
+        let wedge = |[a, b]: &[u32; 2]| tetrahedron([4, 5, *a, *b]);
+        let mut triangles: Vec<[u32; 3]> = tetrahedron([0, 1, 2, 3]).to_vec();
+        triangles.extend(wedges.iter().flat_map(wedge));
+        let mut counts = (0..triangles.len()).map(|_| {
+            triangles.rotate_left(1);
+            let faces = Faces {
+                vertices: &PLACES,
+                triangles: &VertexId::rows(triangles.clone()),
+            };
+            all_faults(&faces).crossings.len()
+        });
+        let first = counts.next().unwrap_or(0);
+        assert!(counts.all(|count| count == first), "{wedges:?}");
+        first
+    }
+
+    #[test]
+    fn wedges_that_share_an_edge_touch_what_it_lies_in() {
+        assert_eq!(crossings_with(&[[6, 7]]), 0);
+        assert_eq!(crossings_with(&[[6, 7], [8, 9]]), 0);
+    }
+
+    #[test]
+    fn wedges_that_share_an_edge_cross_what_one_of_them_passes() {
+        assert!(crossings_with(&[[6, 10]]) > 0);
+        assert!(crossings_with(&[[7, 8], [9, 11]]) > 0);
+    }
+}
