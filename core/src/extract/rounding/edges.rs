@@ -1,4 +1,4 @@
-//! Whether surfaces cross where triangles meet along edges.
+//! Crossings of surfaces at edges along which triangles meet.
 
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;

@@ -1,4 +1,4 @@
-//! Half-planes of surfaces around a line, and whether surfaces made of them cross there, exactly.
+//! Half-planes of surfaces around a line, and crossings of the surfaces that they make, exactly.
 //!
 //! Where more than two triangles share an edge, nothing tells which of them are one surface.
 //! Surfaces cross there if they do however the triangles are paired.
@@ -16,7 +16,7 @@ use crate::geometry::side::Side;
 pub struct Sheet {
     /// The corner off the edge.
     pub apex: Point,
-    /// Whether the triangle runs along the edge, not against it.
+    /// True if the triangle runs along the edge, false if against it.
     pub is_along: bool,
 }
 
@@ -84,7 +84,7 @@ pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
     !word.windows(2).any(is_beside) && !cancels(&word)
 }
 
-/// Sheets around a line, each with whether it is at the first of two edges.
+/// Sheets around a line, each with true if it is at the first of two edges.
 type Letters = SmallVec<[(bool, Sheet); 4]>;
 
 /// Return whether a word cancels in the free group.
