@@ -1,6 +1,8 @@
 """`scripts/fuzz` reads libFuzzer's words, and runs add up in its record."""
 
 import json
+import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -149,3 +151,31 @@ def test_records_keep_what_earlier_runs_said(
         False,
         True,
     ]
+
+
+ROUNDS = """
+import sys, time
+sys.path[:0] = sys.argv[1:]
+import fuzz_rounds
+
+def judged(seed: int, at: int) -> tuple[list[str], str]:
+    began = time.process_time()
+    while time.process_time() - began < (0.6 if at < 4 else 20):
+        pass
+    return [], ""
+
+fuzz_rounds.SECONDS, fuzz_rounds.one_scene = 1, judged
+fuzz_rounds.rounds("scenes", 1, 0, time.monotonic() + 60)
+"""
+
+
+def test_a_round_is_ended_by_its_own_time_and_not_by_that_of_all() -> None:
+    command = [
+        sys.executable,
+        "-c",
+        ROUNDS,
+        *(str(REPOSITORY / name) for name in ("scripts", "tests")),
+    ]
+    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert [json.loads(line)["round"] for line in ran.stdout.splitlines()] == [0, 1, 2, 3, 4]
+    assert ran.returncode == -signal.SIGPROF
