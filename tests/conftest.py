@@ -1,12 +1,13 @@
-"""Settings for all tests: how many random examples, where shared data lies, what is slow."""
+"""Settings for all tests: which cases run, how many random examples, where shared data lies."""
 
 import os
+from collections import Counter
 from pathlib import Path
 
 import hypothesis
 import pytest
 
-from support import DEEP
+from support import COMMIT, DEEP, draw
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 
@@ -16,21 +17,53 @@ for _name, _count in (("fast", 15), ("ci", 40), ("deep", 2000)):
         _name,
         max_examples=_count,
         deadline=None,
-        derandomize=_name != "deep",
+        database=None,
         suppress_health_check=_QUIET,
         print_blob=True,
     )
-# Whoever reads why a test failed wants to see the frames inside the package.
-os.environ.setdefault("BSPCSG_TRACEBACKS", "full")
 hypothesis.settings.load_profile(os.environ.get("BSPCSG_HYPOTHESIS", "ci"))
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_configure(config: pytest.Config) -> None:
+    """Let the commit choose the random examples, unless a seed is given."""
+    if config.option.hypothesis_seed is None:
+        config.option.hypothesis_seed = str(draw("hypothesis", 2**32))
+
+
+def pytest_report_header() -> str:
+    """Name what repeats this choice of cases."""
+    return "all cases" if DEEP else f"cases drawn by BSPCSG_COMMIT={COMMIT}"
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Deselect what takes minutes; the summary counts it, and BSPCSG_DEEP=1 runs it."""
-    slow = [] if DEEP else [item for item in items if item.get_closest_marker("slow")]
-    if slow:
-        config.hook.pytest_deselected(items=slow)
-        items[:] = [item for item in items if not item.get_closest_marker("slow")]
+    """Deselect what only a deep run does; the summary counts it."""
+    if DEEP:
+        return
+    cases = Counter(map(_function, items))
+    seen: Counter[str] = Counter()
+    kept, left = [], []
+    for item in items:
+        name = _function(item)
+        seen[name] += 1
+        (kept if _is_drawn(item, seen[name] - 1, cases[name]) else left).append(item)
+    config.hook.pytest_deselected(items=left)
+    items[:] = kept
+
+
+def _function(item: pytest.Item) -> str:
+    return item.nodeid.partition("[")[0]
+
+
+def _is_drawn(item: pytest.Item, number: int, cases: int) -> bool:
+    """Return whether this commit's run has the case of this number among the test's cases."""
+    if item.get_closest_marker("deep"):
+        return False
+    sampled = item.get_closest_marker("sampled")
+    if sampled is None:
+        return True
+    step = min(*sampled.args, cases)
+    return number % step == draw(_function(item), step)
 
 
 @pytest.fixture(scope="session")

@@ -241,6 +241,7 @@ mod overflow {
         let _ = wrapped::<3>(&-power(191)) - Int::ONE;
     }
 
+    // Found: wide products could wrap in silence.
     #[test]
     #[should_panic(expected = "a product exceeds")]
     fn of_a_product() {

@@ -107,6 +107,7 @@ fn chains_of_boxes_are_sets_of_cubes() {
     }
 }
 
+// Found: boxes of more than 64 intervals left their kernel.
 #[test]
 fn expressions_of_many_boxes_are_sets_of_cubes() {
     let mut numbers = Numbers::new(12);

@@ -193,6 +193,7 @@ fn solids_in_one_place_make_what_they_make_one_after_the_other() {
     }
 }
 
+// Found: many half-spaces, turned cubes, shells in one place took minutes.
 #[test]
 fn half_spaces_in_one_place_make_what_they_make_one_after_the_other() {
     let mut numbers = Numbers::new(33);

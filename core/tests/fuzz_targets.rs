@@ -65,6 +65,7 @@ fn evaluate() {
     holds_around_its_seeds("evaluate", targets::evaluate);
 }
 
+// Found: a solid read back from its snapshot had a quad split along the other diagonal.
 #[test]
 fn extract() {
     holds_around_its_seeds("extract", targets::extract);

@@ -187,6 +187,7 @@ proptest! {
         }
     }
 
+    // Found: bundles of rays over trees and boxes coupled.
     /// Rays that go together find what each finds alone, and what testing every facet gives.
     #[test]
     fn bundles_do_not_show(

@@ -113,6 +113,8 @@ def cut(case: Case) -> tuple[np.ndarray, np.ndarray]:
     return at[clear], beyond[clear]
 
 
+# Found: fillets and chamfers of edges of both kinds forgot some in silence, cut far beyond where
+# edges end, or ended in a `ValueError`.
 @pytest.mark.parametrize("seed", [*range(60), *BROKEN])
 def test_blends_are_where_their_edges_are(seed: int) -> None:
     case = case_of(seed)

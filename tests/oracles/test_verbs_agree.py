@@ -116,6 +116,9 @@ def assert_alike(solids: list[tuple[b.Solid, float, Iterable[float]]], doubt: fl
 HERE = (0, 0, 0)
 
 
+# Found: `offset` inwards and `rounded` of bodies that are not convex left shells a step thin
+# beside them (7 of 9 random ones failed, one by a `ZeroDivisionError`), which `rounded` made
+# thick; of convex ones narrow faces could cut away most.
 @pytest.mark.parametrize("seed", range(24))
 def test_verbs_do_not_depend_on_the_lattice(seed: int) -> None:
     assert_alike([(made(seed, pitch), 1, HERE) for pitch in PITCHES])
@@ -127,6 +130,7 @@ def test_verbs_do_not_depend_on_the_size(seed: int) -> None:
     assert_alike([(made(seed, unit=unit), unit, HERE) for unit in units], 1e-5)
 
 
+# Found: `warp` refused solids that touch themselves, by less than rounding.
 @pytest.mark.parametrize("seed", range(45, 55))
 def test_verbs_do_not_depend_on_the_place(seed: int) -> None:
     places = (HERE, (1000, -2000, 500), (1e5, 1e5, -1e5))

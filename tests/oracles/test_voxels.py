@@ -85,7 +85,7 @@ def test_pairs(merge, expected, side: int, count: int) -> None:  # type: ignore[
         assert_matches(merge(solid_of(p), solid_of(q)), expected(p, q))
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.timeout(7200)
 @pytest.mark.parametrize(("merge", "expected"), OPERATIONS, ids=["or", "and", "sub", "xor"])
 def test_all_pairs_of_eight_cells(merge, expected) -> None:  # type: ignore[no-untyped-def]
@@ -104,6 +104,8 @@ def test_expressions_of_four_operands() -> None:
         assert_matches(~(~a | ~c) - d | e & a, ((p & q) & ~r) | (s & p))
 
 
+# Found: shells of one mesh that cross in edges of both, whose vertices share places and not
+# numbers, were taken for apart: twice the volume where they overlap.
 @pytest.mark.parametrize("seed", range(500 if DEEP else 40))
 def test_boxes_of_one_mesh_that_meet_in_edges_of_both(seed: int) -> None:
     rng = np.random.default_rng(seed)

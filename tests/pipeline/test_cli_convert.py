@@ -146,6 +146,7 @@ def test_a_file_that_is_not_the_mesh_is_not_put_in_place(
         assert Path("x.off").read_bytes() == before and not list(Path().glob(".*.part"))
 
 
+# Found: triangles without area in single precision, and `check` said solid.
 def test_what_single_precision_destroys_is_told(folder: Path, capsys: Capture) -> None:
     put("a.ply", moved(icosphere(2), (0, 0, 1e7)))
     code, out, err = ran(capsys, "convert", "a.ply", "-o", "x.stl", "--json")
@@ -160,6 +161,7 @@ def test_what_single_precision_destroys_is_told(folder: Path, capsys: Capture) -
     assert "takes the area of" in err
 
 
+# Found: `convert` wrote over an input that it had not read yet.
 def test_an_input_that_is_not_read_yet_stays(folder: Path, capsys: Capture) -> None:
     Path("x-a.off").write_bytes(Path("a.off").read_bytes())
     code, _, err = ran(capsys, "convert", "a.off", "x-a.off", "-o", "x-%.off")

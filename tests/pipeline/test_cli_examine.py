@@ -187,6 +187,8 @@ def test_nothing_is_not_repaired(folder: Path, capsys: Capture) -> None:
     assert err == "bspcsg: error: none.off: there is nothing in it, so nothing was written.\n"
 
 
+# Found: `repair` and `--on-invalid repair` lost the names of objects and all attributes in
+# silence.
 def test_repair_tells_what_it_loses(folder: Path, capsys: Capture) -> None:
     vertices, faces = joined(cube(), moved(cube(), (3, 0, 0)))
     said = Attributes(faces, corner={"color": np.full((24, 3, 4), 0.5)})
@@ -286,6 +288,7 @@ def test_doctor_fails_without_what_is_required(
     assert code == 6 and not json.loads(out)["complete"]
 
 
+# Found: `check` told of no file behind a script with a bad mesh.
 def test_check_of_a_bad_script_tells_of_the_others(folder: Path, capsys: Capture) -> None:
     Path("bad.csg").write_text('import("open.stl");')
     b.save(b.cube(1), "good.stl")
@@ -299,6 +302,7 @@ def test_check_of_a_bad_script_tells_of_the_others(folder: Path, capsys: Capture
     assert files[1]["error"]["code"] == "not_closed"
 
 
+# Found: `bspcsg --` ended in an `IndexError`.
 def test_no_command_behind_two_hyphens(capsys: Capture) -> None:
     code, _, err = ran(capsys, "--")
     assert code == 2 and "Missing command" in err

@@ -50,6 +50,8 @@ def test_invalid_files_are_refused_with_what_to_type(opened: Path, capsys: Captu
     assert "\n  --on-invalid repair fills it; --on-invalid warn goes on without it.\n" in err
 
 
+# Found: `convert --simplify`, `render --section` and others advised `--on-invalid`, which they do
+# not have.
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -183,6 +185,7 @@ def test_a_dangling_link_is_there_as_well(folder: Path, capsys: Capture) -> None
     assert ran(capsys, "convert", "a.off", "-o", "x.off", "--no-overwrite")[0] == 5
 
 
+# Found: `--no-overwrite` replaced an MTL file.
 @pytest.mark.parametrize("words", [["convert", "in.3mf"], ["union", "in.3mf", "in.3mf"]])
 def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: list[str]) -> None:
     mesh = b.cube(1).to_mesh()
@@ -201,6 +204,9 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
 # Numbers
 
 
+# Found: numbers of options that were not finite, and seconds that no system call takes, were
+# accepted or ended as a defect.
+# Found: `compare --samples` of very many points ended as a defect.
 @pytest.mark.parametrize(
     "line",
     [
@@ -401,6 +407,7 @@ def test_every_verb_tells_its_options(capsys: Capture) -> None:
 # options that would do nothing
 
 
+# Found: `--frames`, `--seconds` and `--port` were taken where they do nothing.
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -54,6 +54,7 @@ def test_parts_of_several_files(folder: Path, capsys: Capture) -> None:
     assert code == 0 and [part["volume"] for part in document["parts"]] == [8, 1]
 
 
+# Found: `explode` and `split` wrote parts over their inputs.
 def test_parts_do_not_replace_inputs(folder: Path, capsys: Capture) -> None:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
     put("two-2.off", cuboid((0, 0, 0), (3, 1, 1)))
@@ -126,6 +127,7 @@ def test_parts_of_one_script_are_in_each_others_way(folder: Path, capsys: Captur
     assert code == 1 and "1 pair of objects, 1 in each other's way" in out
 
 
+# Found: `clash` of one file ignored `--from`.
 @pytest.mark.parametrize("suffix", ["3mf", "glb", "obj", "csg"])
 def test_objects_of_one_file_of_another_name_clash(
     suffix: str, folder: Path, capsys: Capture
@@ -154,6 +156,7 @@ def test_nobody_is_in_the_way(folder: Path, capsys: Capture) -> None:
     assert code == 0 and json.loads(out)["clashes"] == []
 
 
+# Found: `repair --digits` called a file a solid that rounding had broken.
 def test_repair_judges_what_it_writes(folder: Path, capsys: Capture) -> None:
     small = (b.cube(0.3).translate(1, 1, 1)).to_mesh()
     b.save(b.Solid(small.vertices, small.faces), "dig.ply")

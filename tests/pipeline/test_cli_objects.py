@@ -26,6 +26,7 @@ def files(folder: Path) -> Path:
     return folder
 
 
+# Found: a union flattened named objects.
 @pytest.mark.parametrize(
     ("line", "names"),
     [
@@ -69,6 +70,7 @@ def test_files_without_names_stay_one_object(files: Path, capsys: Capture) -> No
     assert [name for name, _ in read("x.3mf").objects] == [""]
 
 
+# Found: `--on-invalid repair` gave the parts of a repaired file the names of other objects.
 def test_parts_of_repaired_files_are_called_as_the_file(files: Path, capsys: Capture) -> None:
     vertices, faces = joined(cuboid((0, 0, 4), (1, 1, 5)), cuboid((0, 0, 7), (1, 1, 8)))
     write(RawMesh(vertices, faces[1:], objects=(("left", 11), ("right", 12))), "open.obj")

@@ -78,6 +78,7 @@ result._node.content = TreeLeaf(b.cube(2).tree, result._node.content.record)
 """
 
 
+# Found: `--check` did nothing for Python scripts.
 @pytest.mark.parametrize(
     "result",
     [

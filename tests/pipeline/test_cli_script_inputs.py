@@ -25,6 +25,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+# Found: scripts were refused by most verbs.
 @pytest.mark.parametrize(
     ("line", "volume"),
     [

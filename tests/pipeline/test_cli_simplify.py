@@ -70,6 +70,7 @@ def test_nothing_to_remove(near: Path, capsys: Capture, verb: tuple[str, ...]) -
     assert code == 0 and "--simplify changed nothing" in err and "28 triangles" in out
 
 
+# Found: `convert --simplify` failed on meshes with attributes.
 def test_attributes_of_simplified_meshes_are_lost(near: Path, capsys: Capture) -> None:
     raw = read(MODEL)
     colours = Attributes(raw.faces, face={"color": np.ones((len(raw.faces), 3))})
@@ -80,6 +81,8 @@ def test_attributes_of_simplified_meshes_are_lost(near: Path, capsys: Capture) -
     assert b.load("y.ply").equals(b.cube(1))
 
 
+# Found: `convert --simplify` said that nothing was lost where names of objects and warnings of
+# the reader were.
 def test_names_of_objects_that_became_one_are_lost(near: Path, capsys: Capture) -> None:
     raw = read(MODEL)
     write(replace(raw, objects=(("bump", 10), ("rest", len(raw.faces) - 10))), "x.obj")

@@ -99,6 +99,8 @@ def test_streams(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch)
     assert code == 3 and "byte 0 is no UTF-8" in err
 
 
+# Found: `tree` sent escape sequences of a script to the terminal, and left colours out of what it
+# wrote to a pipe.
 def test_scripts_do_not_steer_the_terminal(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -292,6 +292,7 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
     assert ran(capsys, *given, "-q")[2] == ""
 
 
+# Found: outputs of `validate` wrote over each other.
 @pytest.mark.parametrize(
     ("options", "said"),
     [

@@ -222,6 +222,7 @@ def written(before: set[str]) -> set[str]:
     return new
 
 
+# Found: `lecture -o /dev/null` was refused.
 @pytest.mark.parametrize(("code", "line"), CASES)
 def test_codes(place: Path, capsys: Capture, code: int, line: str) -> None:
     before = set(os.listdir())

@@ -49,6 +49,8 @@ def told(*arguments: str) -> tuple[int, str]:
     return code, os.fsdecode(err)
 
 
+# Found: pages of files whose names are no text, and inputs without a suffix, ended in an internal
+# error; long names could not be written to.
 @pytest.mark.parametrize("stem", STEMS)
 @pytest.mark.parametrize("verb", LINES)
 def test_files_may_have_any_name(

@@ -104,6 +104,7 @@ def interrupted(delay: float, *arguments: str) -> tuple[int, bytes, bytes]:
     return running.returncode, out, err
 
 
+# Found: Ctrl-C in the first 0.1 s printed a traceback.
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 @pytest.mark.parametrize("delay", [k / 20 for k in range(13)])
 def test_interrupts_are_quiet_at_any_moment(tmp_path: Path, delay: float) -> None:
@@ -147,6 +148,7 @@ def test_scripts_are_interrupted_quietly(tmp_path: Path, delay: float) -> None:
     assert code == 130 and len(err.splitlines()) <= 1 and b"Traceback" not in err
 
 
+# Found: Ctrl-C while the process of a script starts printed a fatal error of Python.
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 def test_scripts_are_interrupted_quietly_while_python_starts(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]

@@ -204,6 +204,7 @@ def test_a_search_asks_as_many_cuts_as_its_path_has(browser: Browser) -> None:
     assert _tile(browser, "fig-search", "steps") == "3"
 
 
+# Found: trees were drawn at the end only.
 def test_steps_go_to_and_fro_and_orders_change_the_tree(browser: Browser) -> None:
     def figure(key: str) -> int:
         return int(_tile(browser, "fig-autopartition", key))

@@ -29,6 +29,7 @@ def at_terminal(monkeypatch: pytest.MonkeyPatch, columns: int) -> None:
 # Outputs
 
 
+# Found: `-o /dev/null` was refused.
 @POSIX
 @pytest.mark.parametrize(
     "line",
@@ -59,6 +60,7 @@ def test_the_null_device_takes_every_output(folder: Path, capsys: Capture, line:
     assert os.path.exists(os.devnull) and not Path(os.devnull).is_file()
 
 
+# Found: `--outdir` did not make the folder.
 def test_outdir_is_made(folder: Path, capsys: Capture) -> None:
     line = ["convert", "a.off", "c.stl", "--to", "ply", "--outdir", "new/inner"]
     assert ran(capsys, *line)[0] == 0
@@ -72,6 +74,7 @@ def test_outdir_is_not_made_for_nothing(folder: Path, capsys: Capture) -> None:
     assert code == 5 and "a.off/x: cannot make this folder" in err
 
 
+# Found: units were misspelt.
 @pytest.mark.parametrize(("unit", "size"), [("mm", 50.8), ("cm", 5.08), ("in", 2.0)])
 def test_units_are_converted(folder: Path, capsys: Capture, unit: str, size: float) -> None:
     line = ["convert", "a.off", "-o", "x.ply", "--unit", "in", "--to-unit", unit]
@@ -88,6 +91,7 @@ def test_formats_with_units_take_no_other(folder: Path, capsys: Capture) -> None
 # Inputs
 
 
+# Found: `eval` expanded no patterns.
 @pytest.mark.parametrize(
     ("line", "volume"),
     [
@@ -150,6 +154,7 @@ def test_scripts_may_have_any_suffix(folder: Path, capsys: Capture) -> None:
 # What is said
 
 
+# Found: no-break spaces as separators in pipes.
 def test_numbers_are_whole_in_pipes_and_grouped_at_terminals(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -168,6 +173,7 @@ TABLE = (
 )
 
 
+# Found: tables ignored the terminal's width.
 @pytest.mark.parametrize("columns", [44, 60, 200])
 def test_tables_fit_the_terminal(columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
     at_terminal(monkeypatch, columns)
@@ -176,6 +182,7 @@ def test_tables_fit_the_terminal(columns: int, monkeypatch: pytest.MonkeyPatch) 
     assert " ".join(lines).split().count("words") == 1
 
 
+# Found: tables took names between colons for emoji, and cut wide letters.
 def test_tables_show_names_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     rows = [["a:x:b.obj", "1"], ["部品" * 9, "2"]]
     piped = table_text(["file", "count"], rows)
@@ -229,6 +236,7 @@ def test_colours_by_convention(
         assert re.sub(r"\033\[\d+m", "", err).startswith("bspcsg: error: ")
 
 
+# Found: wrong use with `--json` left standard output empty.
 @pytest.mark.parametrize(
     "verb", ["union", "info", "convert", "slice", "bench", "validate", "unoin"]
 )
@@ -256,6 +264,7 @@ def test_repair_tells_what_was_noticed(folder: Path, capsys: Capture) -> None:
         assert code == 0 and finding["code"] == said and finding["message"] in err
 
 
+# Found: printed seconds left out half of the work.
 def test_seconds_are_all_of_them(folder: Path, capsys: Capture) -> None:
     put("ball.ply", icosphere(5))
     began = time.perf_counter()
@@ -309,6 +318,7 @@ def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyP
             assert status._line is None
 
 
+# Found: names of files could steer the terminal.
 @POSIX
 @pytest.mark.parametrize(
     ("line", "code"),

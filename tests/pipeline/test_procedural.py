@@ -202,7 +202,7 @@ def test_measures_and_topology(name: str) -> None:
     assert solid.genus == case.parts - case.euler // 2
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.timeout(1800)
 def test_sponge_of_depth_four_and_its_diagonal_cut() -> None:
     whole = sponge(4)

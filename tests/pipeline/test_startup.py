@@ -60,6 +60,7 @@ def test_the_version_and_the_help_need_no_numpy(arguments: tuple[str, ...]) -> N
     assert imported(*arguments).isdisjoint({*HEAVY, "numpy", "manifold3d"})
 
 
+# Found: GLB cost an import of trimesh.
 @pytest.mark.parametrize("kind", ["stl", "obj", "ply"])
 def test_a_checked_boolean_imports_little(cubes: Path, kind: str) -> None:
     result = str(cubes / f"c.{kind}")

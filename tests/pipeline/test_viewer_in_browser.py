@@ -239,6 +239,7 @@ def test_a_section_from_the_other_side(opened: Browser) -> None:
     assert _change(one, _looks(opened)) > 0.05
 
 
+# Found: the canvas stayed light in dark mode.
 def test_the_canvas_follows_the_theme_until_it_is_chosen(opened: Browser) -> None:
     light = _looks(opened)
     opened.prefer("dark")

@@ -1,6 +1,27 @@
 """The common part of the tests: plain shapes as arrays, and the checks of a sound result."""
 
 import os
+import subprocess
+import zlib
+from pathlib import Path
 
 #: True to take the time for everything, as `scripts/check --deep` does.
 DEEP = bool(os.environ.get("BSPCSG_DEEP"))
+
+
+def _commit() -> str:
+    command = ["git", "-C", str(Path(__file__).parent), "rev-parse", "HEAD"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except FileNotFoundError:
+        return ""
+    return done.stdout.strip()
+
+
+#: The commit that draws the sampled cases and seeds random ones; BSPCSG_COMMIT repeats another's.
+COMMIT = os.environ.get("BSPCSG_COMMIT") or _commit()
+
+
+def draw(name: str, count: int) -> int:
+    """Return a number below `count` that depends on the commit and on a name."""
+    return zlib.crc32(f"{COMMIT} {name}".encode()) % count

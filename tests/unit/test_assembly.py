@@ -139,6 +139,7 @@ def test_the_union_says_of_each_face_which_part_it_is_of() -> None:
     assert b.Solid.from_mesh(car()).volume == car().to_solid().volume
 
 
+# Found: naming parts of one name took time that grew with the square of their number.
 def test_many_parts_of_one_name_are_counted_once() -> None:
     screw, second = (b.Assembly(name, b.cube(1)) for name in ("screw", "screw (2)"))
     found = b.Assembly("", [screw, second, screw, screw, second, screw])
@@ -186,6 +187,8 @@ def test_trees_names_colours_and_instances_survive_files(tmp_path: Path, suffix:
     assert whole.volume == pytest.approx(made.to_solid().volume)
 
 
+# Found: assemblies with an instance without a name of a part that has one could not be written as
+# GLB.
 @pytest.mark.parametrize("suffix", [".3mf", ".glb"])
 def test_instances_of_a_named_part_may_have_no_name(tmp_path: Path, suffix: str) -> None:
     cube = b.cube(1)
@@ -194,6 +197,7 @@ def test_instances_of_a_named_part_may_have_no_name(tmp_path: Path, suffix: str)
     assert [part.path for part in again] == ["a/wheel", "a/part"]
 
 
+# Found: an assembly 64 deep with two names of one solid could not be written as 3MF.
 @pytest.mark.parametrize("suffix", [".3mf", ".glb"])
 def test_the_deepest_assembly_can_be_saved(tmp_path: Path, suffix: str) -> None:
     cube = b.cube(1)
@@ -208,6 +212,8 @@ def test_the_deepest_assembly_can_be_saved(tmp_path: Path, suffix: str) -> None:
     assert b.load(tmp_path / f"x{suffix}").volume == 2
 
 
+# Found: a solid whose one material is called after its colour, and two colours of parts that are
+# the same in bytes, ended in `write_mismatch` in a GLB of an assembly.
 def test_materials_called_after_their_colours_can_be_saved_again(tmp_path: Path) -> None:
     near = (1.0, 0.0, 0.0, 0.9999)
     parts = [b.Assembly("x", b.cube(1)), b.Assembly("y", b.cube(1).translate(3, 0, 0), color=near)]
@@ -309,6 +315,8 @@ def test_what_parts_say_that_3mf_cannot_hold_is_named(tmp_path: Path) -> None:
     assert finding.code == "attributes_left_out" and "“heat”" in finding.message
 
 
+# Found: what files of assemblies and scripts could not keep was not told: attributes in GLB and
+# `.csg`, coordinates and units in GLB, densities.
 @pytest.mark.parametrize("suffix", [".3mf", ".glb", ".csg", ".obj"])
 def test_what_files_cannot_hold_of_assemblies_is_named(tmp_path: Path, suffix: str) -> None:
     third = b.cube(1 / 3).tagged(layer=1)
@@ -320,6 +328,8 @@ def test_what_files_cannot_hold_of_assemblies_is_named(tmp_path: Path, suffix: s
     assert ("single_precision" in found) == (suffix == ".glb")
 
 
+# Found: an assembly of parts with attributes of one name and other types could not be written as
+# OBJ, which holds none of them.
 def test_parts_of_an_obj_may_have_attributes_of_other_types(tmp_path: Path) -> None:
     parts = [b.Assembly(str(tag), b.cube(1).tagged(tag=tag)) for tag in ("a", 1)]
     (finding,) = b.Assembly("both", parts).save(tmp_path / "x.obj")
@@ -327,6 +337,8 @@ def test_parts_of_an_obj_may_have_attributes_of_other_types(tmp_path: Path) -> N
     assert len(list(b.Assembly.load(tmp_path / "x.obj"))) == 2
 
 
+# Found: parts without a colour beside parts with colours in bytes were black in an OBJ of an
+# assembly.
 def test_parts_without_a_colour_are_white_in_an_obj(tmp_path: Path) -> None:
     mesh = b.cube(1).to_mesh()
     blue = {"color": np.full((8, 3), [0, 0, 255], "u1")}
@@ -348,6 +360,8 @@ def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     assert b.Assembly.load(tmp_path / "x.stl").to_solid().volume == 8
 
 
+# Found: parts of an assembly that have attributes lost their colours in OBJ, and in the union
+# those without any material any more did.
 @pytest.mark.parametrize("suffix", [".3mf", ".obj"])
 def test_colours_of_parts_with_attributes_survive_files(tmp_path: Path, suffix: str) -> None:
     mesh = b.cube(1).to_mesh()
@@ -372,6 +386,8 @@ def test_colours_of_parts_with_attributes_survive_files(tmp_path: Path, suffix: 
     assert {tuple(one) for one in united.at_corners("color")[:, 0].tolist()} >= {(0, 0, 255, 255)}
 
 
+# Found: an assembly with a colour on a part that has texture coordinates, normals or other
+# attributes could not be written as GLB: `write_mismatch`.
 @pytest.mark.parametrize("name", ["uv", "heat"])
 def test_colours_and_attributes_of_parts_share_a_glb(tmp_path: Path, name: str) -> None:
     mesh = b.cube(1).to_mesh()
@@ -429,6 +445,7 @@ def test_tags_are_said_by_every_face() -> None:
     assert (b.half_space((0, 0, 1), 1).tagged(x=1) & b.cube(2)).volume == 4
 
 
+# Found: parts of assemblies in scripts lost the `$fn`, `$fa` and `$fs` of the nodes around them.
 def test_parts_of_scripts_keep_the_variables_around_them(tmp_path: Path) -> None:
     (tmp_path / "x.csg").write_text("group($fn = 4) { color([1, 0, 0]) sphere(1); cube(1); }")
     made = b.Assembly.load(tmp_path / "x.csg")

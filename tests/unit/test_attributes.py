@@ -219,6 +219,8 @@ def test_different_shapes_under_one_name_are_refused_when_asked_for() -> None:
         _ = (one | text).to_mesh().face_attributes
 
 
+# Found: colours in bytes beside colours in floats became numbers like 200.0 in silence, and three
+# numbers beside four refused the whole operation.
 @pytest.mark.parametrize("kind", ["vertex", "face"])
 def test_colours_of_operands_come_in_one_form(kind: str) -> None:
     count = {"vertex": 8, "face": 12}[kind]
@@ -272,6 +274,7 @@ def test_materials_check_what_they_are_given() -> None:
             b.Material(**wrong)
 
 
+# Found: who put something into `mesh.face_attributes` changed all later answers of the solid.
 def test_given_arrays_can_be_changed_afterwards() -> None:
     values = np.arange(12)
     part = cube(face_attributes={"id": values})
@@ -335,6 +338,7 @@ def test_weights_in_slivers_are_as_exact_as_in_others() -> None:
     assert np.array_equal(weights(np.array([[1e8 + 0.25, 0, 0.5]]), far), [[0.25, 0.25, 0.5]])
 
 
+# Found: a half-space that was tagged could not be turned any more.
 def test_tagged_half_spaces_are_turned_as_others_are() -> None:
     room = b.box(20, 20, 20, center=True)
     assert (b.half_space("z", 0).tagged(layer=1).rotate(30, "x") & room).volume == 4000
@@ -349,6 +353,8 @@ def layers_and_sides(solid: b.Solid) -> set[tuple[int, bool]]:
     return set(zip(layers[layers > 0].tolist(), beyond[layers > 0].tolist(), strict=True))
 
 
+# Found: one solid that was tagged twice, or left untagged and tagged, had the last tag everywhere
+# once both were combined.
 @pytest.mark.parametrize("shift", [(0, 0, 0), (0, 0, 5)])
 def test_each_of_two_tags_of_one_solid_stays_where_it_was_said(
     shift: tuple[float, float, float],
@@ -376,6 +382,7 @@ def test_tags_change_nothing_but_names() -> None:
     assert set(said.normalized().to_mesh().face_attributes["layer"].tolist()) == {3}
 
 
+# Found: the tags of an unbounded solid with operands vanished when it was turned.
 def test_tags_of_what_reaches_to_infinity_stay_when_it_is_turned() -> None:
     wedge = (b.cube(4) | b.half_space((1, 0, 0), -3)).tagged(layer=7).tagged(kind=1)
     mesh = (wedge.rotate(30, (1, 2, 3)) & b.sphere(5)).to_mesh()
@@ -383,6 +390,7 @@ def test_tags_of_what_reaches_to_infinity_stay_when_it_is_turned() -> None:
     assert set(mesh.face_attributes["kind"].tolist()) == {0, 1}
 
 
+# Found: pickles of nothing that was tagged could not be combined: a ValueError.
 @pytest.mark.parametrize("full", [False, True])
 def test_nothing_that_was_tagged_comes_back_from_other_lattices(full: bool) -> None:
     tagged, other = b.cube(1).tagged(layer=1), b.cube(1).translate(5, 5, 5)

@@ -56,6 +56,7 @@ def test_shells_are_turned_outwards_but_for_those_in_others() -> None:
     assert (inward[40:] == is_turned[40:, None]).all()
 
 
+# Found: cavities cost their square in `decompose` and reports, parts theirs in `repair`.
 def test_many_cavities_cost_each_alike() -> None:
     times = {}
     for count in (2000, 8000):

@@ -235,6 +235,7 @@ def test_nothing_to_hit() -> None:
     assert len(single) == 1
 
 
+# Found: the region of a ray tree without facets ended in a raw `ValueError`.
 @pytest.mark.parametrize(("shape", "size"), [((0,), 2), ((0, 2, 2), 4), ((0, 3, 3), 6)])
 def test_regions_of_trees_without_facets(shape: tuple[int, ...], size: int) -> None:
     for tree in (bsp.AdaptiveTree(np.zeros(shape)), bsp.StaticTree(np.zeros(shape))):
@@ -243,6 +244,7 @@ def test_regions_of_trees_without_facets(shape: tuple[int, ...], size: int) -> N
         assert np.abs(np.array(region)).max() == pytest.approx(1)
 
 
+# Found: fractions were cut off in the order of a `StaticTree`.
 @pytest.mark.parametrize("order", [[0.9, 1.9], [0.0, 0.5], [False, True], [0, np.nan], [0, 2**70]])
 def test_orders_are_of_whole_numbers(order: object) -> None:
     facets = [[[0, 0], [1, 0]], [[0, 1], [1, 1]]]

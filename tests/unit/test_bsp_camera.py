@@ -141,6 +141,7 @@ def test_refused_views(change: dict[str, Any], text: str) -> None:
         bsp.Camera.named(**{"view": "iso", "points": BOX, **change})
 
 
+# Found: cameras kept the array of their eye, and let their own be written into.
 def test_cameras_keep_copies_that_nobody_writes_into() -> None:
     eye, target = np.array([0.0, -10, 0]), np.array([0.0, 0, 0])
     cameras = [bsp.Camera.perspective(eye, target), bsp.Camera.orthographic((0, 1, 0), target=eye)]
@@ -152,6 +153,8 @@ def test_cameras_keep_copies_that_nobody_writes_into() -> None:
                 array[:] = 7
 
 
+# Found: a perspective that was to show all of a scene could have its eye on the scene's nearest
+# point.
 @pytest.mark.parametrize(
     "points", [[(0, -2, 0), (5, 3, 0), (-5, 3, 0), (0, 3, 5)], [(0, -1, 0), (0, 1, 0), (0, 0, 0)]]
 )
@@ -162,6 +165,7 @@ def test_points_on_the_axis_of_a_fitted_perspective_are_in_the_picture(points: A
     assert np.abs(image / (4 / 3, 1)).max() <= 1
 
 
+# Found: pictures from very far away leaked a warning of numpy to the terminal.
 @pytest.mark.filterwarnings("error")
 def test_eyes_very_far_away_see_which_faces_are_turned_to_them() -> None:
     camera = bsp.Camera.perspective((1e300, 0, 0), (0, 0, 0))

@@ -40,6 +40,8 @@ def test_round_trips_are_exact(suffix: str, tmp_path: Path) -> None:
     assert len(again.outlines) == 3
 
 
+# Found: drawings of large and small shapes in SVG, and the empty region beside large ones, were
+# refused.
 @pytest.mark.parametrize("suffix", ["svg", "dxf"])
 def test_drawings_far_out_and_of_large_and_small_parts_come_back(
     suffix: str, tmp_path: Path
@@ -106,6 +108,7 @@ def test_bad_svg(text: str, tmp_path: Path) -> None:
     assert "bad.svg" in caught.value.message
 
 
+# Found: drawings with a document type were refused.
 @pytest.mark.parametrize("head", [DOCTYPE, '<!DOCTYPE svg SYSTEM "file:///etc/passwd">'])
 def test_document_types_are_passed_over(head: str, tmp_path: Path) -> None:
     path = tmp_path / "a.svg"
@@ -192,6 +195,8 @@ def test_bad_dxf(tmp_path: Path) -> None:
 SQUARE_PATH = '<rect width="4" height="4" {}/>'
 
 
+# Found: shapes of an SVG with `fill=" none "`, `NONE`, `none !important` or
+# `visibility="collapse"` counted as filled.
 @pytest.mark.parametrize(
     "said",
     [
@@ -205,6 +210,7 @@ def test_what_is_not_filled_or_shown_is_left_out(tmp_path: Path, said: str) -> N
     assert R.from_svg(tmp_path / "x.svg").area == 1
 
 
+# Found: an SVG whose outermost element is not displayed was no valid SVG.
 @pytest.mark.parametrize("said", ['display="none"', 'style="display:none"', 'display="NONE"'])
 def test_drawings_that_are_not_displayed_are_empty(tmp_path: Path, said: str) -> None:
     text = f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{SQUARE_PATH.format("")}</svg>'
@@ -218,6 +224,7 @@ def test_even_odd_is_told_in_any_case(tmp_path: Path) -> None:
     assert R.from_svg(tmp_path / "x.svg").area == 12
 
 
+# Found: a negative or huge margin of an SVG wrote a page of negative or infinite size.
 @pytest.mark.parametrize("margin", [-1, -0.1, 1e308])
 def test_margins_without_a_page_are_refused(tmp_path: Path, margin: float) -> None:
     with pytest.raises(b.InvalidParameterError, match="margin"):

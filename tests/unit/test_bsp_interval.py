@@ -112,6 +112,7 @@ def test_bad_questions() -> None:
         bsp.Intervals([(0, 1e9)], pitch=-9)
 
 
+# Found: the centroid of short intervals far out lay outside of them.
 def test_the_centroid_of_a_short_interval_far_out_lies_in_it() -> None:
     for low, width in ((5e6, 1e-6), (100.0, 1e-6), (-5e6, 1e-9)):
         short = bsp.Intervals([(low, low + width)])
@@ -120,6 +121,8 @@ def test_the_centroid_of_a_short_interval_far_out_lies_in_it() -> None:
         assert abs(line.centroid[0]) == abs(short.centroid)
 
 
+# Found: intervals that were moved or scaled forgot their lattice, so that short ones were lost;
+# far enough they became unbounded.
 def test_intervals_keep_their_lattice_wherever_they_are_moved() -> None:
     s = bsp.Intervals([(0, 1e-10), (5, 6)], pitch=-12)
     assert s.translate(1 + 1e-13) == s.translate(1)

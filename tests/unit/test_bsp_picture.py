@@ -323,7 +323,7 @@ def test_too_many_samples_are_refused() -> None:
         _ = picture.png
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_a_hundred_thousand_triangles_take_less_than_five_seconds() -> None:
     vertices, faces = shapes.icosphere(6)
     x, y, z = vertices.T

@@ -345,6 +345,8 @@ def test_good_arguments_are_taken(name: str) -> None:
     call(**good)
 
 
+# Found: many functions of trees and sets in `bspcsg.bsp` took values that make no sense, or
+# raised whatever numpy or Python raised.
 @pytest.mark.parametrize("name", ROWS)
 def test_bad_arguments_are_refused_at_once(name: str) -> None:
     assert_refused_at_once(name, ROWS[name], TAKEN)

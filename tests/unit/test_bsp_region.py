@@ -115,6 +115,7 @@ def test_value() -> None:
     assert R(region.to_polygons(), winding="positive").area == pytest.approx(region.area)
 
 
+# Found: shapely's shapes were read in quadratic time.
 def test_shapely_in_and_out() -> None:
     pytest.importorskip("shapely")
     shape = plate().to_shapely()
@@ -137,6 +138,8 @@ def test_questions() -> None:
     assert distance.tolist() == pytest.approx([0.9, 5])
 
 
+# Found: a section at the height on which a box stands is empty: it is the limit from below, and
+# stays so.
 def test_prisms_and_sections() -> None:
     region = plate() - R.circle(0.7, 24).translate(3.5, 3)
     solid = region.extrude(5)
@@ -256,6 +259,7 @@ def test_bad_parameters() -> None:
         R.rectangle(1e8) | R([(0, 0), (1e-14, 0), (0, 1)], pitch=-15)
 
 
+# Found: finite boundaries of complements were refused.
 def test_the_perimeter_of_a_complement_is_that_of_the_region() -> None:
     assert (~plate()).perimeter == plate().perimeter
     assert R.full().perimeter == 0

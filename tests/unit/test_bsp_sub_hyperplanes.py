@@ -221,6 +221,7 @@ class TestValues:
         assert shown == "SubHyperplane((0, 1), 2, Intervals((-4, 0)))"
 
 
+# Found: a sub-hyperplane united with itself lay in another hyperplane by its rounding.
 @pytest.mark.parametrize("normal", [(1, 4), (1, 2, 3), (0, 3, 1), (0.3, 0.7)])
 def test_set_operations_keep_the_hyperplane(normal: tuple[float, ...]) -> None:
     part = SubHyperplane(normal, 3)
@@ -229,6 +230,7 @@ def test_set_operations_keep_the_hyperplane(normal: tuple[float, ...]) -> None:
     assert hash(part & part) == hash(part)
 
 
+# Found: a far hyperplane that coincides with a sub-hyperplane left it on one side.
 @pytest.mark.parametrize("normal", [(3, 1, 2), (0, 3, 1), (1, 1, 1), (2, 3, 6)])
 def test_a_far_hyperplane_that_coincides_divides_nothing(normal: tuple[int, ...]) -> None:
     far, triple = 1e6 + 0.1, [3 * x for x in normal]
@@ -243,6 +245,8 @@ PARTS = [
 ]
 
 
+# Found: empty regions of the sphere and parts of hyperplanes were true, and their operators
+# raised an `AttributeError`.
 @pytest.mark.parametrize(("full", "empty"), PARTS)
 def test_parts_of_nothing_are_false(full: Any, empty: Any) -> None:
     assert bool(full) and not bool(empty)

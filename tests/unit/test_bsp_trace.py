@@ -39,6 +39,7 @@ def scenes() -> Iterator[tuple[str, Any]]:
 SCENES = [pytest.param(facets, id=name) for name, facets in scenes()]
 
 
+# Found: leaves that store a segment were not those of the notes.
 class TestConstruction:
     @pytest.mark.parametrize("policy", [*bsp.POLICIES, "end-points"])
     @pytest.mark.parametrize("facets", SCENES)
@@ -136,6 +137,8 @@ def meeting(facet: Any, origin: Any, direction: Any) -> Fraction | None:
     s = (arm[0] * d[1] - arm[1] * d[0]) / turn
     return t if t >= 0 and 0 <= s <= 1 else None
 
+    # Found: `PartitionTree` took no rays and told no path.
+
 
 class TestRays:
     @pytest.mark.parametrize("seed", SEEDS)
@@ -212,6 +215,7 @@ class TestRays:
         beside = tree.trace_ray((5, 1), (1, 0)).steps[0]
         assert beside.case == "near"
 
+    # Found: the bound on visits was tested, never shown.
     def test_c_of_t_is_at_most_depth_times_stabbed_leaves(self) -> None:
         random = np.random.default_rng(1)
         for facets in (segments(1, 40), triangles(1, 20), np.arange(20.0)):
@@ -455,6 +459,8 @@ class TestMerging:
     def test_an_unknown_operation_is_refused(self) -> None:
         with pytest.raises(InvalidParameterError, match="op must be"):
             polygons(1).trace_merge(polygons(2), "sum")  # type: ignore[arg-type]
+
+    # Found: the augmented tree could not be seen from outside.
 
 
 class TestCounting:

@@ -426,6 +426,7 @@ def has_perfect(segments: list[Any]) -> bool:
     return False
 
 
+# Found: a bow-tie was called “no area on the lattice”.
 def test_a_polygon_that_crosses_itself_is_called_that() -> None:
     # The halves of the second are of one size, so that its normal vanishes.
     for bow in (
@@ -438,6 +439,7 @@ def test_a_polygon_that_crosses_itself_is_called_that() -> None:
             assert caught.value.code == "not_simple"
 
 
+# Found: a partition tree could be written into by the arrays of its nodes and fragments.
 def test_nobody_writes_into_a_tree() -> None:
     tree = bsp.PartitionTree(CROSS)
     assert tree.root is not None and not isinstance(tree.root, bsp.Leaf)

@@ -64,6 +64,7 @@ def test_sizes_beyond_the_lattice_are_errors_not_crashes(text: str) -> None:
 # What is left out
 
 
+# Found: infinite numbers and missing files refused the whole script.
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -155,6 +156,7 @@ def test_what_is_not_the_scripts_fault_is_never_dropped(
         csg.loads("cube(", name="part.csg", lenient=True)
 
 
+# Found: errors about scripts quoted line breaks and control characters.
 @pytest.mark.parametrize("word", ['"\n -2 "', '"\x1b[31m"', "\x00"])
 def test_errors_are_one_line_that_prints_whatever_they_quote(word: str) -> None:
     with pytest.raises(b.FormatError) as caught:
@@ -162,6 +164,8 @@ def test_errors_are_one_line_that_prints_whatever_they_quote(word: str) -> None:
     assert str(caught.value).isprintable()
 
 
+# Found: `cube(true)` and `cube(1)` shared one solid, so that the second was lost or no error was
+# told.
 def test_true_is_not_one() -> None:
     assert csg.parse("cube(true);") != csg.parse("cube(1);")
     for text in ("cube(true); cube(1);", "cube(1); cube(true);"):
@@ -172,6 +176,8 @@ def test_true_is_not_one() -> None:
         assert left.volume == 1
 
 
+# Found: what a matrix of a script moved beyond all lattices was an error without a place, which a
+# lenient evaluation did not leave out.
 @pytest.mark.parametrize(
     "move",
     [
@@ -187,12 +193,14 @@ def test_what_is_moved_beyond_all_lattices_is_an_error_of_its_node(move: str) ->
         assert csg.loads(text, lenient=True).volume == 1
 
 
+# Found: of nodes alike that are left out only the first was told.
 def test_each_node_that_is_left_out_is_told_at_its_place() -> None:
     with pytest.warns(csg.CsgWarning) as told:
         csg.loads('sphere(r = "two"); cube(1); sphere(r = "two");', lenient=True)
     assert [str(one.message)[:9] for one in told] == ["<csg>:1:1", "<csg>:1:2"]
 
 
+# Found: `!` counted inside of what `*` takes out.
 def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
     for text in ("*group() { !cube(2); } cube(5);", "*!cube(2); cube(5);"):
         assert csg.loads(text).volume == 125
@@ -200,6 +208,8 @@ def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
         assert csg.loads(csg.dumps(simplified)).volume == 125
 
 
+# Found: `csg.simplified` took groups of both dimensions apart, so that children counted that did
+# not before.
 @pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
 def test_children_of_another_dimension_do_not_count_once_simplified() -> None:
     for text in (
@@ -212,6 +222,7 @@ def test_children_of_another_dimension_do_not_count_once_simplified() -> None:
         assert csg.loads(csg.dumps(simplified)).volume == csg.loads(text).volume == 1
 
 
+# Found: a node marked `!` lost the `$fn`, `$fa` and `$fs` of the nodes around it.
 def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:
     tree = csg.parse("union($fn = 40) { group($fn = 4) { cube(9); !sphere(1); } }")
     alone = csg.loads("sphere(1, $fn = 4);")

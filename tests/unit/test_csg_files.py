@@ -15,6 +15,7 @@ from bspcsg.csg.syntax import arguments
 # Files
 
 
+# Found: `surface()` with a short last row.
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
@@ -34,6 +35,7 @@ def test_rows_of_a_surface_may_be_shorter(tmp_path: Path, rows: str, expected: f
 DRAWING = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
 
 
+# Found: drawings honoured `fill: none`.
 @pytest.mark.parametrize(
     ("shapes", "area"),
     [
@@ -65,6 +67,7 @@ def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
         assert b.load(tmp_path / "all.csg").volume == 8
 
 
+# Found: `import` of a name too long for a file ended in an `OSError`.
 def test_names_that_no_file_can_have(tmp_path: Path) -> None:
     for name in ("a" * 300 + ".stl", "a" * 5000 + ".stl"):
         with pytest.warns(csg.CsgWarning, match="there is no file"):
@@ -89,6 +92,7 @@ def test_files_in_the_scripts_folder_are_read(tmp_path: Path, name: str) -> None
     assert csg.loads(f'surface("{name}");', folder=own).volume == 1
 
 
+# Found: scripts read any file, and errors repeated its first line.
 @pytest.mark.parametrize("node", ["surface", "import"])
 @pytest.mark.parametrize(
     "name", ["../heights.dat", "../none.dat", "link.dat", "parts/../../heights.dat", "/etc/passwd"]
@@ -168,6 +172,7 @@ def test_blocks_of_drawings_have_a_bound(tmp_path: Path, monkeypatch: pytest.Mon
         csg.loads(text.format("bomb"), folder=tmp_path)
 
 
+# Found: drawings that scripts import had arcs of any number of sides, which filled the memory.
 @pytest.mark.parametrize(
     ("sides", "most"), [(70_000, 4_000_000), (1_000_000_000, 4_000_000), (9, 40)]
 )
@@ -208,6 +213,7 @@ def picture(path: Path, pixels: Any, dtype: Any = np.uint8) -> Path:
     return path
 
 
+# Found: `surface()` took no pictures.
 @pytest.mark.parametrize(
     ("pixels", "dtype", "heights"),
     [
@@ -238,6 +244,8 @@ def test_pictures_that_are_none_are_refused(tmp_path: Path) -> None:
         b.surface(picture(tmp_path / "b.png", np.zeros((1500, 1500))))
 
 
+# Found: `import` of an SVG with `dpi = 0` ended in a `ZeroDivisionError`, and its `id` and
+# `layer` did nothing in silence.
 @pytest.mark.parametrize("argument", ["dpi = 0", "dpi = -9", 'id = "a"', 'layer = "a"'])
 def test_what_does_not_count_for_a_drawing_is_told(tmp_path: Path, argument: str) -> None:
     pytest.importorskip("svgelements")

@@ -144,6 +144,7 @@ def test_saving_by_suffix(tmp_path: Path) -> None:
         assert b.load(tmp_path / name).equals(part)
 
 
+# Found: `csg.dump` to a name in `.json` wrote a script that `load` refuses.
 def test_trees_are_written_by_suffix(tmp_path: Path) -> None:
     part = b.cube(2) - b.cube(1)
     for name in ("part.csg", "part.json", "PART.JSON"):
@@ -152,6 +153,7 @@ def test_trees_are_written_by_suffix(tmp_path: Path) -> None:
     assert (tmp_path / "part.json").read_text("utf-8").startswith("{")
 
 
+# Found: `csg.dump` ended in a `UnicodeEncodeError` where a text held half of a character.
 @pytest.mark.parametrize("name", ["part.csg", "part.json"])
 def test_halves_of_characters_are_not_written(tmp_path: Path, name: str) -> None:
     tree = csg.CsgTree((csg.Node("text", (csg.Argument("text", "a\ud800"),)),))

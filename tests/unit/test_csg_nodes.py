@@ -70,6 +70,7 @@ def test_matrices() -> None:
     assert region(f"{flat} square(2);").area == 4
 
 
+# Found: matrices of whole numbers in trees made by hand were refused.
 def test_matrices_of_whole_numbers() -> None:
     rows = ((2, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 5), (0, 0, 0, 1))
     node = csg.Node("multmatrix", (csg.Argument("m", rows),), csg.parse("cube(1);").nodes)
@@ -89,6 +90,7 @@ def test_polyhedra_run_clockwise_but_need_not() -> None:
         assert volume(f"polyhedron({TETRAHEDRON}, {faces});") == pytest.approx(1)
 
 
+# Found: polyhedra that are not closed refused the whole script.
 def test_open_polyhedra_are_errors_or_left_out() -> None:
     text = f"cube(1); polyhedron({TETRAHEDRON}, faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);"
     with pytest.raises(b.InvalidMeshError, match=r"^<csg>:1:10: polyhedron\(\): .*not closed"):
@@ -97,6 +99,7 @@ def test_open_polyhedra_are_errors_or_left_out() -> None:
         assert volume(text, on_invalid="warn") == 1
 
 
+# Found: `hull()` refused polyhedra that only list points, and lost those that are flat.
 @pytest.mark.parametrize("faces", ["[[0, 1, 2, 3]]", "[[0, 1, 2], [3, 0, 1]]"])
 def test_hulls_take_the_corners_of_meshes_that_are_not_closed(faces: str) -> None:
     open_one = f"polyhedron({TETRAHEDRON}, faces = {faces});"

@@ -47,6 +47,7 @@ def test_minkowski_sums() -> None:
     assert volume(f"minkowski() {{ {corner} cube(1); }}") == 5 * (25 - 9)
 
 
+# Found: a sum with an empty operand was empty.
 @pytest.mark.parametrize(
     ("children", "expected"),
     [
@@ -77,6 +78,7 @@ def test_minkowski_in_the_plane_keeps_openscads_rule(children: str, area: float)
     assert region(f"minkowski() {{ {children} }}").area == area
 
 
+# Found: an intersection of both dimensions was the solid.
 @pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
 def test_intersections_of_both_dimensions_are_empty() -> None:
     assert csg.loads("intersection() { cube(5); circle(2); }").is_empty
@@ -96,6 +98,7 @@ def test_minkowski_of_what_is_far_from_convex() -> None:
     assert caught.value.code == "too_large"
 
 
+# Found: `resize` of fewer than three sizes was refused.
 def test_sizes() -> None:
     assert volume("resize(newsize = [4, 0, 0]) cube(2);") == 16
     assert volume("resize([4, 6]) cube(2);") == volume("resize([4, 6, 0]) cube(2);") == 48
@@ -105,6 +108,8 @@ def test_sizes() -> None:
     assert volume("resize(newsize = [2, 0, 0], auto = [1, 1, 1, 1]) cube(1);") == 8
 
 
+# Found: `resize` of a plane figure with `auto` followed the size along z, and `auto` of four
+# entries ended in a `ValueError`.
 def test_sizes_in_the_plane_are_two() -> None:
     assert region("resize(newsize = [4, 6, 9]) square(2);").area == 24
     assert region("resize(newsize = [4, 0, 9], auto = true) square(2);").area == 16
@@ -128,6 +133,7 @@ def test_offsets() -> None:
         assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
 
 
+# Found: offsets of turned unions drew out hairs that rounding leaves.
 @pytest.mark.parametrize("hair", [1e-5, 1e-4])
 @pytest.mark.parametrize("around", ["union()", "group() union()", "union() { union()"])
 def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> None:
@@ -176,6 +182,8 @@ def test_round_pens_have_openscads_corners(tmp_path: Path) -> None:
 # Children of the other dimension, and figures that vanish
 
 
+# Found: a solid before the plane figures of `linear_extrude`, `rotate_extrude` or `offset`, or a
+# figure before the solids of `projection`, left nothing of the others.
 @pytest.mark.parametrize(
     ("text", "size"),
     [
@@ -194,6 +202,8 @@ def test_children_of_the_other_dimension_may_come_first(text: str, size: float) 
     assert len(told) == 1
 
 
+# Found: `offset` of several figures ended in an error where one vanishes, and the process where
+# they are far out.
 def test_figures_that_vanish_add_nothing_to_an_offset() -> None:
     assert region("offset(delta = 1) { square(0); square(1); }").area == 9
     assert region("offset(delta = 1) { square(10); square(1e-5); }").area == 144
@@ -209,11 +219,13 @@ def test_offsets_that_cannot_be_counted_are_refused(text: str) -> None:
     assert refused.value.code == "too_large"
 
 
+# Found: `offset(r=…, delta=…)` took `delta`.
 def test_a_radius_goes_before_a_distance() -> None:
     round_corners = region("offset(r = 2, delta = 1) square(10);")
     assert round_corners.equals(region("offset(r = 2) square(10);"))
 
 
+# Found: turns in parts of a half turn or more were empty or inside out.
 def test_turns_are_divided_below_half_turns() -> None:
     plate = "polygon([[1, 0], [2, 0], [2, 1], [1, 1]]);"
     assert volume(f"rotate_extrude(angle = 200, $fn = 3) {plate}") > 2
@@ -222,6 +234,7 @@ def test_turns_are_divided_below_half_turns() -> None:
             b.revolve([(1, 0), (2, 0), (2, 1)], angle=angle, segments=1)
 
 
+# Found: plane figures were taken away one by one, for the square of their number.
 def test_many_plane_figures_are_taken_away_at_once() -> None:
     def rest(count: int) -> b.Region:
         circles = "".join(f"{moved(2 * k, 0, 0)} circle(r=1, $fn=24);" for k in range(count))

@@ -97,6 +97,8 @@ def test_inside_out() -> None:
     assert (found.signed_volume, found.volume) == (-1.0, 0.0)
 
 
+# Found: `check` called a file a solid where one body of several was inside out and left out, and
+# told of overlaps that were none.
 def test_one_body_inside_out() -> None:
     sound = cuboid((-1, -1, -1), (2, 2, 2))
     found = diagnose(RawMesh(*joined(sound, moved(flipped(cube()), (5, 0, 0)))))

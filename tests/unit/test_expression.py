@@ -161,6 +161,8 @@ def test_the_last_operation_leaves_a_common_transform_out() -> None:
     assert np.array_equal(operation.result.bounds, [[0, 0, 0], [2, 2, 2]])
 
 
+# Found: half-spaces that were turned, complemented and looked at some 200 times ended in a
+# `RecursionError`.
 def test_operands_of_unbounded_sets_move_at_any_depth() -> None:
     """What was made of half-spaces has no mesh: it moves by its operands, and those by theirs."""
     solid = plane = b.half_space((1, 2, 3), 0.5)

@@ -57,6 +57,9 @@ def test_holes_lean_into_the_material() -> None:
     assert solid.genus == 1
 
 
+# Found: scaled extrusions of contours that cross, or with unequal scales, were vouched for though
+# their meshes crossed themselves, and had wrong or negative volumes; flat cones thinner than the
+# lattice were not empty.
 def test_contours_that_cross_are_united_as_they_shrink() -> None:
     two = [[(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 1), (3, 1), (3, 3), (1, 3)]]
     bow = [(0, 0), (2, 2), (2, 0), (0, 2)]
@@ -65,6 +68,7 @@ def test_contours_that_cross_are_united_as_they_shrink() -> None:
     assert b.extrude(bow, 1, scale=0.5).volume == pytest.approx(1 * 7 / 12)
 
 
+# Found: walls of extrusions that shrink unequally crossed each other.
 def test_walls_that_shrink_unequally_are_united() -> None:
     corners = [(10, 0), (0, 10), (-10, 0), (0, -10)]
     fine = [
@@ -116,6 +120,7 @@ def test_the_empty_region_makes_the_empty_solid() -> None:
     assert b.Region.empty().extrude(3, twist=90, taper=10).is_empty
 
 
+# Found: `extrude` and `revolve` of the empty region ended in a `ValueError`.
 def test_nothing_rises_to_nothing() -> None:
     nothing = b.cube(1).slice(9)
     assert nothing.is_empty

@@ -87,6 +87,7 @@ def test_good_arguments_are_taken(name: str) -> None:
     call(**good)
 
 
+# Found: files and scripts took words that mean nothing, as `on_invalid="repiar"`, in silence.
 @pytest.mark.parametrize("name", ROWS)
 def test_bad_arguments_are_refused_at_once(name: str) -> None:
     assert_refused_at_once(name, ROWS[name], {})

@@ -15,6 +15,7 @@ from support.shapes import cube
 FORMS = [(suffix, False) for suffix in FORMATS] + [(".stl", True), (".ply", True)]
 
 
+# Found: it could not read its own empty file.
 @pytest.mark.parametrize(("suffix", "text"), FORMS)
 def test_save_and_load(tmp_path: Path, suffix: str, text: bool) -> None:
     path = tmp_path / f"x{suffix}"
@@ -46,6 +47,8 @@ def test_a_mesh_that_lost_its_faces_is_not_the_empty_set(tmp_path: Path, suffix:
     assert caught.value.code == "empty_mesh"
 
 
+# Found: an assembly without volume, or a mesh without vertices, was written as an OBJ that cannot
+# be read.
 def test_an_obj_of_nothing_is_not_written(tmp_path: Path) -> None:
     path = tmp_path / "x.obj"
     nothing = RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
@@ -57,6 +60,7 @@ def test_an_obj_of_nothing_is_not_written(tmp_path: Path) -> None:
     assert of_mesh.value.code == of_assembly.value.code == "empty" and not path.exists()
 
 
+# Found: an empty mesh of trimesh was not the empty set.
 def test_meshes_of_other_libraries() -> None:
     manifold3d, trimesh = pytest.importorskip("manifold3d"), pytest.importorskip("trimesh")
     meshes: list[Any] = [trimesh.Trimesh(), manifold3d.Manifold(), ([], [])]

@@ -191,6 +191,8 @@ def test_real_files(shared_meshes: Path) -> None:
         assert found == (int(row["n_vertices"]), int(row["n_triangles"])), row["file"]
 
 
+# Found: writing to `/dev/stdout` and other open pipes by name was refused as “No such file or
+# directory”.
 @pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="needs names of open files")
 def test_open_pipes_are_no_ordinary_files() -> None:
     read_end, write_end = os.pipe()

@@ -283,6 +283,7 @@ def test_strips_and_fans_of_two_vertices_have_no_triangle(tmp_path: Path, mode: 
     assert len(read(path).faces) == 12
 
 
+# Found: GLB lost objects that share a name.
 def test_names_are_kept_as_they_are(tmp_path: Path) -> None:
     names = ("lid", "lid", "", "lid_1", "unnamed 1", 'a\nb\0"')
     bodies = [moved(cube(), (3 * number, 0, 0)) for number in range(len(names))]

@@ -103,6 +103,7 @@ def test_replacements_that_are_not_there(
     refusal(tmp_path / "x.glb", scene.bytes(), code)
 
 
+# Found: GLB: an accessor that nobody reads refused the file if it was sparse.
 def test_shapes_that_it_could_take_are_dropped_by_name(tmp_path: Path) -> None:
     """Blender stores only the corners that move, on no others: nobody needs to read them."""
     scene = scene_of()
@@ -113,6 +114,8 @@ def test_shapes_that_it_could_take_are_dropped_by_name(tmp_path: Path) -> None:
     assert volume(mesh) == pytest.approx(8) and mesh.dropped == ("morph targets",)
 
 
+# Found: an accessor of a GLB of which only some elements are given, the others being zeros, was
+# refused.
 def test_what_has_no_data_is_zeros_but_for_what_replaces_them(tmp_path: Path) -> None:
     scene = scene_of()
     points = np.asarray(cube(2.0)[0], "f4")
@@ -128,6 +131,7 @@ def test_what_has_no_data_is_zeros_but_for_what_replaces_them(tmp_path: Path) ->
     refusal(tmp_path / "x.glb", scene.bytes(), "syntax")
 
 
+# Found: a GLB that needs an extension that is not known was read without a word.
 @pytest.mark.parametrize(
     ("extension", "is_read"),
     [("KHR_materials_unlit", True), ("KHR_texture_basisu", True), ("CESIUM_RTC", False)],
@@ -141,6 +145,8 @@ def test_a_file_that_needs_an_extension(tmp_path: Path, extension: str, is_read:
         assert extension in refusal(tmp_path / "x.glb", scene.bytes(), "unsupported")
 
 
+# Found: a GLB with its data as text in the description was refused because it lay in another
+# file.
 def test_data_written_as_text_is_refused_as_such(tmp_path: Path) -> None:
     scene = scene_of()
     data = scene.bytes()
@@ -151,6 +157,7 @@ def test_data_written_as_text_is_refused_as_such(tmp_path: Path) -> None:
     assert volume(read(path)) == pytest.approx(8)
 
 
+# Found: GLB: a mesh that an extension shows at many places was read at one, in silence.
 def test_a_mesh_at_many_places(tmp_path: Path) -> None:
     scene = scene_of()
     scene.node["scale"] = [0.5, 0.5, 0.5]
@@ -201,6 +208,8 @@ def test_places_that_do_not_fit(
     refusal(tmp_path / "x.glb", scene.bytes(), code)
 
 
+# Found: GLB: texture coordinates in bytes were 255 times too large; those of another set were
+# taken for those of the picture.
 def test_texture_coordinates_in_bytes_and_the_set_that_a_material_means(tmp_path: Path) -> None:
     scene = scene_of()
     first, second = np.full((8, 2), 51, "u1"), np.full((8, 2), 0.25, "f4")
@@ -227,6 +236,7 @@ def test_what_is_not_read_is_named(tmp_path: Path) -> None:
     assert read_back(scene, tmp_path).dropped == ("further colours", "tangents", "weights")
 
 
+# Found: GLB: a picture in WebP or KTX2, or one in another file, was lost in silence.
 @pytest.mark.parametrize(
     ("texture", "is_kept"),
     [

@@ -41,6 +41,7 @@ def test_references(tmp_path: Path, face: str) -> None:
     assert raw.name == "thing"
 
 
+# Found: the name of an OBJ object that ends in a backslash swallowed the line after it.
 @pytest.mark.parametrize(
     ("line", "name"),
     [("o C:\\tmp\\\n", "C:\\tmp\\"), ("o a\\\nb\n", "a b"), ("o a \\\nv\n", "a v")],
@@ -69,6 +70,7 @@ def test_negative_references_to_texture_and_normal_count_from_where_they_stand(
     np.testing.assert_array_equal(corner["normal"][:, 0, 0], [0, 5])
 
 
+# Found: an OBJ face whose first corner names no texture lost those of the others.
 def test_the_first_corner_may_name_no_texture(tmp_path: Path) -> None:
     raw = read_text(tmp_path / "x.obj", f"{SQUARE}vt 7 8\nf 1 2/1 3/1\n")
     uv = held(raw.attributes, "said").corner["uv"]
@@ -162,6 +164,8 @@ def colors(raw: RawMesh) -> list[tuple[float, ...]]:
 RED, BLUE = (1, 0, 0), (0, 0, 1)
 
 
+# Found: materials of an OBJ whose names hold a `#` or blanks beyond ASCII were mixed up or lost
+# in silence.
 @pytest.mark.parametrize(
     ("first", "second"),
     [
@@ -178,17 +182,20 @@ def test_materials_are_found_by_names_of_any_kind(first: str, second: str) -> No
     assert not raw.dropped and not raw.findings
 
 
+# Found: names of materials in Latin-1 became one name.
 def test_names_that_are_no_utf_8_stay_apart() -> None:
     library = "newmtl \xe4\nKd 1 0 0\nnewmtl \xf6\nKd 0 0 1\n".encode("latin-1")
     text = f"mtllib m.mtl\n{SQUARE}usemtl \xe4\nf 1 2 3\nusemtl \xf6\nf 1 3 4\n".encode("latin-1")
     assert colors(decoded("x.obj", text, ".obj", {"m.mtl": library})) == [RED, BLUE]
 
 
+# Found: a library of materials lost its first by a byte order mark.
 def test_a_byte_order_mark_hides_no_material() -> None:
     library = "\ufeffnewmtl a\nKd 1 0 0\n".encode()
     assert colors(painted(["a", "a"], {"m.mtl": library})) == [RED, RED]
 
 
+# Found: a picture that is neither PNG nor JPEG took the material's colour with it, in silence.
 def test_a_picture_of_another_kind_leaves_the_colour() -> None:
     library = b"newmtl a\nKd 1 0 0\nd .5\nmap_Kd t.tga\n"
     raw = painted(["a", "a"], {"m.mtl": library, "t.tga": bytes(40)})
@@ -196,6 +203,8 @@ def test_a_picture_of_another_kind_leaves_the_colour() -> None:
     assert raw.dropped == ("pictures that are neither PNG nor JPEG",)
 
 
+# Found: `Kd 0.5`, colours above 1 and opacities that are none made a material of an OBJ plain and
+# took its picture.
 @pytest.mark.parametrize(
     ("color", "meant"),
     [
@@ -217,6 +226,7 @@ def test_colours_as_libraries_write_them(color: str, meant: tuple[float, ...]) -
     assert bool(raw.dropped) == (meant == (0.8, 0.8, 0.8))
 
 
+# Found: an `mtllib` of several files was taken for one.
 @pytest.mark.parametrize(
     "library", ["m.mtl n.mtl", "n.mtl m.mtl", "m.mtl # n.mtl", "my library.mtl"]
 )
@@ -233,6 +243,7 @@ def test_libraries_that_are_missing_are_told_one_by_one() -> None:
     assert "“my pic.png”, “n.mtl”" in finding.message
 
 
+# Found: `map_Kd` of a name with a blank was cut to its last word.
 @pytest.mark.parametrize("words", ["my pic.png", "-s 1 1 1 my pic.png", "-clamp on pic.png"])
 def test_a_picture_is_found_by_its_whole_name(words: str) -> None:
     files = {"m.mtl": f"newmtl a\nmap_Kd {words}\n".encode(), "my pic.png": PIXEL}
@@ -241,6 +252,7 @@ def test_a_picture_is_found_by_its_whole_name(words: str) -> None:
     assert held(raw.attributes, "said").materials["a"].texture == PIXEL
 
 
+# Found: materials whose names OBJ writes alike became one.
 def test_materials_whose_names_become_one_get_names_of_their_own(tmp_path: Path) -> None:
     mesh = b.cube(1).to_mesh()
     names = ["a#", "a_", "a_ (2)", "a b", "a\u00a0b", "\n"]
@@ -274,6 +286,7 @@ def color_in(path: Path) -> tuple[float, ...]:
     return b.load(path).to_mesh().materials["a"].color[:3]
 
 
+# Found: an OBJ was replaced although a file beside it could not be written.
 @pytest.mark.parametrize("folder", ["q.mtl", "q-0.png"])
 def test_an_obj_stays_where_a_file_beside_it_cannot_be(tmp_path: Path, folder: str) -> None:
     (tmp_path / folder).mkdir()
@@ -284,6 +297,7 @@ def test_an_obj_stays_where_a_file_beside_it_cannot_be(tmp_path: Path, folder: s
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([folder, "q.obj"])
 
 
+# Found: `part 1.obj` replaced the materials of `part_1.obj`.
 def test_libraries_of_several_objs_stay_apart(tmp_path: Path) -> None:
     stems = ["part_1", "part 1", "part#1", "part~201", "part\u00a01", "part\\1"]
     for k, stem in enumerate(stems):
@@ -293,6 +307,7 @@ def test_libraries_of_several_objs_stay_apart(tmp_path: Path) -> None:
     assert "mtllib part~201.mtl\n" in (tmp_path / "part 1.obj").read_text()
 
 
+# Found: an OBJ written through a link had its materials in the link's folder.
 def test_a_link_and_its_obj_have_one_library(tmp_path: Path) -> None:
     (tmp_path / "in").mkdir()
     (tmp_path / "link.obj").symlink_to(tmp_path / "in" / "x.obj")
@@ -301,6 +316,8 @@ def test_a_link_and_its_obj_have_one_library(tmp_path: Path) -> None:
     assert color_in(tmp_path / "in" / "x.obj") == color_in(tmp_path / "link.obj") == BLUE
 
 
+# Found: an OBJ in bytes, in an archive or on standard input took materials and pictures from the
+# working folder.
 def test_bytes_have_nothing_beside_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     of_color((1, 0, 0)).save(tmp_path / "x.obj")
     monkeypatch.chdir(tmp_path)
@@ -313,6 +330,7 @@ def test_bytes_have_nothing_beside_them(tmp_path: Path, monkeypatch: pytest.Monk
         assert len(loads(file, "obj").to_mesh().materials) == 1
 
 
+# Found: names of objects in Latin-1 became one name in OBJ and STL.
 def test_names_of_objects_that_are_no_utf_8_stay_apart() -> None:
     text = f"{SQUARE}o \xe4\nf 1 2 3\no \xf6\nf 1 3 4\n".encode("latin-1")
     assert decoded("x.obj", text, ".obj").objects == (("ä", 1), ("ö", 1))

@@ -82,6 +82,7 @@ def test_no_faces_is_a_mesh_of_none(tmp_path: Path) -> None:
     assert len(read_text(tmp_path / "x.off", "OFF\n0 0 0\n").faces) == 0
 
 
+# Found: an OFF whose numbers are not on a line for each vertex and face was said to be cut off.
 @pytest.mark.parametrize("between", [" ", "\n", "\n\n# x\n"])
 @pytest.mark.parametrize("head", ["OFF 6 1 0", "OFF\n6 1 0", "6 1 0"])
 def test_numbers_may_stand_on_any_lines(tmp_path: Path, head: str, between: str) -> None:

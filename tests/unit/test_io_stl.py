@@ -159,6 +159,8 @@ def test_beyond_single_precision(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+# Found: the colour of the whole in the header of a binary STL was lost in silence, and became
+# part of the name.
 @pytest.mark.parametrize("title", [b"", b"part "])
 def test_the_colour_in_a_header_is_told(tmp_path: Path, title: bytes) -> None:
     path = tmp_path / "x.stl"

@@ -108,6 +108,8 @@ def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
     refusal(tmp_path / "deep.vtu", deep + "</VTKFile>" * depth, "syntax")
 
 
+# Found: two threads that read VTK files took the output of the process away; DXF written by
+# several had other bytes.
 def test_threads_may_read_and_write_at_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -21,6 +21,8 @@ def evaluated(solid: Solid) -> Solid:
     return solid
 
 
+# Found: solids of very different sizes, and planes, sections and points beyond the lattice, were
+# refused.
 @pytest.mark.parametrize("prepare", [lambda solid: solid, evaluated])
 def test_small_and_large_solids_meet_on_one_lattice(prepare: Callable[[Solid], Solid]) -> None:
     small = prepare(CUBE - b.cube(0.5))
@@ -32,6 +34,8 @@ def test_small_and_large_solids_meet_on_one_lattice(prepare: Callable[[Solid], S
     assert (LARGE ^ small).exact_volume() == LARGE.exact_volume() - inside.exact_volume()
 
 
+# Found: a mesh on a lattice that is too coarse for it, as by `union --pitch 22`, was called one
+# without area, and nothing named the lattice.
 def test_a_lattice_that_is_too_coarse_for_a_mesh_is_named() -> None:
     with pytest.raises(b.InvalidMeshError, match=r"at the pitch 10\^22"):
         Solid(*CUBE.to_mesh(), pitch=22)
@@ -168,6 +172,8 @@ def test_random_small_and_large_solids_agree_with_their_points(seed: int) -> Non
     assert np.array_equal(found, [p | q, p & q, p & ~q])
 
 
+# Found: regions of very different sizes could not be compared or combined, and splits by planes
+# beyond the lattice were refused.
 def test_regions_of_very_different_sizes_combine_where_no_corner_moves() -> None:
     large, small = b.Region.rectangle(1e9, 1e9), b.Region.rectangle(1, 1)
     assert small != large and small <= large and not small.isdisjoint(large)

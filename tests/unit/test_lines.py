@@ -16,6 +16,8 @@ def slanted_prism() -> b.Solid:
     return b.Region.polygon(corners).extrude(1)
 
 
+# Found: lines that are the same modulo 2⁶¹ − 1 were taken for one, and one line for two, which
+# ended in an `InternalError`.
 @pytest.mark.parametrize("operation", [b.Solid.__or__, b.Solid.__sub__, b.Solid.__and__])
 def test_sides_that_a_prime_takes_for_one_line(operation: object) -> None:
     prism, cube = slanted_prism(), b.cube(0.25).translate(1, 0.5, 0.8)

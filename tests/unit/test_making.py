@@ -121,6 +121,8 @@ def test_copies_are_bounded() -> None:
             call()
 
 
+# Found: `linear_pattern`, `grid` and `align` computed their shifts in doubles, so that copies by
+# short decimals were rounded.
 def test_copies_by_short_decimals_are_exact() -> None:
     part = b.cube(1) & b.half_space((3, 5, 7), 4)
     row = b.linear_pattern(part, 4, (1.1, 0, 0))
@@ -134,6 +136,7 @@ def test_copies_by_short_decimals_are_exact() -> None:
         b.linear_pattern(part, 4, (1e308, 0, 0))
 
 
+# Found: arcs missed the axes by rounding, so that `revolve` refused some of them.
 def test_arcs_end_on_the_axes() -> None:
     assert b.arc((0, 0), 1, 270, 450)[[0, -1]].tolist() == [[0, -1], [0, 1]]
     balls = [b.revolve(b.arc((0, 0), 1, first, first + 180)) for first in (-90, 270)]

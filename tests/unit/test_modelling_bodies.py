@@ -151,6 +151,8 @@ def test_parts_of_a_solid_the_largest_first() -> None:
     assert one.decompose() == [one]
 
 
+# Found: `decompose` ended in an error, or returned empty parts, where a part is thinner than a
+# step of the lattice.
 @pytest.mark.parametrize("seed", range(150))
 def test_no_part_is_lost_on_a_coarse_lattice(seed: int) -> None:
     """Of parts thinner than a step of it rounding could leave nothing."""
@@ -188,6 +190,7 @@ def test_bad_parameters_are_refused(verb: Callable[[b.Solid], Any]) -> None:
 # Placing
 
 
+# Found: `rotate(x=, y=, z=)` was missing.
 def test_rotations_by_name() -> None:
     body = b.box((1, 2, 3))
     assert body.rotate(z=30) == body.rotate(30)
@@ -266,6 +269,8 @@ def test_round_edges() -> None:
     assert b.cube(1).rounded(0.6).is_empty
 
 
+# Found: `offset(0)` passed by its `segments`, and `offset(1e-25)` told of a mesh that nobody
+# gave.
 @pytest.mark.parametrize(
     "verb",
     [
@@ -287,6 +292,7 @@ def test_offsets_refuse(verb: Callable[[b.Solid], Any]) -> None:
         b.half_space((0, 0, 1)).offset(1)
 
 
+# Found: hulls, sums, offsets, twists were for scripts only.
 def test_all_that_methods_ask_for_is_there() -> None:
     for home in _HOMES.values():
         module, name = home.split(":")
@@ -294,6 +300,7 @@ def test_all_that_methods_ask_for_is_there() -> None:
     assert set(_HOMES) == set(get_args(Convenience))
 
 
+# Found: sums and offsets filled small holes of large bodies in silence.
 def test_small_holes_in_large_bodies_count() -> None:
     # By volume, the body is its hull but for a part in four thousand millions.
     block = b.cube(1000) - b.box(0.5, 0.5, 2).translate(500, 500, 999)

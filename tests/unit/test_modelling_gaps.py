@@ -82,6 +82,8 @@ def random_tetrahedron(random: Random) -> b.Solid:
             return b.Solid(*tetrahedron(corners))
 
 
+# Found: `intersects` and `min_gap` said that pieces which share a slanted wall do not touch (17
+# of 55), by rounded corners.
 @pytest.mark.parametrize("seed", range(60))
 def test_pieces_that_share_a_slanted_wall_touch_though_corners_are_rounded(seed: int) -> None:
     random = Random(seed)
@@ -172,6 +174,8 @@ def test_squares_of_small_and_large_gaps() -> None:
     assert Fraction(b.cube(1e6).min_gap(b.cube(1e6).translate(3e6, 0, 0))) == 2_000_000
 
 
+# Found: `closest_points` of solids whose common part is too thin for doubles ended in an
+# `IndexError`.
 def test_what_is_common_may_be_too_thin_for_doubles() -> None:
     far = 8e6
     offset = 32_000_000 + Fraction(1, 10**9)

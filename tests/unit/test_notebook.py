@@ -62,6 +62,7 @@ def pixels_of(data: bytes | None) -> "np.ndarray[tuple[int, ...], np.dtype[np.ui
         return np.asarray(image.convert("RGBA"))
 
 
+# Found: there was no `_repr_png_`.
 @pytest.mark.parametrize(
     "shown", [b.cube(2) - b.sphere(r=1.2, segments=16), b.Region([(0, 0), (4, 0), (0, 3)])]
 )

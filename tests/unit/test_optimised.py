@@ -24,8 +24,9 @@ SOME = [
 ]
 
 
+# Found: `python -O` removed what an `assert` did.
 @pytest.mark.timeout(600)
-@pytest.mark.parametrize("level", [pytest.param("-O", marks=pytest.mark.slow), "-OO"])
+@pytest.mark.parametrize("level", [pytest.param("-O", marks=pytest.mark.deep), "-OO"])
 def test_the_suite_passes_without_asserts_and_docstrings(level: str) -> None:
     files = [str(REPOSITORY / "tests" / name) for name in SOME]
     # pytest rewrites the asserts of tests, and warns that it does not rewrite those of plugins.

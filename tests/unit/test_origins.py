@@ -38,6 +38,7 @@ def test_triangles_name_faces_that_hold_their_centres(axis: int) -> None:
     assert len(centres) > 1500 and shares(named, centres).min() > -1e-6
 
 
+# Found: plates with many holes cost their square where their mesh is made.
 def test_many_holes_cost_each_alike() -> None:
     times = {}
     for rows in (15, 60):

@@ -67,6 +67,8 @@ def test_outlines_of_many_corners_that_touch_or_cross_keep_their_edges() -> None
         assert found == pytest.approx(sum(signed_area(contour) for contour in contours))
 
 
+# Found: outlines of thousands of holes or teeth cost their square where they become triangles,
+# and holes 2 ms each where they are found.
 def test_many_corners_cost_each_alike() -> None:
     for few, many in ((plate(25), plate(50)), (comb(2000), comb(8000))):
         least, most = (seconds(partial(triangulate, one), 3) for one in (few, many))

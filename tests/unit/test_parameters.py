@@ -83,6 +83,8 @@ def test_parameters_have_an_error_of_their_own() -> None:
     mesh = refusal(lambda: b.Solid([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
     assert type(mesh) is b.InvalidMeshError
 
+    # Found: `pitch`, `threads` of other types were raw errors.
+
 
 @pytest.mark.parametrize("make", PITCHED.values(), ids=PITCHED)
 class TestPitch:
@@ -90,6 +92,8 @@ class TestPitch:
     def test_whole_numbers_of_any_type(self, make: Callable[[Any], Any], pitch: Any) -> None:
         assert make(pitch).pitch == -6
 
+    # Found: `pitch=1.5` became 1.
+    # Found: every bad number was an error about a mesh.
     @pytest.mark.parametrize("pitch", [1e-9, 1.5, True, np.True_, "-9", b"-9", [1], np.nan, np.inf])
     def test_anything_else_is_refused(self, make: Callable[[Any], Any], pitch: Any) -> None:
         error = refusal(lambda: make(pitch))
@@ -129,6 +133,7 @@ def test_large_seeds_keep_all_their_digits() -> None:
     assert seed_number(2**64 + 5) == 5
 
 
+# Found: `margin=-5` became 0, and NaN was told twice.
 @pytest.mark.parametrize("call", WITH_MARGIN.values(), ids=WITH_MARGIN)
 def test_margins(call: Callable[[Any], Any]) -> None:
     for margin in (-5, -1e-300, np.nan, np.inf, "1", True):
@@ -237,6 +242,8 @@ COORDINATES: dict[str, tuple[Any, Callable[[Any], object]]] = {
 }
 
 
+# Found: imaginary parts, dates, truth values and entries that are masked out became coordinates
+# in silence.
 @pytest.mark.parametrize("kind", NO_NUMBERS)
 @pytest.mark.parametrize("name", COORDINATES)
 def test_coordinates_are_numbers(name: str, kind: str) -> None:

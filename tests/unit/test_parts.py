@@ -69,6 +69,9 @@ def grooved(depth: float, tags: Any = None) -> b.Solid:
     return (block if tags is None else block.tagged(**tags)) - groove.translate(0, 5, 0)
 
 
+# Found: parts that touch along an edge in the middle of a face were one for `decompose`,
+# `components` and `genus` (of 1 000 prisms over random triangles 630 meshes did not tell them
+# apart).
 def test_a_face_that_goes_on_across_an_edge_joins_no_parts() -> None:
     pinched, whole = grooved(4), grooved(3.9)
     assert [part.volume for part in pinched.decompose()] == pytest.approx([pinched.volume / 2] * 2)
@@ -150,6 +153,7 @@ def cone(sides: int) -> b.Solid:
     return b.Solid(np.concatenate([[[0, 0, 0], [0, 0, 10]], rim]), np.concatenate([base, mantle]))
 
 
+# Found: the mates of edges cost the square of the faces around a vertex, deaf to signals.
 def test_faces_around_a_corner_cost_each_alike() -> None:
     times = {}
     for sides in (4_000, 16_000):

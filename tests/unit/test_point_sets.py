@@ -87,6 +87,7 @@ def same(kind: Kind) -> list[Any]:
     ]
 
 
+# Found: regions were equal by identity only.
 @every_kind
 def test_equal_sets_are_equal_however_they_were_made(kind: Kind) -> None:
     for a in same(kind):
@@ -231,6 +232,7 @@ def test_partition_trees_are_equal_if_facets_and_cuts_are() -> None:
     assert len({one, other}) == 1
 
 
+# Found: `() in` a set raised an `IndexError`.
 @every_kind
 def test_nothing_is_no_point(kind: Kind) -> None:
     with pytest.raises(b.InvalidParameterError, match="A point has coordinates"):

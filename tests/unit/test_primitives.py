@@ -241,6 +241,7 @@ def test_parameters_that_make_no_solid_are_refused(name: str) -> None:
     assert len(str(caught.value)) > 10
 
 
+# Found: half-spaces took spans of time for numbers.
 @pytest.mark.parametrize(
     "normal", [(0, 0, 0), (NAN, 0, 1), (1, 2), "up", 3, (0, 0, np.timedelta64(3))]
 )
@@ -256,6 +257,7 @@ def test_half_spaces_take_any_length_of_normal() -> None:
     assert (box & b.half_space((0, 0, 1e-300), 0)).volume == 4
 
 
+# Found: `cylinder(d=)`, `box(1, 2, 3)` were missing.
 def test_sizes_as_people_type_them() -> None:
     assert b.box(1, 2, 3) == b.box((1, 2, 3)) == b.box(size=[1, 2, 3])
     assert b.box(1, 2, 3, center=True) == b.box((1, 2, 3), True) == b.cube((1, 2, 3), center=True)

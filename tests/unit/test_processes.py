@@ -29,6 +29,8 @@ def ran(name: str, folder: Path, patience: float = 100, **environment: str) -> t
     return ended.stdout, ended.stderr
 
 
+# Found: a process that was forked after use waited for ever.
+# Found: a process that was forked after use waited for ever.
 @unix
 @pytest.mark.parametrize("name", ["fork", "preload", "with-fork", "with-forkserver"])
 def test_a_process_forks_after_use(name: str, tmp_path: Path) -> None:
@@ -74,19 +76,23 @@ def test_the_number_of_threads_means_the_same_in_a_child(count: str, tmp_path: P
 
 
 @unix
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.timeout(900)
 def test_many_jobs_through_a_forked_pool(tmp_path: Path) -> None:
     ran("many", tmp_path, 850)
 
 
 @linux
-@pytest.mark.slow
+@pytest.mark.deep
 @pytest.mark.timeout(900)
 def test_small_operations_leave_no_memory_behind(tmp_path: Path) -> None:
     grown, _ = ran("memory", tmp_path, 850)
     assert float(grown) < 20
 
 
+# Found: a symmetric difference of many operands in one place went a call deeper for each, to the
+# end of the stack.
+# Found: a symmetric difference of many operands in one place went a call deeper for each, to the
+# end of the stack.
 def test_many_symmetric_differences_need_no_deep_stack(tmp_path: Path) -> None:
     ran("stack", tmp_path)

@@ -30,6 +30,8 @@ def work_until(done: Callable[[], Any]) -> None:
             return
 
 
+# Found: booleans said nothing for minutes.
+# Found: calls told no progress and could not be stopped.
 def test_long_calls_tell_how_long_they_take() -> None:
     told: list[float] = []
     with b.progress(told.append, every=0.05):

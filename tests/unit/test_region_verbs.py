@@ -169,6 +169,7 @@ def test_simpler_outlines_stay_within_the_tolerance(tolerance: float) -> None:
     assert {tuple(p) for loop in after for p in loop} <= {tuple(p) for loop in before for p in loop}
 
 
+# Found: `Region.simplify` of a region that is unbounded on both sides ended in a RecursionError.
 def test_what_simplifying_leaves_as_it_is() -> None:
     assert RING.simplify(0) == RING and RING.simplify(0.1) == RING
     assert Region.empty().simplify(1).is_empty and Region.full().simplify(1).is_full

@@ -55,6 +55,8 @@ def test_duplicates_and_flat_triangles_go() -> None:
     assert len(made.mesh.faces) == 12 and diagnose(made.mesh).is_solid
 
 
+# Found: `repair` of files without triangles, and of holes of 2^31 edges and more, ended in a
+# message of pymeshlab's binding.
 def test_nothing_cannot_be_repaired() -> None:
     with pytest.raises(InvalidMeshError, match=r"scan: there is no triangle in it") as caught:
         repair(RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64), "scan"))

@@ -75,6 +75,7 @@ if early == 9: raise ValueError("line 17")
 """
 
 
+# Found: `-D` did nothing where the script assigns the name, and took any name.
 @pytest.mark.parametrize(
     ("defines", "volume", "left"),
     [
@@ -155,6 +156,8 @@ def test_show_does_nothing_elsewhere() -> None:
         b.show(object())
 
 
+# Found: `run` took a script that gives up by `sys.exit("…")` for done, and lost a `result` before
+# `sys.exit(0)`.
 def test_scripts_may_exit_with_a_result(tmp_path: Path) -> None:
     for end in ("sys.exit()", "sys.exit(0)", "sys.exit(None)"):
         text = f"import sys\nimport bspcsg as b\nresult = b.cube(2)\n{end}\n"
@@ -169,6 +172,8 @@ def test_scripts_that_give_up(tmp_path: Path, code: str, says: str) -> None:
     assert failed.value.code == "script_failed"
 
 
+# Found: errors of scripts that run held the line breaks and control characters of what these
+# said.
 @pytest.mark.parametrize("end", ["sys.exit({})", "raise ValueError({})"])
 def test_errors_of_scripts_are_one_line(tmp_path: Path, end: str) -> None:
     for words in ("'first\\n  \\x1b[3msecond'", "''"):
@@ -177,12 +182,15 @@ def test_errors_of_scripts_are_one_line(tmp_path: Path, end: str) -> None:
         assert failed.value.message.isprintable()
 
 
+# Found: an error of syntax in a module was told at a line of the script that imports it.
 def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) -> None:
     Path(tmp_path, "broken.py").write_text("x = 1\n\n\ndef f(:\n    pass\n")
     with pytest.raises(b.FormatError, match=r"part.py:2: SyntaxError.*broken.py, line 4"):
         b.run_script(script(tmp_path, "x = 1\nimport broken\n"))
 
 
+# Found: `run_script` took texts for lists of words, and times and values that make no sense ended
+# in raw errors of Python.
 @pytest.mark.parametrize(
     "wrong",
     [

@@ -114,6 +114,8 @@ def test_what_is_used(tmp_path: Path, name: str) -> None:
     assert is_box(region_of(tmp_path, body), box)
 
 
+# Found: SVG: symbols, masks and markers were drawn where they are declared; views and symbols lay
+# elsewhere.
 @pytest.mark.parametrize(
     "declared", ["symbol", "mask", "marker", "pattern", "clipPath", "defs", "foreignObject"]
 )
@@ -158,6 +160,8 @@ def uses_of_uses(levels: int, times: int) -> str:
     return f'<defs>{body}</defs><use href="#g{levels}"/>'
 
 
+# Found: SVG and DXF: uses of uses and blocks in blocks could take forever; a path without data
+# refused the file.
 def test_uses_that_show_too_much_are_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -22,6 +22,7 @@ def box(region: Region) -> np.ndarray:
     return region.bounds
 
 
+# Found: text, sweeps, lofts and assemblies were missing.
 def test_letters_have_the_size_of_the_design() -> None:
     # The I of Liberation Sans: from 189 to 380 and 0 to 1409 of 2048 to the em.
     unit = 10 * 100 / 72 / 2048
@@ -195,6 +196,7 @@ def figure(script: str) -> Region:
     return found
 
 
+# Found: scripts with `text()` were refused.
 def test_text_in_scripts_stands_as_close_as_openscads() -> None:
     # OpenSCAD 2021.01 measures advances in 1600ths of the size, and glyphs in 1562.5ths.
     own, plain = box(figure('text("HH");')), box(b.text("HH"))
@@ -202,6 +204,7 @@ def test_text_in_scripts_stands_as_close_as_openscads() -> None:
     assert (plain - own)[1, 0] == pytest.approx(step * (1 - 1000 / 1024), abs=2e-3)
 
 
+# Found: `text` in a script lost the `$fn`, `$fa` and `$fs` of the nodes around it.
 def test_text_takes_the_special_variables_around_it() -> None:
     coarse = figure('text("O", $fn = 3);')
     assert figure('group($fn = 3) { text("O"); }') == coarse != figure('text("O");')

@@ -42,6 +42,7 @@ def failure(program: str, folder: Path, **more: str) -> str:
     return done.stderr
 
 
+# Found: tracebacks carried seven frames of ours.
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_tracebacks_end_at_the_user(program: str, tmp_path: Path) -> None:
     said = failure(program, tmp_path)
@@ -93,6 +94,7 @@ def test_public_functions_are_the_ones_of_their_modules() -> None:
     assert b.union.__name__ == "union" and (b.Solid.__or__.__doc__ or "").startswith("Union")
 
 
+# Found: errors told twenty digits.
 def test_messages_round_numbers() -> None:
     ball = b.sphere(1, segments=12).rotate((10, 20, 33))
     with pytest.raises(b.InvalidMeshError) as caught:
@@ -101,6 +103,7 @@ def test_messages_round_numbers() -> None:
     assert len(numbers) == 6 and all(len(number) <= len("-1.23456e-10") for number in numbers)
 
 
+# Found: `dir` leaked what is not public.
 def test_dir_shows_public_names_only() -> None:
     names = dir(b)
     assert set(b.__all__) <= set(names)

@@ -216,6 +216,8 @@ def test_planes_are_named_by_the_axes_across_them() -> None:
             other("up")
 
 
+# Found: transforms that together lead beyond all doubles, arrays for angles, and complex numbers
+# of numpy ended in raw errors or lost a part.
 @pytest.mark.parametrize(
     "moved",
     [
@@ -233,6 +235,7 @@ def test_angles_are_numbers() -> None:
         b.cube(1).rotate(10, x=np.array([1, 2]))  # type: ignore[arg-type]
 
 
+# Found: the program of `last_operation` was the solid's own list.
 def test_the_program_that_is_told_is_a_copy() -> None:
     part = b.half_space("z", 0) | b.cube(1)
     assert not part.is_bounded and part.last_operation is not None
@@ -240,6 +243,7 @@ def test_the_program_that_is_told_is_a_copy() -> None:
     assert (part.rotate(30) & b.cube(10, center=True)).volume > 500
 
 
+# Found: a solid scaled too thin for doubles could not be turned: its mesh had no faces.
 @pytest.mark.parametrize("height", [1e-12, 1e-16, 1e-20, 1e-300])
 def test_what_is_too_thin_for_doubles_is_empty_however_it_is_turned(height: float) -> None:
     plate = b.box(1, 1, 1).translate(1, 1, 1).scale((1, 1, height))

@@ -84,6 +84,8 @@ mod tests {
         assert!(images.free().expect("nobody holds it").images.len() < 10);
     }
 
+    // Found: threads that moved one solid at the same time could make two images of its source,
+    // and `mesh.source` told them apart.
     #[test]
     fn threads_that_make_an_image_at_once_share_one() {
         let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, 1]).expect("a motion");

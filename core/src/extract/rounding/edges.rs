@@ -176,6 +176,8 @@ mod tests {
         first
     }
 
+    // Found: where vertices were joined by their places, as readers of STL join them,
+    // `Mesh.certificate` told of crossings at edges of four triangles that only touch.
     #[test]
     fn wedges_that_share_an_edge_touch_what_it_lies_in() {
         assert_eq!(crossings_with(&[[6, 7]]), 0);

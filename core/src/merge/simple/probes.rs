@@ -247,6 +247,7 @@ mod tests {
         assert_eq!(found, Some(vec![[2, 1]]));
     }
 
+    // Found: a tip that touches the middle of a face could hide what lies behind the rest of it.
     /// A pyramid stands with its tip near the middle of half a lid.
     #[test]
     fn a_tip_that_touches_a_piece_does_not_hide_the_rest() {
