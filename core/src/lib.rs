@@ -17,3 +17,11 @@ pub mod tree;
 
 #[cfg(feature = "python")]
 mod python;
+
+// Lets tests name the crate as others do.
+#[cfg(test)]
+extern crate self as bspcsg;
+
+#[cfg(test)]
+#[path = "../tests/mod.rs"]
+mod tests;

@@ -2,14 +2,12 @@
 //!
 //! Faces lie in common planes, edges in faces, and what earlier steps left meets new boxes in parts.
 
-mod support;
-
 use bspcsg::geometry::plane::{normal, Lattice};
 use bspcsg::merge::expression::Term;
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
 
-use support::{applied, combined, inside, manifold_mesh, volume, Numbers, Ratio, Shape};
+use super::support::{applied, combined, inside, manifold_mesh, volume, Numbers, Ratio, Shape};
 
 /// Cubes along an edge of the region.
 const SIDE: i64 = 11;

@@ -1,7 +1,5 @@
 //! Many operands in one place: evaluated in groups, they make what they make one after the other.
 
-mod support;
-
 use std::sync::Arc;
 
 use bspcsg::arith::convert::as_whole;
@@ -18,7 +16,7 @@ use bspcsg::query::classify::Location;
 use bspcsg::tree::node::Node;
 use bspcsg::tree::solid::Solid;
 
-use support::{
+use super::support::{
     applied, assert_same_set, combined, complement, double, inside, located, manifold_mesh,
     normalized, volume, Numbers, Shape,
 };

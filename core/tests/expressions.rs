@@ -1,11 +1,9 @@
 //! Residuals and owners of expressions, against their truth tables and their steps.
 
-mod support;
-
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::residual::{Residual, Twin};
 
-use support::Numbers;
+use super::support::Numbers;
 
 const OPERANDS: u32 = 6;
 

@@ -4,18 +4,8 @@
 use std::fs;
 use std::path::Path;
 
-#[path = "../../fuzz/src/scene.rs"]
-mod scene;
-#[expect(dead_code, reason = "libFuzzer's targets write seeds as files")]
-#[path = "../../fuzz/src/seeds.rs"]
-mod seeds;
-mod support;
-#[path = "../../fuzz/src/targets/mod.rs"]
-mod targets;
-#[path = "../../fuzz/src/winding.rs"]
-mod winding;
-
-use seeds::seeds;
+use super::fuzz::seeds::seeds;
+use super::fuzz::targets;
 
 fn holds_around_its_seeds(name: &str, target: fn(&[u8])) {
     for (number, seed) in seeds(name).into_iter().enumerate() {

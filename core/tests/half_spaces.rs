@@ -3,8 +3,6 @@
 //! No operand's boundary may be crossed by a cut of the descent's cells but that of half-spaces, so
 //! only with these the two sides of a cell that the tree leaves out can differ.
 
-mod support;
-
 use std::sync::Arc;
 
 use bspcsg::arith::Int;
@@ -18,7 +16,7 @@ use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::partition::Label;
 use bspcsg::tree::solid::Solid;
 
-use support::{applied, located, normalized, Shape};
+use super::support::{applied, located, normalized, Shape};
 
 /// Lattice steps of the radius of balls.
 const RADIUS: i64 = 1 << 20;

@@ -1,7 +1,5 @@
 //! Chains of operations: what nodes keep from step to step against what the whole says.
 
-mod support;
-
 use std::sync::Arc;
 
 use bspcsg::arith::Int;
@@ -14,7 +12,7 @@ use bspcsg::query::measure::volume_rounded;
 use bspcsg::tree::solid::Solid;
 use bspcsg::tree::table::Table;
 
-use support::{applied, complement, is_empty, normalized, volume, Numbers, Ratio, Shape};
+use super::support::{applied, complement, is_empty, normalized, volume, Numbers, Ratio, Shape};
 
 fn any_tool(numbers: &mut Numbers) -> Solid {
     match numbers.below(5) {

@@ -11,8 +11,7 @@ use bspcsg::tree::partition::{
 };
 use num_bigint::BigInt;
 
-mod support;
-use support::Numbers;
+use super::support::Numbers;
 
 type Tree = PartitionTree<Dim2>;
 type Lattice = [i64; 2];

@@ -15,8 +15,7 @@ use bspcsg::tree::partition::{
 };
 use num_bigint::{BigInt, Sign};
 
-mod support;
-use support::Numbers;
+use super::support::Numbers;
 
 type Tree = PartitionTree<Dim3>;
 
@@ -125,7 +124,7 @@ fn voxels() -> impl Iterator<Item = Lattice> {
 
 /// The square face of a voxel towards `sign` along `axis`, as two triangles.
 fn square(at: Lattice, axis: usize, sign: i64, source: u64) -> [Facet<Dim3>; 2] {
-    let [a, b, c, d] = support::square(at, axis, sign);
+    let [a, b, c, d] = super::support::square(at, axis, sign);
     [triangle([a, b, c], source), triangle([a, c, d], source)]
 }
 

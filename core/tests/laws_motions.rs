@@ -1,8 +1,6 @@
 //! The ways that keep a solid as it is: snapshots, motions of the lattice, threads; and quick
 //! volumes.
 
-mod support;
-
 use std::sync::Arc;
 
 use bspcsg::arith::Int;
@@ -25,7 +23,7 @@ use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 use rayon::ThreadPoolBuilder;
 
-use support::{
+use super::support::{
     applied, assert_same_set, assert_same_triangles, combined, located, manifold_mesh, volume,
     Numbers, Ratio, Shape, LIMIT,
 };

@@ -1,7 +1,5 @@
 //! Exact identities of solids through evaluation, measures and meshes.
 
-mod support;
-
 use std::sync::Arc;
 
 use bspcsg::arith::bounds::{self, COORDINATE_BITS, HALF_SPACE_NORMAL_BITS};
@@ -19,7 +17,7 @@ use bspcsg::query::classify::Location;
 use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 
-use support::{
+use super::support::{
     applied, assert_same_set, assert_same_triangles, combined, complement, is_empty, is_full,
     located, manifold_mesh, normalized, straight, turned, volume, Numbers, Ratio, Shape, LIMIT,
 };

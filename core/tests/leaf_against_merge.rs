@@ -4,8 +4,6 @@
 //! local trees; `merge::merge` splits one tree by the other's cuts and reads the boundary off the
 //! result. They share predicates and polygons, and nothing else.
 
-mod support;
-
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -30,7 +28,7 @@ use bspcsg::tree::node::{Branch, Node};
 use bspcsg::tree::partition::{self, autopartition, winding_tree, Facet, Label, PivotPolicy};
 use bspcsg::tree::solid::Solid;
 
-use support::{applied, located, normalized, sixfold_volume, volume, Numbers, Ratio, Shape};
+use super::support::{applied, located, normalized, sixfold_volume, volume, Numbers, Ratio, Shape};
 
 type Tree = partition::PartitionTree<Dim3>;
 

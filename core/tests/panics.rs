@@ -1,4 +1,4 @@
-//! Panics of the core as errors, in a process of their own: others keep their messages.
+//! Panics of the core as errors.
 
 use std::panic::take_hook;
 
@@ -18,10 +18,8 @@ fn panics_are_errors_that_say_where_on_any_thread() {
     let own = quietly(|| -> Result<u32> { panic!("the moon is {}", "blue") });
     let own = own.expect_err("it panicked");
     assert_eq!(own.kind(), ErrorKind::Internal);
-    assert!(
-        own.message().starts_with("a panic at tests/panics.rs:"),
-        "{own}"
-    );
+    assert!(own.message().starts_with("a panic at "), "{own}");
+    assert!(own.message().contains("tests/panics.rs:"), "{own}");
     assert!(own.message().ends_with(": the moon is blue"), "{own}");
 
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();

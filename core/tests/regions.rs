@@ -16,8 +16,7 @@ use bspcsg::tree::partition::{
 };
 use bspcsg::tree::plane::{tree_of, Boundary};
 
-mod support;
-use support::Numbers;
+use super::support::Numbers;
 
 fn facets(corners: &[[i64; 2]]) -> Vec<Facet<Dim2>> {
     let next = corners.iter().cycle().skip(1);

@@ -1,7 +1,5 @@
 //! Solids that are the same in most places: revisions of a mesh, and steps of a chain.
 
-mod support;
-
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::expression::Term;
 use bspcsg::merge::rule::Rule;
@@ -9,7 +7,7 @@ use bspcsg::merge::SetOp;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;
 
-use support::{
+use super::support::{
     applied, assert_same_set, combined, complement, located, manifold_mesh, normalized, volume,
     Numbers, Shape,
 };

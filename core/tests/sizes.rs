@@ -3,8 +3,6 @@
 //! Lists of some lengths are shared among threads, counted or sorted in ways of their own. The sizes
 //! here lie on both sides of those lengths.
 
-mod support;
-
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
 use bspcsg::mesh::handle::VertexId;
@@ -12,7 +10,7 @@ use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 use rayon::ThreadPoolBuilder;
 
-use support::{applied, manifold_mesh, normalized, volume, Numbers, Ratio, Shape};
+use super::support::{applied, manifold_mesh, normalized, volume, Numbers, Ratio, Shape};
 
 /// Lattice steps of the radius of balls, and of the space between parts.
 const RADIUS: i64 = 1 << 20;

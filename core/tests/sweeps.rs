@@ -12,8 +12,7 @@ use bspcsg::query::region::outlines::outlines;
 use bspcsg::tree::partition::{check, classify, enclosed, Facet, PartitionTree, Plan};
 use bspcsg::tree::plane::{Boundary, PlaneSet};
 
-mod support;
-use support::Numbers;
+use super::support::Numbers;
 
 type Corners = Vec<[i64; 2]>;
 

@@ -1,12 +1,10 @@
 //! Large faces that other surfaces cross in closed curves, in several, and in curves that cross.
 
-mod support;
-
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::SetOp;
 use bspcsg::tree::solid::Solid;
 
-use support::{applied, assert_same_set, double, manifold_mesh, volume, Numbers, Shape};
+use super::support::{applied, assert_same_set, double, manifold_mesh, volume, Numbers, Shape};
 
 const OPERATIONS: [SetOp; 4] = [
     SetOp::Union,

@@ -1,8 +1,6 @@
 //! Unions of unit cubes through `evaluate` and `normalize`, against bit masks and counted winding
 //! numbers. Everything is coplanar with everything; turned by `turned`, no plane is axis-parallel.
 
-mod support;
-
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::Lattice;
 use bspcsg::merge::expression::Term;
@@ -11,7 +9,7 @@ use bspcsg::merge::SetOp;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
 
-use support::{
+use super::support::{
     applied, combined, complement, inside, is_empty, is_full, manifold_mesh, normalized, straight,
     turned, volume, wanted, Numbers, Ratio, Shape, Voxels,
 };

@@ -2,8 +2,6 @@
 
 #![allow(clippy::cast_possible_truncation, clippy::cast_precision_loss)]
 
-mod support;
-
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::spaces::affine::{Affine, Viewpoint};
 use bspcsg::geometry::spaces::dim2::Dim2;
@@ -23,7 +21,7 @@ use bspcsg::tree::fragments::{
 use bspcsg::tree::partition::{enclosed, Facet as SetFacet};
 use bspcsg::tree::partition::{preorder, Entry, Label, PartitionTree, Plan as SetPlan};
 
-use support::Numbers;
+use super::support::Numbers;
 
 type Ends = [[i64; 2]; 2];
 

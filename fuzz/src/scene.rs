@@ -11,8 +11,8 @@ use bspcsg::mesh::half_space::half_space;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;
 
-use crate::support::{combined, Shape, LIMIT};
-use crate::winding::{location, Known};
+use super::support::{combined, Shape, LIMIT};
+use super::winding::{location, Known};
 
 /// Coordinates lie in `0..reach`: in small reaches everything meets everything.
 const REACHES: [i64; 6] = [3, 5, 9, 40, 4000, 1 << 30];

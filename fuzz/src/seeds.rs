@@ -3,7 +3,7 @@
 use bspcsg::merge::expression::Term;
 use bspcsg::store::snapshot::Snapshot;
 
-use crate::support::{combined, Numbers, Shape};
+use super::support::{combined, Numbers, Shape};
 
 /// Names the folder that a target writes its seeds to, after which it ends.
 pub const ASKED: &str = "BSPCSG_FUZZ_SEEDS";

@@ -7,7 +7,7 @@ use bspcsg::merge::SetOp;
 use bspcsg::store::snapshot::Snapshot;
 use bspcsg::tree::solid::Solid;
 
-use crate::support::{applied, is_empty, manifold_mesh, normalized};
+use super::super::support::{applied, is_empty, manifold_mesh, normalized};
 
 /// The solid that is read from what was stored; stored again it gives the same bytes.
 pub fn kept(solid: &Solid, context: &str) -> Solid {

@@ -6,9 +6,9 @@ use bspcsg::merge::SetOp;
 use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
 
+use super::super::scene::Scene;
+use super::super::support::{applied, combined, complement, located, normalized, volume};
 use super::checks::{assert_same, manifold_or_unbounded};
-use crate::scene::Scene;
-use crate::support::{applied, combined, complement, located, normalized, volume};
 
 /// A scene: points lie where their winding numbers say, volumes add up, meshes are closed.
 pub fn evaluate(data: &[u8]) {

@@ -6,10 +6,10 @@ use bspcsg::geometry::spaces::motion::Motion;
 use bspcsg::merge::rule::Rule;
 use bspcsg::store::snapshot::Snapshot;
 
+use super::super::scene::whole_units;
+use super::super::scene::Scene;
+use super::super::support::{assert_same_triangles, located, manifold_mesh, normalized, volume};
 use super::checks::{assert_same, kept, manifold_or_unbounded};
-use crate::scene::whole_units;
-use crate::scene::Scene;
-use crate::support::{assert_same_triangles, located, manifold_mesh, normalized, volume};
 
 /// A scene's result: stored, moved and mirrored it stays the same, and its mesh makes it again.
 pub fn extract(data: &[u8]) {

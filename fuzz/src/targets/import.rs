@@ -10,11 +10,11 @@ use bspcsg::mesh::import as importing;
 use bspcsg::query::classify::Location;
 use bspcsg::tree::solid::Solid;
 
+use super::super::scene::whole_units;
+use super::super::support::{double, located, normalized, wanted};
+use super::super::winding::winding;
+use super::super::winding::Place;
 use super::checks::manifold_or_unbounded;
-use crate::scene::whole_units;
-use crate::support::{double, located, normalized, wanted};
-use crate::winding::winding;
-use crate::winding::Place;
 
 /// Triangles without order: taken if and only if they close, and then known point by point.
 pub fn import(data: &[u8]) {

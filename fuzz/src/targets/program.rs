@@ -11,7 +11,7 @@ use bspcsg::query::measure;
 use bspcsg::tree::solid::Solid;
 use num_bigint::BigInt;
 
-use crate::support::{located, manifold_mesh, Voxels};
+use super::super::support::{located, manifold_mesh, Voxels};
 
 /// Any lines as an expression over unions of unit cubes: refused, or right cube by cube.
 pub fn program(data: &[u8]) {

@@ -9,10 +9,10 @@ use bspcsg::merge::rule::Rule;
 use bspcsg::query::region::hyperplane::plane;
 use bspcsg::query::region::section::Sections;
 
-use crate::scene::plane_numbers;
-use crate::scene::Scene;
-use crate::support::normalized;
-use crate::winding::Place;
+use super::super::scene::plane_numbers;
+use super::super::scene::Scene;
+use super::super::support::normalized;
+use super::super::winding::Place;
 
 /// Steps beyond which nothing is rounded to a point.
 const SMALL: i64 = 2;
