@@ -26,7 +26,6 @@ with _Quietly():
         ) from None
 
     from .conveniences import attach as _attach
-    from .tracebacks import shortened as _shortened
 
 if TYPE_CHECKING:
     from ._core import __version__
@@ -181,9 +180,7 @@ def __getattr__(name: str) -> "Any":
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module = import_module(f".{_HOMES[name]}", __name__)
-    value = _shortened(getattr(module, name))
-    # One object, whoever asks for it: pickles name functions by their modules.
-    setattr(module, name, value)
+    value = getattr(module, name)
     globals()[name] = value
     return value
 

@@ -1,12 +1,10 @@
 """Random tests without end: how long each target ran, on what, and what it found.
 
     scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
-    scripts/fuzz --totals
 
 Targets of the core (`fuzz/`) and of the readers are led by coverage, and their corpora are kept in
-`.fuzz`; scenes, scenes of sizes and files come by rounds. Both go on where they stopped. What was
-run is added to `scripts/records/fuzz.json`; a wrong scene is made small and put into
-`tests/corpus/cases`.
+`.fuzz`; scenes, scenes of sizes and files come by rounds. Both go on where they stopped. A wrong
+scene is made small and put into `tests/corpus/cases`. `tests/fuzzing` has what is done.
 """
 
 import argparse
@@ -17,13 +15,12 @@ import sys
 import time
 from pathlib import Path
 
-from fuzz_guided import CORE, Core, Readers
-from fuzz_record import Outcome, add_to_record, totals
-from fuzz_rounds import Rounds
-from recording import REPOSITORY
+from fuzzing.guided import CORE, Core, Readers
+from fuzzing.outcome import Outcome
+from fuzzing.rounds import Rounds
 
 #: The folder of corpora, of what was found, and of the next rounds.
-FOLDER = REPOSITORY / ".fuzz"
+FOLDER = Path(__file__).resolve().parent.parent / ".fuzz"
 
 TARGETS = [*CORE, "readers", "scenes", "sizes", "files"]
 
@@ -34,12 +31,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=1.0, help="for each target")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--folder", type=Path, default=FOLDER, help="for corpora and findings")
-    parser.add_argument("--no-record", action="store_true", help="keep nothing in scripts/records")
-    parser.add_argument("--totals", action="store_true", help="say what all runs add up to")
     options = parser.parse_args()
-    if options.totals:
-        print("\n".join(totals()))
-        return 0
     targets = options.targets or TARGETS
     unknown = set(targets) - set(TARGETS)
     if unknown:
@@ -54,8 +46,6 @@ def main() -> int:
         for each in outcome.found[:5]:
             print(f"    {each.kind}: {each.what[:300]}\n        {each.place}")
         found += len(outcome.found)
-        if not options.no_record:
-            add_to_record(name, options.seed, outcome)
     return int(found > 0)
 
 

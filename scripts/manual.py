@@ -1,31 +1,36 @@
 """Writes what can be generated of the manual: options of the verbs, the API, the shown examples.
 
-Pages under docs/ are written by hand but for docs/api, and what stands between two marks: options
-on the pages of verbs, scripts on that of parts side by side, what other engines answered on that
-of trust. With --examples, the commands on the
-pages are run, what they print is written below them and the pictures they make beside the page;
-look at the difference before you commit it.
+Pages under docs/ are written by hand but for docs/api, which is in no commit, and what stands
+between two marks: options on the pages of verbs, scripts on that of parts side by side, what other
+engines answered on that of trust. With --examples, the commands on the pages are run, what they
+print is written below them and the pictures they make beside the page; look at the difference
+before you commit it.
 """
 
 import argparse
+import re
 import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from manual_api import api_pages
-from manual_options import with_options
-from manual_side import with_parts
+import click
+import griffe
+
+from bspcsg.cli.main import commands
 from peers import with_answers
-from support.documents import DOCS, page_files, rewritten
+from support.documents import DOCS, ROOT, page_files, rewritten, with_generated
 
-#: Pages that grow beyond this are split by hand, in bytes.
-LARGEST = 100_000
+# What is written
 
 
 def generated() -> dict[Path, str]:
-    """Return each page that is generated or has a generated part, with its text."""
-    pages = {path: with_options(path.stem, path.read_text("utf-8")) for path in verb_files()}
-    for name, text in api_pages().items():
-        pages[DOCS / "api" / f"{name}.md"] = text
+    """Return each page with a generated part, with its text."""
+    pages = {}
+    for path in sorted((DOCS / "verbs").glob("*.md")):
+        page = path.read_text("utf-8")
+        pages[path] = with_generated(path.stem, page, _described(path.stem))
     side = DOCS / "side_by_side.md"
     pages[side] = with_parts(side.read_text("utf-8"))
     trust = DOCS / "trust.md"
@@ -33,45 +38,396 @@ def generated() -> dict[Path, str]:
     return pages
 
 
-def verb_files() -> list[Path]:
-    """Return the pages of the verbs."""
-    return sorted((DOCS / "verbs").glob("*.md"))
-
-
-def outdated(pages: dict[Path, str]) -> list[str]:
-    """Return what is wrong with the pages as they are."""
-    found = [
-        f"{path.relative_to(DOCS.parent)} is not up to date; run scripts/manual"
-        for path, text in pages.items()
-        if not path.exists() or path.read_text("utf-8") != text
-    ]
-    found += [
-        f"{path.relative_to(DOCS.parent)} is generated no more; delete it"
-        for path in (DOCS / "api").glob("*.md")
-        if path not in pages
-    ]
-    sizes = {path: path.stat().st_size for path in DOCS.rglob("*.md")}
-    found += [f"{path} has {size} bytes" for path, size in sizes.items() if size > LARGEST]
-    return found
+def write_api() -> None:
+    """Write the pages of the API, and leave no others in their folder."""
+    API.mkdir(exist_ok=True)
+    for path in API.glob("*.md"):
+        path.unlink()
+    for name, text in api_pages().items():
+        API.joinpath(f"{name}.md").write_text(text, encoding="utf-8")
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="write nothing; fail if outdated")
+    parser.add_argument("--api", action="store_true", help="write the pages of the API only")
     parser.add_argument("--examples", nargs="*", metavar="PAGE", help="run examples, all or some")
     given = parser.parse_args()
     if given.check:
-        wrong = outdated(generated())
-        print("\n".join(wrong) or "the manual is up to date")
+        wrong = [path for path, text in generated().items() if path.read_text("utf-8") != text]
+        for path in wrong:
+            print(f"{path.relative_to(ROOT)} is not up to date; run scripts/manual")
         return 1 if wrong else 0
+    write_api()
+    if given.api:
+        return 0
     for path, text in generated().items():
-        path.parent.mkdir(exist_ok=True)
-        path.write_text(text)
+        path.write_text(text, encoding="utf-8")
     if given.examples is not None:
         for path in page_files():
             if not given.examples or path.stem in given.examples:
-                path.write_text(rewritten(path))
+                path.write_text(rewritten(path), encoding="utf-8")
     return 0
+
+
+# Verbs
+
+#: The character that click prints for paragraphs that keep their lines.
+_AS_IS = "\b"
+
+
+def _described(verb: str) -> str:
+    with click.Context(commands, info_name="bspcsg") as parent:
+        command = commands.get_command(parent, verb)
+        if command is None:
+            raise SystemExit(f"manual: there is a page, but no verb {verb}")
+        context = click.Context(command, parent=parent, info_name=verb)
+        synopsis = " ".join([context.command_path, *command.collect_usage_pieces(context)])
+        options = [p for p in command.get_params(context) if isinstance(p, click.Option)]
+        records = [record for option in options if (record := option.get_help_record(context))]
+    rows = [f"| `{_cell(names)}` | {_cell(said)} |" for names, said in records if names != "--help"]
+    table = "\n".join(["| option | meaning |", "| --- | --- |", *rows])
+    return f"```text\n{synopsis}\n```\n\n{_paragraphs(command.help or '')}\n\n{table}\n"
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def _paragraphs(text: str) -> str:
+    """Return the help; what keeps its lines becomes preformatted."""
+    blocks = re.split(r"\n\s*\n", text.strip())
+    return "\n\n".join(
+        f"```text\n{block.strip().removeprefix(_AS_IS).strip()}\n```"
+        if block.strip(" \n").startswith(_AS_IS)
+        else "\n".join(line.strip() for line in block.splitlines())
+        for block in blocks
+    )
+
+
+# Parts side by side
+
+FOLDER = ROOT / "examples" / "side_by_side"
+
+#: The tools by their folders: how they are called, the ending of their scripts, and its language.
+TOOLS = {
+    "bspcsg": ("bspcsg", ".py", "py"),
+    "manifold3d": ("manifold3d", ".py", "py"),
+    "trimesh": ("trimesh", ".py", "py"),
+    "openscad": ("OpenSCAD", ".scad", "openscad"),
+    "build123d": ("build123d", ".py", "py"),
+}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part: what it is, why a tool is shorter or missing, and nothing where none is."""
+
+    title: str
+    remark: str
+
+
+PARTS = {
+    "plate": Part(
+        "A plate with twelve holes",
+        "build123d is a line shorter: places are values there, which multiply a shape. Here a "
+        "pattern is a function of the shape, and both do not fit one line.",
+    ),
+    "knob": Part(
+        "A block with round edges and a bore",
+        "Manifold, trimesh and OpenSCAD have no round boxes; the hull of eight balls is one.",
+    ),
+    "label": Part(
+        "A label",
+        "manifold3d and trimesh have no text. build123d's sizes are those of the em, which is 1.39 "
+        "times the height of capitals.",
+    ),
+    "vase": Part(
+        "A twisted hexagon",
+        "build123d lofts sixty-one hexagons, for its extrusions do not twist.",
+    ),
+    "link": Part(
+        "The hull of two balls, with a bore",
+        "build123d has hulls in the plane only; this one is a solid of revolution, by luck.",
+    ),
+    "bend": Part(
+        "A pipe around two corners",
+        "manifold3d and OpenSCAD have no sweeps. trimesh's does not mitre: the pipe gets thinner "
+        "between the corners, and has two thirds of the volume.",
+    ),
+}
+
+
+def script(part: str, tool: str) -> Path:
+    """Return where a script lies, or would."""
+    return FOLDER / tool / f"{part}{TOOLS[tool][1]}"
+
+
+def lines(path: Path) -> int:
+    """Return how many lines make the part."""
+    left_out = ("import ", "from ", "print(", "//", "#")
+    texts = [line.strip() for line in path.read_text(encoding="utf-8").splitlines()]
+    return sum(bool(text) and not text.startswith(left_out) for text in texts)
+
+
+def with_parts(page: str) -> str:
+    """Return the page with its table and its parts as the scripts have them."""
+    sections = "".join(_section(part) for part in PARTS)
+    return with_generated("side_by_side", page, _table() + sections)
+
+
+def _table() -> str:
+    names = [name for name, _, _ in TOOLS.values()]
+    rows = [f"| part | {' | '.join(names)} |", "| --- |" + " --- |" * len(names)]
+    for part, said in PARTS.items():
+        counts = [str(lines(path)) if path.exists() else "–" for path in _scripts(part)]
+        rows.append(f"| {said.title.lower()} | {' | '.join(counts)} |")
+    return "\n".join(rows) + "\n"
+
+
+def _scripts(part: str) -> list[Path]:
+    return [script(part, tool) for tool in TOOLS]
+
+
+def _section(part: str) -> str:
+    tabs = [
+        f":::{{tab-item}} {TOOLS[tool][0]}\n:sync: {tool}\n\n"
+        f"```{TOOLS[tool][2]}\n{script(part, tool).read_text(encoding='utf-8')}```\n:::\n"
+        for tool in TOOLS
+        if script(part, tool).exists()
+    ]
+    joined = "\n".join(tabs)
+    said = PARTS[part]
+    return f"\n## {said.title}\n\n::::{{tab-set}}\n\n{joined}\n::::\n\n{said.remark}\n"
+
+
+# The API: signatures and docstrings, which griffe reads without importing
+
+API = DOCS / "api"
+
+#: Packages with names of their own for users, and how their pages begin.
+_PACKAGES = (
+    "bspcsg",
+    "bspcsg.bsp",
+    "bspcsg.bsp.analysis",
+    "bspcsg.csg",
+    "bspcsg.io",
+    "bspcsg.block",
+    "bspcsg.trimesh_engine",
+)
+
+#: On which page the names of a module or package stand.
+_PAGES = {
+    "bspcsg.solid": "solid",
+    "bspcsg.mesh": "solid",
+    "bspcsg.attributes": "solid",
+    "bspcsg.assembly": "assemblies",
+    "bspcsg.shapes": "shapes",
+    "bspcsg.operations": "operations",
+    "bspcsg.modelling": "modelling",
+    "bspcsg.trimesh_engine": "trimesh",
+    "bspcsg.errors": "errors",
+    "bspcsg.verify": "check",
+    "bspcsg.script": "scripts",
+    "bspcsg.bsp.sets.region": "regions",
+    "bspcsg.bsp.sets.interval": "regions",
+    "bspcsg.bsp.sets.loops": "regions",
+    "bspcsg.bsp.sets.slicing": "regions",
+    "bspcsg.bsp.drawings": "regions",
+    "bspcsg.modelling.planar": "regions",
+    "bspcsg.modelling.making": "shapes",
+    "bspcsg.bsp.rays": "rays",
+    "bspcsg.bsp.painting": "pictures",
+    "bspcsg.bsp": "trees",
+    "bspcsg.csg": "scripts",
+    "bspcsg.io": "files",
+    "bspcsg.formats": "files",
+    "bspcsg": "others",
+}
+
+#: Methods that are as everybody expects them.
+_UNTOLD = (
+    "__init__",
+    "__repr__",
+    "__str__",
+    "__copy__",
+    "__deepcopy__",
+    "__reduce__",
+    "__hash__",
+    "__post_init__",
+)
+
+#: The words in docstrings of methods that are public for neighbours only.
+_INSIDE = "for the modules of this package"
+
+#: The pages and their titles, beside their index.
+TITLES = {
+    "solid": "Solids and meshes",
+    "assemblies": "Assemblies",
+    "shapes": "Shapes",
+    "operations": "Operations",
+    "modelling": "Modelling",
+    "errors": "Errors and findings",
+    "check": "Checks against manifold3d",
+    "regions": "Regions of the plane, intervals, drawings",
+    "rays": "Rays",
+    "pictures": "Pictures",
+    "trees": "Partition trees",
+    "scripts": "Scripts",
+    "files": "Files",
+    "trimesh": "The engine for trimesh",
+    "others": "Other functions",
+}
+
+
+def api_pages() -> dict[str, str]:
+    """Return each page's name and text."""
+    loader = griffe.GriffeLoader(
+        search_paths=[ROOT], docstring_parser="numpy", allow_inspection=False
+    )
+    loader.load("bspcsg")
+    loader.resolve_aliases()
+    placed: dict[str, list[tuple[str, Any]]] = {name: [] for name in TITLES}
+    seen: set[str] = set()
+    for package in _PACKAGES:
+        module = _module(loader.modules_collection[package])
+        for name in _public(module):
+            entity = None if name.startswith("_") else _target(module[name])
+            if entity is not None and entity.path not in seen:
+                seen.add(entity.path)
+                placed[_page(entity)].append((f"{package}.{name}", entity))
+    pages = {name: _page_text(TITLES[name], held) for name, held in placed.items() if held}
+    return {"index": _index(placed), **pages}
+
+
+def _module(found: Any) -> Any:
+    """Return a module itself, if what was found is another name for it."""
+    return found.final_target if found.is_alias else found
+
+
+def _public(module: Any) -> list[str]:
+    """Return what a module exports; without ``__all__``, the functions and classes it defines."""
+    if module.exports is not None:
+        return sorted(map(str, module.exports), key=str.lower)
+    own = [name for name, member in module.members.items() if not member.is_alias]
+    kinds = ("function", "class")
+    return [n for n in own if n[0] != "_" and module[n].kind.value in kinds]
+
+
+def _target(member: Any) -> Any | None:
+    """Return what a public name stands for; modules, and what only the core has, have no page."""
+    try:
+        found = member.final_target if member.is_alias else member
+    except griffe.AliasResolutionError:
+        return None
+    if found.is_module:
+        # A function and its module have one name.
+        return _target(found[found.name]) if found.name in found.members else None
+    return found
+
+
+def _page(entity: Any) -> str:
+    home = entity.module.path
+    while home not in _PAGES:
+        home = home.rpartition(".")[0]
+    return _PAGES[home]
+
+
+def _index(placed: dict[str, list[tuple[str, Any]]]) -> str:
+    lines = ["# The Python API", "", "Generated from the docstrings.", ""]
+    for name, held in placed.items():
+        if held:
+            names = ", ".join(f"`{path.removeprefix('bspcsg.')}`" for path, _ in held)
+            lines.append(f"- [{TITLES[name]}]({name}.md): {names}")
+    return "\n".join(lines) + "\n"
+
+
+def _page_text(title: str, held: list[tuple[str, Any]]) -> str:
+    blocks = [f"# {title}", "[All pages of the API](index.md)"]
+    for path, entity in held:
+        blocks += _entity(entity, path, 2)
+    return "\n\n".join(blocks) + "\n"
+
+
+def _entity(entity: Any, path: str, level: int) -> Iterator[str]:
+    yield f"{'#' * level} `{path}`"
+    if entity.is_function or entity.is_class:
+        yield f"```text\n{_signature(entity, path)}\n```"
+    elif entity.value is not None and len(str(entity.value)) < 200:
+        yield f"```text\n{path.rpartition('.')[2]} = {entity.value}\n```"
+    if entity.docstring is not None:
+        # Apart from its owner, so that types stay the words they are.
+        text = griffe.Docstring(entity.docstring.value)
+        yield from _sections(text.parse("numpy", warnings=False))
+    if entity.is_class:
+        for member in _members(entity):
+            yield from _entity(member, member.name, level + 1)
+
+
+def _members(cls: Any) -> list[Any]:
+    """Return what a class offers and documents: methods and properties, operators at the end."""
+    found = []
+    for name, member in cls.all_members.items():
+        target = _target(member)
+        hidden = name.startswith("_") and not (name.startswith("__") and name.endswith("__"))
+        if target is None or hidden or name in _UNTOLD or target.docstring is None:
+            continue
+        if _INSIDE in target.docstring.value:
+            continue
+        found.append(target)
+    return sorted(found, key=lambda member: (member.name.startswith("__"), member.name))
+
+
+def _signature(entity: Any, path: str) -> str:
+    name = path.rpartition(".")[2]
+    if entity.is_class:
+        return f"class {name}({', '.join(_parameters(entity.parameters))})"
+    text = f"{name}({', '.join(_parameters(entity.parameters))})"
+    return f"{text} -> {entity.returns}" if entity.returns is not None else text
+
+
+def _parameters(parameters: Any) -> Iterator[str]:
+    """Yield the parameters as they are declared, without the first of methods."""
+    starred = False
+    for parameter in parameters:
+        kind = parameter.kind.value
+        if parameter.name in ("self", "cls"):
+            continue
+        if kind == "keyword-only" and not starred:
+            yield "*"
+        starred = starred or kind in ("keyword-only", "variadic positional")
+        prefix = {"variadic positional": "*", "variadic keyword": "**"}.get(kind, "")
+        annotation = f": {parameter.annotation}" if parameter.annotation is not None else ""
+        shown = parameter.default is not None and not prefix
+        default = f" = {parameter.default}" if shown else ""
+        yield f"{prefix}{parameter.name}{annotation}{default}"
+
+
+def _sections(sections: Iterable[Any]) -> Iterator[str]:
+    for section in sections:
+        kind = section.kind.value
+        if kind == "text":
+            yield section.value
+        elif kind == "examples":
+            code = "\n".join(text for _, text in section.value)
+            yield f"```pycon\n{code}\n```"
+        elif kind == "admonition":
+            yield f"**{section.title}**"
+            yield section.value.description
+        else:
+            yield f"**{kind.capitalize()}**"
+            yield "\n".join(_item(entry) for entry in section.value)
+
+
+def _item(entry: Any) -> str:
+    name = getattr(entry, "name", "")
+    annotation = str(entry.annotation) if entry.annotation is not None else ""
+    head = f"`{name}`" if name else ""
+    if annotation:
+        head = f"{head} ({annotation})" if head else f"`{annotation}`"
+    said = entry.description.strip().replace("\n\n", "\n\n  ")
+    lines = "\n".join(f"  {line}".rstrip() for line in said.splitlines()).strip()
+    return f"- {head}: {lines}" if lines else f"- {head}"
 
 
 if __name__ == "__main__":

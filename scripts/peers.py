@@ -19,8 +19,8 @@ import numpy as np
 
 from bspcsg._types import MeshArrays
 from bspcsg.bench.engines import ENGINES, Engine, EngineError, Operation, installed
-from manual_options import with_generated
 from recording import RECORDS, keep
+from support.documents import with_generated
 
 #: The unit cube, its faces counter-clockwise seen from outside.
 CORNERS = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])

@@ -19,7 +19,6 @@ from ..operations.setops import union
 from ..parameters import not_negative, of_kind, shown
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
-from ..tracebacks import shortened
 from .bill import Bill, bill_of
 from .clashes import Clash, are_apart, clashes_of
 
@@ -62,7 +61,6 @@ class Part:
         return moved(self.shape, self.factors)
 
 
-@shortened
 class Assembly:
     """A tree of named, coloured, placed solids.
 

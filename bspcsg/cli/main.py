@@ -147,10 +147,6 @@ def _fill_closed_streams() -> None:
 def run(arguments: Sequence[str], began: float | None = None) -> int:
     """Run the command line and return its exit code; no exception leaves but with ``--debug``."""
     clock.start(began)
-    if "--debug" in arguments:
-        from ..tracebacks import keep_all
-
-        keep_all()
     try:
         code = _invoked(list(arguments))
         sys.stdout.flush()

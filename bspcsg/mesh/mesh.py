@@ -17,11 +17,9 @@ from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes, Later, Values
 from ..attributes.material import Material
 from ..errors import core_errors
-from ..tracebacks import shortened
 from .certificate import Certificate, certify
 
 
-@shortened
 @dataclass(frozen=True, eq=False, repr=False)
 class Mesh:
     """A closed triangle mesh, counter-clockwise when seen from outside.

@@ -256,8 +256,8 @@ def volume_residues(solid: Measured) -> tuple[int, int] | None:
 def deprecated(name: str, instead: str) -> None:
     """Say that a property or method of solids goes with the next version."""
     message = f"Solid.{name} goes with the next version; use {instead}."
-    # The caller of the method, behind what shortens its tracebacks.
-    warnings.warn(message, DeprecationWarning, stacklevel=4)
+    # The caller of the method.
+    warnings.warn(message, DeprecationWarning, stacklevel=3)
 
 
 def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:

@@ -32,7 +32,6 @@ from ..parameters import (
     truth_value,
     winding_rule,
 )
-from ..tracebacks import shortened
 from .convertible import Convertible
 from .counting import count, counted, uncounted
 from .describe import describe
@@ -60,7 +59,6 @@ from .sayings import Sayings, later_attributes, said_of
 _SMALL = 20_000
 
 
-@shortened
 class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 

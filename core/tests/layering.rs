@@ -23,68 +23,19 @@ const LAYERS: [&str; 11] = [
     "python",
 ];
 
-fn rank(layer: &str) -> Option<usize> {
-    LAYERS.iter().position(|&name| name == layer)
-}
+const TESTS: &str = "#[cfg(test)]\nmod tests {";
 
-/// The names that follow `crate::` or enough `super::` in `source`, the groups taken apart.
-///
-/// `depth` is the number of modules between the file's own module and the crate root.
-fn reached(source: &str, depth: usize) -> Vec<String> {
-    let code = without_comments(source);
-    let climb = "super::".repeat(depth);
-    let mut names = Vec::new();
-    for root in ["crate::", climb.as_str()] {
-        for (at, _) in code.match_indices(root) {
-            let starts_path =
-                !code[..at].ends_with(|c: char| c.is_alphanumeric() || "_:$".contains(c));
-            if starts_path {
-                names.extend(first_segments(&code[at + root.len()..]));
-            }
-        }
-    }
-    names
-}
-
-fn without_comments(source: &str) -> String {
-    source
-        .lines()
-        .map(|line| line.find("//").map_or(line, |at| &line[..at]))
-        .collect::<Vec<_>>()
-        .join("\n")
-}
-
-/// `a::b` gives `a`; `{a::{b, c}, d}` gives `a` and `d`.
-fn first_segments(path: &str) -> Vec<String> {
-    let Some(group) = path.strip_prefix('{') else {
-        return vec![identifier(path)];
+/// The modules of the crate with their code, without comments.
+fn modules() -> BTreeMap<String, String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    rust_files(&root, &mut files);
+    let read = |file: &PathBuf| {
+        let source = fs::read_to_string(file).expect("a source file can be read");
+        let relative = file.strip_prefix(&root).expect("found below the root");
+        (module_of(relative), without_comments(&source))
     };
-    let mut level = 0;
-    let mut names = Vec::new();
-    let mut start = 0;
-    for (at, c) in group.char_indices() {
-        match c {
-            '{' => level += 1,
-            ',' if level == 0 => {
-                names.push(identifier(group[start..at].trim_start()));
-                start = at + 1;
-            }
-            '}' if level == 0 => {
-                names.push(identifier(group[start..at].trim_start()));
-                break;
-            }
-            '}' => level -= 1,
-            _ => {}
-        }
-    }
-    names.retain(|name| !name.is_empty());
-    names
-}
-
-fn identifier(text: &str) -> String {
-    text.chars()
-        .take_while(|c| c.is_alphanumeric() || *c == '_')
-        .collect()
+    files.iter().map(read).collect()
 }
 
 fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -98,15 +49,48 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The layer of a file and how many modules its own module lies below the root.
-fn place(relative: &Path) -> (String, usize) {
-    let parts: Vec<String> = relative
-        .components()
-        .map(|part| part.as_os_str().to_string_lossy().into_owned())
-        .collect();
-    let layer = parts[0].trim_end_matches(".rs").to_owned();
-    let is_folder_page = parts.last().is_some_and(|name| name == "mod.rs");
-    (layer, parts.len() - usize::from(is_folder_page))
+/// The module of a file: `tree/node.rs` is `tree::node`, `tree/mod.rs` is `tree`.
+fn module_of(relative: &Path) -> String {
+    let path = relative.with_extension("");
+    let text = path.to_string_lossy().replace(['/', '\\'], "::");
+    text.strip_suffix("::mod").unwrap_or(&text).to_owned()
+}
+
+fn without_comments(source: &str) -> String {
+    let code = |line: &str| line.split("//").next().unwrap_or("").to_owned();
+    source.lines().map(code).collect::<Vec<_>>().join("\n")
+}
+
+/// For each module the others that its code names.
+fn uses(modules: &BTreeMap<String, String>) -> BTreeMap<String, BTreeSet<String>> {
+    let owner = |mut path: &str| {
+        while !modules.contains_key(path) {
+            path = path.rsplit_once("::")?.0;
+        }
+        Some(path.to_owned())
+    };
+    let used = |(own, code): (&String, &String)| {
+        let others = paths_of(own, code);
+        let others = others.iter().filter_map(|path| owner(path));
+        (own.clone(), others.filter(|other| other != own).collect())
+    };
+    modules.iter().map(used).collect()
+}
+
+/// The paths in a module's code, from the root of the crate on.
+fn paths_of(own: &str, code: &str) -> Vec<String> {
+    let mut paths = paths_after(code, "crate::");
+    let within = paths_after(code, "self::").into_iter();
+    paths.extend(within.map(|path| format!("{own}::{path}")));
+    let mut above: Vec<&str> = own.split("::").collect();
+    let mut climb = String::new();
+    while above.pop().is_some() {
+        climb += "super::";
+        let climbed = paths_after(code, &climb).into_iter();
+        let outside = climbed.filter(|path| !path.starts_with("super::"));
+        paths.extend(outside.map(|path| [above.as_slice(), &[path.as_str()]].concat().join("::")));
+    }
+    paths
 }
 
 /// The paths after `prefix` in code without comments, groups taken apart.
@@ -141,57 +125,14 @@ fn taken_apart(path: &str) -> Vec<String> {
     names.map(|name| format!("{plain}{name}")).collect()
 }
 
-/// The module of a file: `tree/node.rs` is `tree::node`, `tree/mod.rs` is `tree`.
-fn module_of(relative: &Path) -> String {
-    let text = relative
-        .with_extension("")
-        .to_string_lossy()
-        .replace('/', "::");
-    text.strip_suffix("::mod")
-        .map_or(text.clone(), str::to_owned)
-}
-
-/// For each module those that it uses, tests inside modules left out.
-fn uses(root: &Path) -> BTreeMap<String, BTreeSet<String>> {
-    let mut files = Vec::new();
-    rust_files(root, &mut files);
-    let module = |file: &PathBuf| module_of(file.strip_prefix(root).expect("found below the root"));
-    let known: BTreeSet<String> = files.iter().map(module).collect();
-    let owner = |path: &str| {
-        let mut path = path.to_owned();
-        while !known.contains(&path) {
-            path = path.rsplit_once("::")?.0.to_owned();
-        }
-        Some(path)
-    };
-    let used = |file: &PathBuf| {
-        let own = module(file);
-        let source = fs::read_to_string(file).expect("a source file can be read");
-        let code = without_comments(&source);
-        let code = code.split("#[cfg(test)]\nmod tests {").next().unwrap_or("");
-        let mut above: Vec<&str> = own.split("::").collect();
-        let mut paths = paths_after(code, "crate::");
-        let within = paths_after(code, "self::").into_iter();
-        paths.extend(within.map(|path| format!("{own}::{path}")));
-        let mut climb = String::new();
-        while above.pop().is_some() {
-            climb += "super::";
-            let inside = above.join("::");
-            let climbed = paths_after(code, &climb).into_iter();
-            let outside = climbed.filter(|path| !path.starts_with("super::"));
-            paths.extend(outside.map(|path| format!("{inside}::{path}")));
-        }
-        let all = paths.iter().filter_map(|path| owner(path));
-        let others = all.filter(|other| *other != own).collect();
-        (own, others)
-    };
-    files.iter().map(used).collect()
-}
-
 #[test]
 fn no_file_uses_itself_by_way_of_others() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut open = uses(&root);
+    let mut files = modules();
+    // Tests inside a file may use what is built on it.
+    for code in files.values_mut() {
+        code.truncate(code.find(TESTS).unwrap_or(code.len()));
+    }
+    let mut open = uses(&files);
     assert!(open.values().map(BTreeSet::len).sum::<usize>() > 500);
     loop {
         let done: BTreeSet<String> = open
@@ -212,65 +153,36 @@ fn no_file_uses_itself_by_way_of_others() {
 
 #[test]
 fn no_layer_reaches_upwards() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let mut files = Vec::new();
-    rust_files(&root, &mut files);
-    files.sort();
+    let rank = |module: &str| {
+        let layer = module.split("::").next();
+        let found = LAYERS.iter().position(|&name| Some(name) == layer);
+        found.unwrap_or_else(|| panic!("{module} belongs to no layer"))
+    };
+    let mut files = modules();
+    files.remove("lib").expect("the root of the crate");
     let mut faults = Vec::new();
-    let mut checked = 0;
-    for file in files.iter().filter(|file| !file.ends_with("lib.rs")) {
-        let relative = file.strip_prefix(&root).expect("found below the root");
-        let (layer, depth) = place(relative);
-        let own =
-            rank(&layer).unwrap_or_else(|| panic!("{} belongs to no layer", relative.display()));
-        let source = fs::read_to_string(file).expect("a source file can be read");
-        checked += 1;
-        for name in reached(&source, depth) {
-            if rank(&name).is_some_and(|other| other > own) {
-                faults.push(format!("{} uses {name}", relative.display()));
-            }
-        }
+    for (module, used) in uses(&files) {
+        let above = used.iter().filter(|other| rank(other) > rank(&module));
+        faults.extend(above.map(|other| format!("{module} uses {other}")));
     }
-    assert!(checked > 0, "no source file was found");
     assert!(faults.is_empty(), "upward uses:\n{}", faults.join("\n"));
 }
 
 #[test]
-fn every_way_to_name_a_layer_is_seen() {
-    assert_eq!(reached("use crate::tree::Node;", 2), ["tree"]);
-    assert_eq!(
-        reached("use crate::{mesh::{A, B}, arith};", 2),
-        ["mesh", "arith"]
-    );
-    assert_eq!(
-        reached("use crate::{\n    mesh::A,\n    tree,\n};", 2),
-        ["mesh", "tree"]
-    );
-    assert_eq!(reached("let x = super::super::tree::f();", 2), ["tree"]);
-    assert_eq!(reached("use super::node::Node;", 2), Vec::<String>::new());
-    assert_eq!(
-        reached("// crate::python is above\n", 2),
-        Vec::<String>::new()
-    );
-    assert_eq!(reached("pub(crate) use super::merge::x;", 1), ["merge"]);
-}
-
-#[test]
-fn groups_of_paths_are_taken_apart() {
+fn every_way_to_name_a_module_is_seen() {
     let expected = ["a::B", "a::c::D", "a::c::e"];
     assert_eq!(taken_apart("a::{B, c::{D, e}};"), expected);
-    assert_eq!(paths_after("use super::a::b;", "super::"), ["a::b"]);
+    let paths = |code| paths_of("mesh::a", &without_comments(code));
+    assert_eq!(paths("use crate::tree::Node;"), ["tree::Node"]);
+    let several = ["mesh::A", "mesh::B", "arith"];
+    assert_eq!(
+        paths("use crate::{\n    mesh::{A, B},\n    arith};"),
+        several
+    );
+    assert_eq!(paths("let x = super::super::tree::f();"), ["tree::f"]);
+    assert_eq!(paths("pub(crate) use super::b::C;"), ["mesh::b::C"]);
+    assert_eq!(paths("use self::b::C;"), ["mesh::a::b::C"]);
+    assert_eq!(paths("// crate::python is above\n"), Vec::<String>::new());
     assert_eq!(module_of(Path::new("tree/node.rs")), "tree::node");
     assert_eq!(module_of(Path::new("tree/mod.rs")), "tree");
-}
-
-#[test]
-fn a_file_knows_its_layer() {
-    assert_eq!(place(Path::new("error.rs")), ("error".to_owned(), 1));
-    assert_eq!(place(Path::new("tree/mod.rs")), ("tree".to_owned(), 1));
-    assert_eq!(place(Path::new("tree/node.rs")), ("tree".to_owned(), 2));
-    assert_eq!(
-        place(Path::new("tree/node/walk.rs")),
-        ("tree".to_owned(), 3)
-    );
 }

@@ -10,9 +10,7 @@ light and dark, readable on a phone, and loads neither fonts nor scripts from el
 What `static/site.js` says to screen readers was missing when axe-core 4.14 looked at eleven pages
 in Chromium, light and dark, 1280 and 390 wide. With it, axe finds no violation on them but that the
 page of results has no heading before something is searched for.
-`tests/pipeline/test_site.py` lets axe look at some of them. Lighthouse 13.5 gave the built site's
-first page 100 of 100 for accessibility, 96 for practices, 91 for search engines and 90 for speed on
-a simulated slow phone.
+`tests/pipeline/test_site.py` lets axe look at some of them.
 """
 
 import shutil

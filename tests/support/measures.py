@@ -1,9 +1,6 @@
 """Figures with bounds, each a function that returns what broke its bound and the figures."""
 
 import gc
-import os
-import subprocess
-import sys
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -27,19 +24,11 @@ from .probes import Failure
 #: What went wrong, and figures by their names.
 Measured: TypeAlias = tuple[list[Failure], dict[str, float]]
 
-#: Returns seconds: of the processors (`time.process_time`), or on the wall (`time.perf_counter`).
-Clock: TypeAlias = Callable[[], float]
-
-TESTS = Path(__file__).resolve().parents[1]
-
 #: The largest share of the time of writing or reading that a proof may take.
 SHARE = 0.15
 
 #: Smaller files are written in a few milliseconds, most of which no triangle takes.
 LARGE = 300_000
-
-#: The most that memory may grow by, in 10^6 bytes.
-GROWTH = 20
 
 #: The codes of findings that tell of a crossing, in doubles and in single precision.
 SAID = frozenset({"crossing", "turned", "collapsed"})
@@ -94,10 +83,10 @@ def _touches(mesh: "b.Mesh") -> bool:
     return len(np.unique(mesh.vertices, axis=0)) < len(mesh.vertices)
 
 
-def shares_of_proofs(triangles: int, turns: int = 5, clock: Clock = time.process_time) -> Measured:
+def shares_of_proofs(triangles: int, turns: int = 5) -> Measured:
     """Return the shares of the time of writing that the proofs take, format by format.
 
-    Time on the wall has a part that time of the processors has not: until the file is on the disk.
+    On the wall, as a user waits: until the file is on the disk.
     """
     mesh = b.sphere(1, segments=round(triangles**0.5)).rotate((10, 20, 30)).to_mesh()
     failed, figures = [], {}
@@ -107,7 +96,7 @@ def shares_of_proofs(triangles: int, turns: int = 5, clock: Clock = time.process
                 if (known.text if text else known.binary) is None:
                     continue
                 path = Path(folder) / f"ball{suffix}"
-                share = _share(mesh, path, text, turns, clock)
+                share = _share(mesh, path, text, turns)
                 name = f"{suffix[1:]}{' as text' if text and known.binary else ''}"
                 figures[name] = round(share, 3)
                 if share > SHARE and triangles >= LARGE:
@@ -116,7 +105,7 @@ def shares_of_proofs(triangles: int, turns: int = 5, clock: Clock = time.process
     return failed, figures
 
 
-def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int, clock: Clock) -> float:
+def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int) -> float:
     """Return the share of the proof in writing a file: the median of some turns.
 
     The file is written while it is proved, so that the time of either is taken apart.
@@ -124,21 +113,18 @@ def _share(mesh: "b.Mesh", path: Path, text: bool, turns: int, clock: Clock) -> 
     shares = []
     for _ in range(turns):
         gc.collect()
-        began, spent = clock(), 0.0
+        began, spent = time.perf_counter(), 0.0
         made = encoded(mesh, path, path.suffix, text)
 
         def prove(file: BinaryIO, made: Encoded = made) -> None:
             nonlocal spent
-            start, _Watched.writing = clock(), 0.0
+            start, _Watched.writing = time.perf_counter(), 0.0
             made.prove(file)
-            spent = clock() - start - _Watched.writing
+            spent = time.perf_counter() - start - _Watched.writing
 
-        with (
-            patch.object(atomic, "_Growing", _Watched),
-            patch.object(_Watched, "clock", staticmethod(clock)),
-        ):
+        with patch.object(atomic, "_Growing", _Watched):
             write_file(path, made.chunks, prove)
-        shares.append(spent / (clock() - began))
+        shares.append(spent / (time.perf_counter() - began))
     return median(shares)
 
 
@@ -146,12 +132,11 @@ class _Watched(atomic._Growing):
     """A file that is written as it is read, and the time of writing it."""
 
     writing = 0.0
-    clock = staticmethod(time.process_time)
 
     def _watched(self, write: Callable[[], None]) -> None:
-        began = self.clock()
+        began = time.perf_counter()
         super()._watched(write)
-        _Watched.writing += self.clock() - began
+        _Watched.writing += time.perf_counter() - began
 
 
 def shares_of_checks(triangles: int, turns: int = 15) -> Measured:
@@ -196,33 +181,3 @@ def _time_of(work: Callable[[bool], None], proves: bool) -> float:
     began = time.process_time()
     work(proves)
     return time.process_time() - began
-
-
-def jobs_through_forks(rounds: int) -> Measured:
-    """Send so many jobs one after the other, and 64 at a time, through a forked pool."""
-    return _program("many", rounds)[0], {"one after the other": rounds, "at a time": 64}
-
-
-def growth(rounds: int) -> Measured:
-    """Return by how much memory grows with so many small operations."""
-    failed, said = _program("memory", rounds)
-    if failed:
-        return failed, {}
-    grown = float(said)
-    return [Failure(rounds, f"{grown} MB")] * (grown >= GROWTH), {"MB": round(grown, 1)}
-
-
-def _program(name: str, count: int) -> tuple[list[Failure], str]:
-    """Run one of `support.processes`; return what went wrong, and what it printed."""
-    path = os.pathsep.join([str(TESTS.parent), str(TESTS)])
-    with TemporaryDirectory() as folder:
-        ended = subprocess.run(
-            [sys.executable, "-m", "support.processes", name, str(count)],
-            cwd=folder,
-            env={**os.environ, "PYTHONPATH": path},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-    failed = [Failure(count, ended.stderr.strip()[-300:])] if ended.returncode else []
-    return failed, ended.stdout

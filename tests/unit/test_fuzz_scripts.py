@@ -1,4 +1,4 @@
-"""`scripts/fuzz` reads libFuzzer's words, and runs add up in its record."""
+"""`scripts/fuzz` reads libFuzzer's words, and notices what hangs."""
 
 import json
 import signal
@@ -10,9 +10,7 @@ from pathlib import Path
 import pytest
 
 import fuzz
-import fuzz_record
-from fuzz_guided import Guided, outcome_of
-from fuzz_record import Found, Outcome, add_to_record, totals
+from fuzzing.guided import Guided, outcome_of
 from mutants import MUTANTS, Mutant
 from recording import REPOSITORY, keep_rows
 
@@ -64,8 +62,8 @@ else:
     sys.exit("libFuzzer: timeout; Test unit written to {tmp_path}/slow")
 """
     )
-    monkeypatch.setattr("fuzz_guided.SECONDS", 0.2)
-    monkeypatch.setattr("fuzz_guided.ENOUGH", 1)
+    monkeypatch.setattr("fuzzing.guided.SECONDS", 0.2)
+    monkeypatch.setattr("fuzzing.guided.ENOUGH", 1)
     target = Guided("any", [sys.executable, str(program)], tmp_path)
     assert len(target.run(1, time.monotonic() + 60).found) == count
 
@@ -85,7 +83,7 @@ else:
     pathlib.Path({str(tmp_path)!r}, "any", "found", "slow-unit-12").touch()
 """
     )
-    monkeypatch.setattr("fuzz_guided.SECONDS", 0.2)
+    monkeypatch.setattr("fuzzing.guided.SECONDS", 0.2)
     target = Guided("any", [sys.executable, str(program)], tmp_path)
     found = target.run(1, time.monotonic() + 2).found
     assert [each.place[-12:] for each in found] == ["slow-unit-12"] * count
@@ -94,25 +92,13 @@ else:
 def test_programs_that_never_end_are_stopped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("fuzz_guided.SECONDS", 0.01)
-    monkeypatch.setattr("fuzz_guided.ENOUGH", 1)
+    monkeypatch.setattr("fuzzing.guided.SECONDS", 0.01)
+    monkeypatch.setattr("fuzzing.guided.ENOUGH", 1)
     program = tmp_path / "target.py"
     program.write_text("import time\ntime.sleep(1000)\n")
     target = Guided("any", [sys.executable, str(program)], tmp_path)
     [found] = target.run(1, time.monotonic() + 2).found
     assert (found.kind, found.place) == ("hang", "")
-
-
-def test_runs_add_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(fuzz_record, "RECORDS", tmp_path)
-    add_to_record("scenes", 1, Outcome(10, 60.0, None, [Found("hang", "slow", "here")]))
-    add_to_record("scenes", 1, Outcome(5, 30.0))
-    add_to_record("scenes", 2, Outcome(7, 6.0, (3, 9)))
-    first, second = json.loads((tmp_path / "fuzz.json").read_text("utf-8"))["targets"]["scenes"]
-    assert (first["executions"], first["cpu_minutes"], first["hang"]) == (15, 1.5, 1)
-    assert (second["seed"], second["coverage"], second["wrong"]) == (2, 9, 0)
-    (line,) = totals()
-    assert line.split() == ["scenes", "22", "executions,", "0.03", "CPU", "h,", "1", "found"]
 
 
 @pytest.mark.parametrize("targets", [["readers"], []])
@@ -156,7 +142,7 @@ def test_records_keep_what_earlier_runs_said(
 ROUNDS = """
 import sys, time
 sys.path[:0] = sys.argv[1:]
-import fuzz_rounds
+from fuzzing import rounds
 
 def judged(seed: int, at: int) -> tuple[list[str], str]:
     began = time.process_time()
@@ -164,8 +150,8 @@ def judged(seed: int, at: int) -> tuple[list[str], str]:
         pass
     return [], ""
 
-fuzz_rounds.SECONDS, fuzz_rounds.one_scene = 1, judged
-fuzz_rounds.rounds("scenes", 1, 0, time.monotonic() + 60)
+rounds.SECONDS, rounds.one_scene = 1, judged
+rounds.rounds("scenes", 1, 0, time.monotonic() + 60)
 """
 
 

@@ -395,6 +395,15 @@ def test_errors_have_a_code_places_and_a_sentence() -> None:
     )
 
 
+# Found: errors told twenty digits.
+def test_messages_round_numbers() -> None:
+    ball = b.sphere(1, segments=12).rotate((10, 20, 33))
+    with pytest.raises(b.InvalidMeshError) as caught:
+        b.Solid(ball.vertices * 1e-5, ball.faces[1:])
+    numbers = [word.strip("(),.") for word in caught.value.message.split() if "e-" in word]
+    assert len(numbers) == 6 and all(len(number) <= len("-1.23456e-10") for number in numbers)
+
+
 def test_errors_of_the_core_become_errors_of_the_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

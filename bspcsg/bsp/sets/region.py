@@ -29,7 +29,6 @@ from ...parameters import (
 from ...shapes.primitives import extrude, revolve
 from ...shapes.sweep import unit_circle
 from ...solid.solid import Solid
-from ...tracebacks import shortened
 from ..trees.facets import chosen_pitch
 from .boundary import segment_rows
 from .loops import closed_loops, loop_segments, moved_points
@@ -40,7 +39,6 @@ from .plane_queries import PlaneQueries, on_one_lattice, vector2
 FillRule: TypeAlias = WindingRule | Literal["negative"]
 
 
-@shortened
 class Region(PlaneQueries):
     """A polygonal set of the plane.
 

@@ -10,7 +10,6 @@ from ...errors import invalid_parameter
 from ...geometry.arrays import axes_of
 from ...geometry.transform import axis_vector
 from ...solid.solid import Solid
-from ...tracebacks import shortened
 from .skeleton import Skeleton, skeleton_of
 
 #: The sine of the largest angle between parallel lines: the lattice turns an edge of a thousand
@@ -18,7 +17,6 @@ from .skeleton import Skeleton, skeleton_of
 _PARALLEL = 1e-3
 
 
-@shortened
 class EdgeSelection:
     """Edges of a solid, each between two plane faces, from corner to corner.
 

@@ -7,8 +7,9 @@ import sys
 import time
 from pathlib import Path
 
-from fuzz_record import CpuClock, Found, Outcome
-from recording import REPOSITORY
+from .outcome import CpuClock, Found, Outcome
+
+REPOSITORY = Path(__file__).resolve().parents[2]
 
 #: The targets in `fuzz/fuzz_targets`.
 CORE = ("snapshot", "import", "program", "section", "evaluate", "extract")
@@ -131,8 +132,7 @@ class Readers(Guided):
     """All readers of files in Python; atheris must be installed."""
 
     def __init__(self, folder: Path) -> None:
-        script = Path(__file__).with_name("fuzz_readers.py")
-        super().__init__("readers", [sys.executable, str(script)], folder)
+        super().__init__("readers", [sys.executable, "-m", "fuzzing.readers"], folder)
         if not any(self._corpus.iterdir()):
             words = [*self._command, "--seeds", str(self._corpus)]
             subprocess.run(words, check=True, capture_output=True)

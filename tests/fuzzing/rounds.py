@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from fuzz_record import CpuClock, Found, Outcome
-from recording import REPOSITORY
+from .outcome import CpuClock, Found, Outcome
 
 #: A round may take this long, and the process this much memory.
 SECONDS, MEGABYTES = 10, 4096
@@ -26,7 +25,7 @@ SECONDS, MEGABYTES = 10, 4096
 LARGE_SECONDS = 60
 
 #: The folder of cases that must be answered.
-CASES = REPOSITORY / "tests" / "corpus" / "cases"
+CASES = Path(__file__).resolve().parents[1] / "corpus" / "cases"
 
 #: After so many findings in one run a target is left alone.
 ENOUGH = 20
@@ -52,7 +51,7 @@ class Rounds:
         """Run one process; return the next round and whether the process was ended by one."""
         seconds = str(until - time.monotonic())
         words = [self._name, "--seed", str(self._seed), "--first", str(first), "--seconds", seconds]
-        command = [sys.executable, __file__, *words]
+        command = [sys.executable, "-m", "fuzzing.rounds", *words]
         at = first
         with (
             tempfile.TemporaryFile("w+") as told,
@@ -100,14 +99,14 @@ def rounds(name: str, seed: int, first: int, until: float) -> None:
 
 def tell(at: int, wrong: list[str], place: str) -> None:
     """Say where we are."""
-    print(json.dumps({"round": at, "wrong": wrong[:1], "place": place}), flush=True)
+    print(json.dumps({"round": at, "wrong": wrong[:1], "place": place}), flush=True)  # noqa: T201 (the parent reads it)
 
 
 def one_scene(seed: int, at: int) -> tuple[list[str], str]:
     """Judge a scene; a wrong one is made small and kept as a case."""
-    from fuzzing.judge import judge
-    from fuzzing.scenes import random_scene
-    from fuzzing.shrink import keep_case, shrunk
+    from .judge import judge
+    from .scenes import random_scene
+    from .shrink import keep_case, shrunk
 
     scene = random_scene(np.random.default_rng([seed, at]))
     wrong = judge(scene)
@@ -121,7 +120,7 @@ def one_scene(seed: int, at: int) -> tuple[list[str], str]:
 
 def one_size(seed: int, at: int) -> tuple[list[str], str]:
     """Judge a scene with large operands; cases of the corpus are small, so a round names it."""
-    from fuzzing.sizes import judge_sized, sized_scene
+    from .sizes import judge_sized, sized_scene
 
     wrong = judge_sized(sized_scene(np.random.default_rng([seed, at])))
     return wrong, f"round {at} of seed {seed}"
@@ -129,7 +128,7 @@ def one_size(seed: int, at: int) -> tuple[list[str], str]:
 
 def one_file(seed: int, at: int) -> tuple[list[str], str]:
     """Judge a file of the format whose turn it is."""
-    from fuzzing.files import FORMATS, judge_file, random_file
+    from .files import FORMATS, judge_file, random_file
 
     rng: Any = np.random.default_rng([seed, at])
     with tempfile.TemporaryDirectory() as folder:
