@@ -6,21 +6,19 @@ pip install libigl "bspcsg[bench]"
 """
 
 import argparse
-import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
-from typing import Any
 
 import numpy as np
 
 from bspcsg._types import MeshArrays
 from bspcsg.bench.engines import ENGINES, Engine, EngineError, Operation, installed
 from manual_options import with_generated
-from recording import RECORDS, keep
+from recording import keep, release
 
 #: The unit cube, its faces counter-clockwise seen from outside.
 CORNERS = np.array([[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)])
@@ -218,15 +216,9 @@ def table(found: dict[str, dict[str, str]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
-def recorded() -> dict[str, dict[str, Any]]:
-    """Return what is kept: the versions of the engines, and their answers."""
-    found: dict[str, dict[str, Any]] = json.loads((RECORDS / "peers.json").read_text("utf-8"))
-    return found
-
-
 def with_answers(page: str) -> str:
-    """Return a page with the table of what is recorded."""
-    found = recorded()
+    """Return a page with the answers that are in the table of the last release."""
+    found = release()["peers"]
     titled = {f"{name} {found['versions'][name]}": said for name, said in found["answers"].items()}
     return with_generated("trust", page, table(titled) + "\n")
 

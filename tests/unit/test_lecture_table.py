@@ -1,6 +1,5 @@
 """The table of the lecture names functions, tests and pictures that are there."""
 
-import json
 import re
 from functools import reduce
 from pathlib import Path
@@ -8,8 +7,6 @@ from pathlib import Path
 import pytest
 
 from bspcsg import bsp
-from lecture_peers import page
-from recording import RECORDS
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "lecture.md").read_text(encoding="utf-8")
@@ -50,11 +47,3 @@ def test_names_are_there(row: list[str]) -> None:
 
 def test_every_figure_of_the_page_belongs_to_a_line() -> None:
     assert {_quoted(row[3]) for row in ROWS} >= FIGURES
-
-
-def test_the_measured_tables_are_those_of_the_record() -> None:
-    record = json.loads((RECORDS / "lecture.json").read_text(encoding="utf-8"))
-    assert page(PAGE, record) == PAGE
-    assert {row["commons_agrees"] for row in record["commons"]} == {True}
-    assert len(record["adaptive"]) == 9
-    assert all("embreex_us_per_ray" in row for row in record["adaptive"])
