@@ -76,20 +76,6 @@ def _dense(record: Record) -> Rows:
     return [head, [str(len(rows)), str(slower), str(grown)]]
 
 
-def _probes(record: Record) -> Rows:
-    rows = [
-        [row["probe"], _number(row["rounds"]), str(row["failed"])]
-        for row in record["probes"]
-        if row["rounds"] > 1
-    ]
-    return [["probe", "rounds", "failed"], *rows]
-
-
-def _number(value: float) -> str:
-    """Return a number with its thousands apart."""
-    return f"{value:,}".replace(",", " ")
-
-
 def _campaign(record: Record) -> Rows:
     rows = [
         [name, *(str(counts.get(verdict, 0)) for verdict in _VERDICTS)]
@@ -122,7 +108,6 @@ _TABLES: dict[str, tuple[str, Callable[[Record], Rows]]] = {
     "rays": ("bench_rays", _rays),
     "instructions": ("instructions", _instructions),
     "campaign": ("campaign", _campaign),
-    "probes": ("probes", _probes),
 }
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from importlib.util import find_spec
+from typing import Any
 
 import numpy as np
 
@@ -216,9 +217,15 @@ def table(found: dict[str, dict[str, str]]) -> str:
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
+def recorded() -> dict[str, dict[str, Any]]:
+    """Return the versions of the engines and their answers, in the table of the last release."""
+    found: dict[str, dict[str, Any]] = release()["peers"]
+    return found
+
+
 def with_answers(page: str) -> str:
-    """Return a page with the answers that are in the table of the last release."""
-    found = release()["peers"]
+    """Return a page with the table of what is recorded."""
+    found = recorded()
     titled = {f"{name} {found['versions'][name]}": said for name, said in found["answers"].items()}
     return with_generated("trust", page, table(titled) + "\n")
 

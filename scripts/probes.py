@@ -64,7 +64,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("words", nargs="*", metavar="WORD", help="by default all")
     parser.add_argument("--rounds", type=float, default=1.0, help="share of the full counts")
-    parser.add_argument("--record", action="store_true", help="keep the result in out/records")
+    parser.add_argument("--record", action="store_true", help="keep the result in scripts/records")
     options = parser.parse_args()
     chosen = [
         probe

@@ -21,14 +21,13 @@ def test_tables_of_releases_are_small() -> None:
 def test_a_release_keeps_what_was_not_measured_again(tmp_path: Path) -> None:
     before = release()
     machine = dict.fromkeys(("processor", "cores", "memory_gb", "system"), "none")
-    rows = [{"probe": "a | b", "rounds": 2000, "failed": 1}]
-    record = {"machine": {"date": "today", **machine}, "probes": rows}
-    (tmp_path / "probes.json").write_text(json.dumps(record))
+    record = {"machine": {"date": "today", **machine}, "operations": {"a | b": {"agree": 7}}}
+    (tmp_path / "campaign.json").write_text(json.dumps(record))
     table = measured.condensed(tmp_path, before)
-    assert {**table, "probes": None} == {**before, "probes": None}
+    assert {**table, "campaign": None} == {**before, "campaign": None}
     assert json.loads(measured.written(table)) == table
     page = measured.page(measured.PAGE.read_text(encoding="utf-8"), table)
-    assert "| a \\| b | 2 000 | 1 |\n" in page and page.count("\n\n\n") == 0
+    assert "| a \\| b | 7 | 0 | 0 | 0 | 0 |\n" in page and page.count("\n\n\n") == 0
 
 
 def test_a_page_without_a_mark_is_refused() -> None:
