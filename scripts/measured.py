@@ -30,8 +30,8 @@ Rows = list[list[str]]
 _CASES = (
     *["spheres-82k", "spheres-1310k", "spheres-1310k-one-core", "built-1310k", "real-pairs"],
     *["small-pairs", "overlapping-pairs", "drilled-steps", "drilled-expression", "boxes-steps"],
-    *["milled-cylinders", "milled-capsules", "menger-4", "cubes", "coincident", "needles", "dome"],
-    *["files-checked", "files-unchecked"],
+    *["milled-cylinders", "milled-capsules", "capsules", "menger-4", "cubes", "coincident"],
+    *["needles", "dome", "files-checked", "files-unchecked"],
 )
 
 #: What campaigns say of cases.
