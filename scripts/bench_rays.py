@@ -213,7 +213,7 @@ def _row(
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a small mesh and few rays")
-    parser.add_argument("--record", action="store_true", help="keep the result in scripts/records")
+    parser.add_argument("--record", action="store_true", help="keep the result in out/records")
     options = parser.parse_args()
     mesh = icosphere(4 if options.quick else 7)
     width, count = (100, 5000) if options.quick else (1000, 300_000)

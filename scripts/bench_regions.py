@@ -179,7 +179,7 @@ def row(question: Question) -> dict[str, Any]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few and small")
-    parser.add_argument("--record", action="store_true", help="keep the result in scripts/records")
+    parser.add_argument("--record", action="store_true", help="keep the result in out/records")
     options = parser.parse_args()
     sizes = QUICK if options.quick else FULL
     rows = []

@@ -25,7 +25,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--max-triangles", type=int, default=2000)
     parser.add_argument("--results", type=Path, default=REPOSITORY / "out" / "campaign.jsonl")
-    parser.add_argument("--record", action="store_true", help="keep the counts in scripts/records")
+    parser.add_argument("--record", action="store_true", help="keep the counts in out/records")
     options, more = parser.parse_known_args()
     options.results.parent.mkdir(parents=True, exist_ok=True)
     scripts = options.meshes.parent / "csg"

@@ -129,7 +129,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("numbers", nargs="*", type=int, help="from 1; by default all")
     parser.add_argument("--folder", type=Path, default=FOLDER, help="to build in")
-    parser.add_argument("--record", action="store_true", help="keep the result in scripts/records")
+    parser.add_argument("--record", action="store_true", help="keep the result in out/records")
     options = parser.parse_args()
     core = options.folder / "core"
     rows = []

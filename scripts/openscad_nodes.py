@@ -2,7 +2,7 @@
 
     scripts/openscad_nodes
 
-Measures anew what is in scripts/records/openscad_nodes.tsv: of each script what OpenSCAD writes as
+Measures anew what is in tests/corpus/csg/openscad_nodes.tsv: of each script what OpenSCAD writes as
 `.csg`, and volume, area and Euler number of what it makes, or area, perimeter and outlines in the
 plane. tests/pipeline/test_csg_reference.py compares them. The program `openscad` must be on the
 PATH. The last five scripts of each module are special: empty, flat, touching, inside out.
@@ -21,9 +21,9 @@ from bspcsg.bsp import Region
 from bspcsg.io import read
 from bspcsg.modelling.planar import lettering
 from openscad_suite import asked, drawn, tolerance, with_fonts
-from recording import RECORDS
+from recording import REPOSITORY
 
-RECORD = RECORDS / "openscad_nodes.tsv"
+RECORD = REPOSITORY / "tests" / "corpus" / "csg" / "openscad_nodes.tsv"
 
 #: The folder of the files that scripts import.
 FOLDER = Path(__file__).parents[1] / "tests" / "corpus" / "csg"

@@ -6,7 +6,7 @@ SOURCE holds OpenSCAD's sources as they are published, 2021.01 for what is recor
 openscad`); its scripts are GPL or CC0 and not part of this repository. The program `openscad` of
 the same version must be on the PATH: it writes the `.csg` that is read here. DejaVu Sans
 (`fonts-dejavu-core`) is the font of those that name none that is there. What OpenSCAD makes of each
-script is in scripts/records/openscad_suite.tsv; --record measures that anew. Prints the scripts
+script is in tests/corpus/csg/openscad_suite.tsv; --record measures that anew. Prints the scripts
 that OpenSCAD evaluates without a warning and that are another set here, each with the reason, and
 counts. Ends with 1 if one has no reason.
 """
@@ -31,9 +31,9 @@ from bspcsg import csg
 from bspcsg.bsp import Region
 from bspcsg.io import read
 from csg_reference import _PLANE_GRID
-from recording import RECORDS
+from recording import REPOSITORY
 
-RECORD = RECORDS / "openscad_suite.tsv"
+RECORD = REPOSITORY / "tests" / "corpus" / "csg" / "openscad_suite.tsv"
 
 #: Folders of the sources with scripts that make shapes.
 FOLDERS = (

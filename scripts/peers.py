@@ -6,7 +6,6 @@ pip install libigl "bspcsg[bench]"
 """
 
 import argparse
-import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -19,7 +18,7 @@ import numpy as np
 
 from bspcsg._types import MeshArrays
 from bspcsg.bench.engines import ENGINES, Engine, EngineError, Operation, installed
-from recording import RECORDS, keep
+from recording import keep, release
 from support.documents import with_generated
 
 #: The unit cube, its faces counter-clockwise seen from outside.
@@ -219,8 +218,8 @@ def table(found: dict[str, dict[str, str]]) -> str:
 
 
 def recorded() -> dict[str, dict[str, Any]]:
-    """Return what is kept: the versions of the engines, and their answers."""
-    found: dict[str, dict[str, Any]] = json.loads((RECORDS / "peers.json").read_text("utf-8"))
+    """Return the versions of the engines and their answers, in the table of the last release."""
+    found: dict[str, dict[str, Any]] = release()["peers"]
     return found
 
 

@@ -11,7 +11,12 @@ from typing import Any
 from bspcsg.machine import machine as this_machine
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-RECORDS = REPOSITORY / "scripts" / "records"
+
+#: Where measuring scripts keep what they found; `scripts/measured` makes a release's table of it.
+RECORDS = REPOSITORY / "out" / "records"
+
+#: The tables of releases, one file each.
+RELEASES = REPOSITORY / "docs" / "records"
 
 
 def machine() -> dict[str, Any]:
@@ -28,10 +33,17 @@ def machine() -> dict[str, Any]:
 
 def keep(name: str, result: dict[str, Any]) -> Path:
     """Write a result beside the earlier ones, with the machine it was measured on."""
-    RECORDS.mkdir(exist_ok=True)
+    RECORDS.mkdir(parents=True, exist_ok=True)
     path = RECORDS / f"{name}.json"
     path.write_text(json.dumps({"machine": machine(), **result}, indent=1) + "\n")
     return path
+
+
+def release() -> dict[str, Any]:
+    """Return the table of the last release; empty if there is none."""
+    paths = sorted(RELEASES.glob("*.json"), key=lambda path: [int(n) for n in path.stem.split(".")])
+    found: dict[str, Any] = json.loads(paths[-1].read_text("utf-8")) if paths else {}
+    return found
 
 
 def keep_rows(name: str, rows: list[dict[str, Any]], key: str, order: list[str]) -> Path:

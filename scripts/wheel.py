@@ -66,13 +66,12 @@ def tools() -> Path:
 
 
 def committed(folder: Path) -> Path:
-    """Lay what is committed into a folder, with the page that an index shows."""
+    """Lay what is committed into a folder."""
     done = subprocess.run(
         ["git", "-C", str(REPOSITORY), "archive", "HEAD"], capture_output=True, check=True
     )
     with tarfile.open(fileobj=BytesIO(done.stdout)) as archive:
         archive.extractall(folder, filter="data")
-    run(sys.executable, folder / "scripts" / "readme_for_index.py", cwd=folder)
     return folder
 
 

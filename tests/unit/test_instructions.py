@@ -10,7 +10,7 @@ import pytest
 
 import instructions
 from instructions import CASES, SKIPPED
-from recording import RECORDS, REPOSITORY
+from recording import REPOSITORY
 
 _HERE = {"compiler": "rustc 1", "instruction set": "x86_64"}
 
@@ -33,14 +33,9 @@ def _keep(folder: Path, build: dict[str, Any]) -> None:
     (folder / "instructions.json").write_text(json.dumps(record), "utf-8")
 
 
-def test_cases_are_those_of_the_program_and_all_are_recorded() -> None:
+def test_cases_are_those_of_the_program() -> None:
     program = (REPOSITORY / "core/examples/fixed_cases.rs").read_text("utf-8")
     assert re.findall(r'(?m)^    \("(\w+)", \|\|', program) == list(CASES)
-    kept = json.loads((RECORDS / "instructions.json").read_text("utf-8"))["builds"]
-    assert {build: set(found["counts"]) for build, found in kept.items()} == {
-        "release": {*CASES},
-        "dev": {*CASES},
-    }
 
 
 @pytest.mark.parametrize(("count", "code"), [(1029, 0), (971, 0), (1031, 1), (969, 1)])
