@@ -1,11 +1,7 @@
-"""Counts the instructions of some fixed cases and compares them with the recorded counts.
+"""Counts the instructions of some fixed cases and compares them with the counts kept before.
 
 On a machine that is shared, times say little about a small change; counts repeat to within 0.1 %.
 Needs valgrind. With --record the new counts are kept, with the machine and the compiler.
-
-With --check the program that `cargo test` has built anyway is counted, and a count that is more
-than 3 % from the recorded one fails, in either direction: what costs less has to be recorded, or
-later losses hide in the gain. The exit code is 77 if the recorded counts are from elsewhere.
 """
 
 import argparse
@@ -15,7 +11,6 @@ import platform
 import re
 import shutil
 import subprocess
-import sys
 import tempfile
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
@@ -42,34 +37,16 @@ CASES = {
 
 _NAME = "instructions"
 
-#: Cargo's options and folder of the build that is measured, and of the one that tests leave.
-BUILDS = {"release": (["--release"], "release"), "dev": ([], "debug")}
-
-#: Settings of scripts/check, so that its build serves.
-_AS_CHECKED = {"CARGO_PROFILE_DEV_DEBUG": "line-tables-only", "CARGO_INCREMENTAL": "0"}
-
 #: By how much two counts of the same program may differ; more is a change.
 _NOISE = 0.001
 
-#: The change that fails a check.
-_BOUND = 0.03
 
-#: What says that nothing could be compared, as automake's tests do.
-SKIPPED = 77
-
-
-def built(build: str) -> Path:
-    """Build the program with the cases and return where it is."""
-    options, folder = BUILDS[build]
-    command = ["cargo", "build", *options, "--quiet", "--example", "fixed_cases"]
-    subprocess.run(
-        [*command, "--message-format=short"],
-        cwd=REPOSITORY / "core",
-        env=_AS_CHECKED | os.environ,
-        check=True,
-    )
-    target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "core" / "target"))
-    return target / folder / "examples" / "fixed_cases"
+def built() -> Path:
+    """Build the program with the cases as users' builds are, and return where it is."""
+    command = ["cargo", "build", "--release", "--quiet", "-p", "bspcsg", "--example", "fixed_cases"]
+    subprocess.run(command, cwd=REPOSITORY, check=True)
+    target = Path(os.environ.get("CARGO_TARGET_DIR", REPOSITORY / "target"))
+    return target / "release" / "examples" / "fixed_cases"
 
 
 def counted(program: Path, case: str) -> int:
@@ -103,12 +80,11 @@ def place() -> dict[str, str]:
     return {"compiler": done.stdout.strip(), "instruction set": platform.machine()}
 
 
-def recorded(build: str) -> dict[str, Any]:
-    """Return what is kept of a build: its place and its counts, both empty if there are none."""
+def recorded() -> dict[str, int]:
+    """Return the counts that were kept on such a machine with this compiler."""
     path = RECORDS / f"{_NAME}.json"
-    kept = json.loads(path.read_text("utf-8")).get("builds", {}) if path.exists() else {}
-    found: dict[str, Any] = kept.get(build, {"place": {}, "counts": {}})
-    return found
+    kept: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
+    return dict(kept["counts"]) if kept.get("place") == place() else {}
 
 
 def line(case: str, count: int, before: int | None) -> str:
@@ -121,75 +97,23 @@ def line(case: str, count: int, before: int | None) -> str:
     return f"{text}   {ratio:.4f} of {before:,}: {word}"
 
 
-def changed(counts: dict[str, int], before: dict[str, int]) -> list[str]:
-    """Return the cases whose counts are too far from the recorded ones, or not recorded."""
-    return [
-        case
-        for case, count in counts.items()
-        if not before.get(case) or abs(count / before[case] - 1) > _BOUND
-    ]
-
-
-def obstacle(kept: dict[str, Any]) -> str:
-    """Return why counts cannot be compared with recorded ones, or nothing."""
-    if shutil.which("valgrind") is None:
-        return "valgrind is needed: apt-get install valgrind"
-    here = place()
-    others = [name for name in here if kept["place"].get(name) != here[name]]
-    return "; ".join(
-        f"recorded with the {name} {kept['place'].get(name)}, this is {here[name]}"
-        for name in others
-    )
-
-
-def checked(cases: Iterable[str], program: Path | None) -> int:
-    """Compare the counts of the program that tests leave, and return the exit code."""
-    kept = recorded("dev")
-    reason = obstacle(kept)
-    if reason:
-        print(f"instructions are not compared: {reason}")
-        return SKIPPED
-    found = changed(all_counted(program or built("dev"), cases, kept["counts"]), kept["counts"])
-    if found:
-        print(f"instructions: more than {_BOUND:.0%} from the recorded counts: {', '.join(found)}.")
-        print("If that is meant, keep the new counts: scripts/instructions --record")
-    return 1 if found else 0
-
-
-def record(cases: Iterable[str]) -> None:
-    """Count with both builds and keep the counts; those of other cases stay if all else is so."""
-    here = place()
-    builds = {}
-    for build in BUILDS:
-        kept = recorded(build)
-        print(f"{build}:")
-        counts = all_counted(built(build), cases, kept["counts"])
-        before = kept["counts"] if kept["place"] == here else {}
-        builds[build] = {"place": here, "counts": {**before, **counts}}
-    print(keep(_NAME, {"cases": CASES, "builds": builds}))
-
-
-def main(arguments: list[str] | None = None) -> int:
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("cases", nargs="*", metavar="case", help=f"one of {', '.join(CASES)}")
     parser.add_argument("--program", type=Path, help="a built fixed_cases, instead of building it")
-    parser.add_argument("--check", action="store_true", help="fail if a count has changed")
-    parser.add_argument("--record", action="store_true", help="keep the counts of both builds")
-    options = parser.parse_args(arguments)
+    parser.add_argument("--record", action="store_true", help="keep the counts")
+    options = parser.parse_args()
     unknown = [case for case in options.cases if case not in CASES]
     if unknown:
         parser.error(f"no such case: {', '.join(unknown)}; there are {', '.join(CASES)}")
-    cases = options.cases or list(CASES)
-    if options.check:
-        return checked(cases, options.program)
     if shutil.which("valgrind") is None:
         raise SystemExit("instructions: valgrind is needed: apt-get install valgrind")
+    before = recorded()
+    counts = all_counted(options.program or built(), options.cases or CASES, before)
     if options.record:
-        record(cases)
-    else:
-        all_counted(options.program or built("release"), cases, recorded("release")["counts"])
-    return 0
+        result = {"place": place(), "cases": CASES, "counts": {**before, **counts}}
+        print(keep(_NAME, result))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -97,7 +97,7 @@ def _rays(record: Record) -> Rows:
 
 
 def _instructions(record: Record) -> Rows:
-    counts = record["builds"]["release"]["counts"]
+    counts = record["counts"]
     return [[*counts], [f"{count / 1e6:.3g}" for count in counts.values()]]
 
 

@@ -28,7 +28,7 @@ SECONDS = 600
 
 
 class Mutant(NamedTuple):
-    """A change of one place, and the test file (and test) that must notice it."""
+    """A change of one place, and the module of tests (and test) that must notice it."""
 
     what: str
     file: str
@@ -159,12 +159,15 @@ def verdict_on(mutant: Mutant, core: Path) -> str:
 
 
 def copy_core(core: Path) -> None:
-    """Copy the sources; what has not changed keeps its time, so that it is not built again."""
-    for name in ("src", "tests", "benches", "examples"):
-        for source in (REPOSITORY / "core" / name).rglob("*.rs"):
-            _copied(source, core / source.relative_to(REPOSITORY / "core"))
-    for name in ("Cargo.toml", "Cargo.lock"):
-        _copied(REPOSITORY / "core" / name, core / name)
+    """Copy the workspace; what has not changed keeps its time, so that it is not built again."""
+    members = [REPOSITORY / name for name in ("core", "fuzz", "lecture")]
+    sources = [path for member in members for path in member.rglob("*") if _is_source(path)]
+    for source in [REPOSITORY / "Cargo.toml", REPOSITORY / "Cargo.lock", *sources]:
+        _copied(source, core.parent / source.relative_to(REPOSITORY))
+
+
+def _is_source(path: Path) -> bool:
+    return path.suffix in (".rs", ".toml") or "kept" in path.parts and path.is_file()
 
 
 def _copied(source: Path, target: Path) -> None:
@@ -176,20 +179,13 @@ def _copied(source: Path, target: Path) -> None:
 def tested(mutant: Mutant, core: Path) -> int:
     """Return cargo's status; a build that fails has another one than a test."""
     file, *names = mutant.tests
-    cargo = [
-        "cargo",
-        "test",
-        "--quiet",
-        "--manifest-path",
-        str(core / "Cargo.toml"),
-        "--test",
-        file,
-    ]
+    cargo = ["cargo", "test", "--quiet", "--manifest-path", str(core / "Cargo.toml"), "--lib"]
     built = subprocess.run([*cargo, "--no-run"], capture_output=True, check=False)
     if built.returncode != 0:
         return -1
     try:
-        done = subprocess.run([*cargo, *names], capture_output=True, check=False, timeout=SECONDS)
+        path = "::".join(["tests", file, *names])
+        done = subprocess.run([*cargo, path], capture_output=True, check=False, timeout=SECONDS)
     except subprocess.TimeoutExpired:
         return FAILED
     return done.returncode

@@ -88,10 +88,10 @@ def built(kind: str, tree: Path) -> Path:
     target, tag = TARGETS[kind]
     run("rustup", "target", "add", target, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     binaries = tools()
-    known = {"CARGO_TARGET_DIR": str(REPOSITORY / "core" / "target")} | dict(os.environ)
+    known = {"CARGO_TARGET_DIR": str(REPOSITORY / "target")} | dict(os.environ)
     known |= {"CARGO_ENCODED_RUSTFLAGS": "\x1f".join(anonymous(tree, known))}
     environment = known | {"PATH": f"{binaries}:{os.environ['PATH']}"}
-    options = ["--zig", "--compatibility", tag, "--target", target, "--profile", "dist"]
+    options = ["--zig", "--compatibility", tag, "--target", target]
     command = [binaries / "maturin", "build", "--quiet", *options, "--out", tree / "dist"]
     run(*command, cwd=tree, env=environment)
     return kept(next((tree / "dist").glob("*.whl")))

@@ -21,7 +21,7 @@ LARGEST = 8_000_000
 _FOREIGN = re.compile(r"(^|/)(\.git|\.venv|target|out|dist|__pycache__)/|\.(so|pyd|pyc)$")
 
 #: Files that a source distribution has beside the package.
-_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "core/Cargo.toml")
+_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "Cargo.toml", "core/Cargo.toml")
 
 #: Sections of a library that was not stripped.
 _SYMBOLS = (b".symtab\0", b".debug_info\0")
@@ -78,7 +78,7 @@ def problems_of_source(path: Path, root: Path) -> list[str]:
     with tarfile.open(path) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     core = {f.relative_to(root).as_posix() for f in (root / "core/src").rglob("*.rs")}
-    wanted = package(root) | core | {*_SOURCES, "core/Cargo.lock", "PKG-INFO"}
+    wanted = package(root) | core | {*_SOURCES, "Cargo.lock", "PKG-INFO"}
     problems = [f"{name} is missing" for name in sorted(wanted - names)]
     foreign = [name for name in sorted(names) if _FOREIGN.search(name)]
     return problems + [f"{name} should not be there" for name in foreign] + _problems_of_size(path)

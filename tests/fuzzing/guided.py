@@ -144,13 +144,14 @@ def built(folder: Path) -> Path:
     host = next(line[6:] for line in version.splitlines() if line.startswith("host: "))
     target = folder / "target"
     # With `--target` what runs while building is not instrumented.
-    words = ["--quiet", "--release", "--bins", "--target", host, "--target-dir", str(target)]
+    words = ["--quiet", "--profile", "fuzz", "--target", host, "--target-dir", str(target)]
     subprocess.run(
-        ["cargo", "build", "--manifest-path", str(REPOSITORY / "fuzz" / "Cargo.toml"), *words],
+        ["cargo", "build", "-p", "bspcsg-fuzz", "--features", "run", "--bins", *words],
+        cwd=REPOSITORY,
         env={**os.environ, "RUSTFLAGS": " ".join(FLAGS)},
         check=True,
     )
-    return target / host / "release"
+    return target / host / "fuzz"
 
 
 def _text(said: bytes | None) -> str:

@@ -43,7 +43,7 @@ def test_a_fault_in_a_workflow_is_found(tmp_path: Path) -> None:
 def test_what_workflows_name_exists(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     names = re.findall(r"(?<![\w/.])((?:scripts|core)/[\w./]+\w)", text)
-    assert names and all((ROOT / name).exists() or name == "core/target" for name in names)
+    assert names and all((ROOT / name).exists() for name in names)
     jobs = document(path)["jobs"]
     needed = [job.get("needs", []) for job in jobs.values()]
     assert {name for one in needed for name in ([one] if isinstance(one, str) else one)} <= set(
