@@ -100,6 +100,7 @@ def in_single(mesh: RawMesh) -> RawMesh:
     return replace(mesh, vertices=mesh.vertices.astype(np.float32).astype(np.float64))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("suffix", "text"), FORMS)
 @given(mesh=assemblies(PLAIN | ODD))
 @settings(deadline=None, max_examples=40)
