@@ -11,9 +11,6 @@ import pytest
 import bspcsg as b
 from bspcsg.script import run as running
 
-#: What a script changes in its process.
-CHANGED: list[tuple[object, str]] = [(sys, "argv"), (sys, "path"), (running, "_shown")]
-
 
 @pytest.fixture
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -22,8 +19,9 @@ def here(monkeypatch: pytest.MonkeyPatch) -> None:
     def run_child(task: bytes, name: str, timeout: float | None) -> int:
         known = set(sys.modules)
         with monkeypatch.context() as patch, contextlib.redirect_stdout(sys.stderr):
-            for owner, field in CHANGED:
-                patch.setattr(owner, field, list(getattr(owner, field)))
+            patch.setattr(running, "_shown", [])
+            patch.setattr("sys.argv", [])
+            patch.setattr("sys.path", list(sys.path))
             patch.setitem(sys.modules, "__main__", sys.modules["__main__"])
             patch.setattr("sys.stdin", SimpleNamespace(buffer=io.BytesIO(task)))
             running.serve()
