@@ -100,6 +100,7 @@ def in_single(mesh: RawMesh) -> RawMesh:
     return replace(mesh, vertices=mesh.vertices.astype(np.float32).astype(np.float64))
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("suffix", "text"), FORMS)
 @given(mesh=assemblies(PLAIN | ODD))
 @settings(deadline=None, max_examples=40)
@@ -139,6 +140,8 @@ def test_from_format_to_format(middle: str, mesh: RawMesh) -> None:
         return
     mesh = in_single(mesh)
     through = written(written(mesh, middle, False), ".3mf", False)
-    assert through.objects == written(mesh, ".3mf", False).objects or len(mesh.objects) == 1
+    # One body without a name may be called by the file's, whatever empty ones were beside it.
+    is_one = sum(count > 0 for _, count in mesh.objects) == 1
+    assert is_one or through.objects == written(mesh, ".3mf", False).objects
     assert volumes(through) == volumes(mesh)
     assert math.isclose(float(sum(volumes(through))), float(sum(volumes(mesh))))

@@ -31,6 +31,7 @@ def far_corner(random: Random) -> list[int]:
     return [random.choice(ends) for _ in range(3)]
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(120))
 def test_sets_of_random_shapes_are_the_same_at_the_end_of_the_lattice(seed: int) -> None:
     random = Random(seed)

@@ -71,9 +71,24 @@ def test_a_tree_is_rebuilt_from_its_text(facets: Any, policy: bsp.Policy, seed: 
     assert np.array_equal(again.fragments.vertices, tree.fragments.vertices)
 
 
+def _parts_at_a_tie(one: bsp.PartitionTree, other: bsp.PartitionTree) -> bool:
+    """Return whether another pivot is chosen somewhere, of the same score but for rounding.
+
+    Shares of volumes are doubles, so the last bit decides between candidates that are as good.
+    """
+    for ours, theirs in zip(one.trace(), other.trace(), strict=True):
+        a, b = ([c.score for c in division.candidates] for division in (ours, theirs))
+        assert np.allclose(a, b, rtol=0, atol=1e-12)
+        if ours.pivot != theirs.pivot:
+            return True
+    return False
+
+
 @given(scenes(), _policies)
 def test_a_shift_changes_nothing(facets: Any, policy: bsp.Policy) -> None:
     there, here = (bsp.PartitionTree(f, policy, pitch=-6) for f in (facets + 8, facets))
+    if policy == "least-cost" and _parts_at_a_tie(there, here):
+        return
     assert there.arrays["cut"].tolist() == here.arrays["cut"].tolist()
     assert np.allclose(there.fragments.vertices, here.fragments.vertices + 8)
 

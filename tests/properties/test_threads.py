@@ -100,6 +100,7 @@ def seen(solid: b.Solid) -> tuple[object, list[int]]:
 
 # Found: threads that looked at one moved solid for the first time together got an error, or two
 # meshes of it.
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", PENDING)
 def test_a_thread_may_come_between_any_two_lines(name: str) -> None:
     expected = mesh_of(PENDING[name]())

@@ -342,21 +342,22 @@ def memory(count: int = 100_000) -> None:
     sys.stdout.write(f"{held_mb() - before}\n")
 
 
-def stack() -> None:
+def stack(count: int = 300) -> None:
     """Combine many solids in one place in a thread with little stack, as some systems give it."""
     corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
     faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
     steps = np.array([0.0003, 0.0002, 0.0001])
     solids = [
-        b.Solid(corners * (10 + 0.001 * k) - 2 - k * steps, faces, pitch=-9) for k in range(300)
+        b.Solid(corners * (10 + 0.001 * k) - 2 - k * steps, faces, pitch=-9) for k in range(count)
     ]
     found: list[b.Solid] = []
     b.set_threads(1)
-    threading.stack_size(1 << 19)
+    threading.stack_size(count // 75 << 17)
     thread = threading.Thread(target=lambda: found.append(b.xor(*solids)))
     thread.start()
     thread.join()
-    assert found[0].equals(b.xor(*solids[:150]) ^ b.xor(*solids[150:]))
+    half = count // 2
+    assert found[0].equals(b.xor(*solids[:half]) ^ b.xor(*solids[half:]))
 
 
 PROGRAMS: dict[str, Callable[..., None]] = {

@@ -3,6 +3,7 @@
 import time
 
 import numpy as np
+import pytest
 
 import bspcsg as b
 from bspcsg.io import RawMesh
@@ -57,6 +58,7 @@ def test_shells_are_turned_outwards_but_for_those_in_others() -> None:
 
 
 # Found: cavities cost their square in `decompose` and reports, parts theirs in `repair`.
+@pytest.mark.deep
 def test_many_cavities_cost_each_alike() -> None:
     times = {}
     for count in (2000, 8000):

@@ -41,6 +41,7 @@ SCENES = [pytest.param(facets, id=name) for name, facets in scenes()]
 
 # Found: leaves that store a segment were not those of the notes.
 class TestConstruction:
+    @pytest.mark.sampled(3)
     @pytest.mark.parametrize("policy", [*bsp.POLICIES, "end-points"])
     @pytest.mark.parametrize("facets", SCENES)
     def test_following_the_divisions_makes_the_nodes(self, facets: Any, policy: Any) -> None:

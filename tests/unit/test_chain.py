@@ -129,6 +129,7 @@ CASES = [
 
 
 # Found: n steps such as `solid = solid.rotate(1)` cost n².
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(("start", "step"), CASES)
 def test_every_step_costs_the_same(
     start: b.Solid, step: Callable[[b.Solid], b.Solid], monkeypatch: pytest.MonkeyPatch

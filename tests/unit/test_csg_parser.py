@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+import support
 from bspcsg import BspcsgError, FormatError, InvalidParameterError, Solid, csg
 from bspcsg.csg import Argument, CsgTree, Node
 from bspcsg.csg.syntax.json_form import DEEPEST_NODE
 
-DEEP = 100_000
+#: Levels: more than Python can go down by calls.
+DEEP = 100_000 if support.DEEP else 5_000
 
 CORPUS = Path(__file__).parent.parent / "corpus" / "csg"
 

@@ -160,6 +160,7 @@ def test_a_pyramid_s_apex() -> None:
 # Fillets
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("segments", [4, 8, 12, 32])
 @pytest.mark.parametrize("r", [0.25, 0.5, 0.9])
 def test_a_box_without_edges_is_the_round_box(segments: int, r: float) -> None:
@@ -261,6 +262,7 @@ def test_a_post_and_its_plate_are_round_in_one_call() -> None:
 
 
 # Found: a fillet of all edges of a boss with eight sides ended in an `IndexError`.
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("sides", [8, 16])
 def test_a_boss_of_many_sides_and_its_plate_are_round_in_one_call(sides: int) -> None:
     boss = b.cylinder(6, r=5, segments=sides).translate((10, 10, 3))
@@ -296,6 +298,7 @@ def test_turned_parts_lose_as_much(part: b.Solid) -> None:
 
 # Found: `fillet` of convex and concave edges at once failed on turned bodies, where slivers
 # parted plane faces.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("turn", [(30, "x"), (17, "z"), (17, (1, 2, 3)), (40, (3, 1, 2))])
 @pytest.mark.parametrize("part", [NOTCH, STEP, POST], ids=["notch", "step", "post"])
 def test_turned_parts_become_as_round(part: b.Solid, turn: Any) -> None:
@@ -362,6 +365,7 @@ def test_many_edges_are_refused() -> None:
 
 # Found: blends of bodies that end near the end of the lattice were refused: their cutters reach
 # beyond it.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(("size", "pitch"), [(8, -15), (8e6, None), (8e9, None)])
 def test_blends_at_the_end_of_the_lattice(size: float, pitch: int | None) -> None:
     """Cutters reach beyond it, and doubles are as coarse as its steps."""

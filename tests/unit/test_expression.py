@@ -101,7 +101,7 @@ def test_a_long_chain_keeps_only_its_last_operation() -> None:
     assert [reference() is not None for reference in watched[:-1]] == [False] * 19
 
 
-@pytest.mark.parametrize("count", [50_000])
+@pytest.mark.parametrize("count", [5_000, pytest.param(50_000, marks=pytest.mark.deep)])
 def test_deep_expressions_need_no_deep_stack(count: int) -> None:
     a, c = b.cube(1), b.cube(2)
     solid = a

@@ -153,6 +153,7 @@ def test_parts_of_a_solid_the_largest_first() -> None:
 
 # Found: `decompose` ended in an error, or returned empty parts, where a part is thinner than a
 # step of the lattice.
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(150))
 def test_no_part_is_lost_on_a_coarse_lattice(seed: int) -> None:
     """Of parts thinner than a step of it rounding could leave nothing."""

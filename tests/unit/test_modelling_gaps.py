@@ -59,6 +59,7 @@ def random_body(rng: np.random.Generator) -> b.Solid:
     return solid
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(12))
 def test_gaps_are_those_of_all_pairs(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -84,6 +85,7 @@ def random_tetrahedron(random: Random) -> b.Solid:
 
 # Found: `intersects` and `min_gap` said that pieces which share a slanted wall do not touch (17
 # of 55), by rounded corners.
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("seed", range(60))
 def test_pieces_that_share_a_slanted_wall_touch_though_corners_are_rounded(seed: int) -> None:
     random = Random(seed)

@@ -109,6 +109,7 @@ def test_thin_layers_with_a_plane_in_common_are_combined_at_once() -> None:
 
 
 # Found: needles cost their square in the checks of meshes and results, turned or not.
+@pytest.mark.deep
 @pytest.mark.parametrize(
     ("few", "make"),
     [
@@ -123,7 +124,7 @@ def test_many_needles_cost_each_alike(few: int, make: Callable[[int], object]) -
 
 
 # Found: a cut at a corner of more than 2 000 needles did not end within a minute.
-@pytest.mark.parametrize("teeth", [500, 2500])
+@pytest.mark.parametrize("teeth", [500, pytest.param(2500, marks=pytest.mark.deep)])
 def test_a_corner_of_thousands_of_needles_is_cut_at_once(teeth: int) -> None:
     part = comb(teeth) - b.cube(3).translate(0, 7, 1)
     assert seconds(lambda: part.volume_exact) < 20

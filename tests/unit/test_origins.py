@@ -39,6 +39,7 @@ def test_triangles_name_faces_that_hold_their_centres(axis: int) -> None:
 
 
 # Found: plates with many holes cost their square where their mesh is made.
+@pytest.mark.deep
 def test_many_holes_cost_each_alike() -> None:
     times = {}
     for rows in (15, 60):

@@ -2,6 +2,7 @@
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -88,30 +89,30 @@ def test_parameters_have_an_error_of_their_own() -> None:
 
 @pytest.mark.parametrize("make", PITCHED.values(), ids=PITCHED)
 class TestPitch:
-    @pytest.mark.parametrize("pitch", [-6, np.int8(-6), np.int64(-6), -6.0, np.float32(-6)])
-    def test_whole_numbers_of_any_type(self, make: Callable[[Any], Any], pitch: Any) -> None:
-        assert make(pitch).pitch == -6
+    def test_whole_numbers_of_any_type(self, make: Callable[[Any], Any]) -> None:
+        for pitch in (-6, np.int8(-6), np.int64(-6), -6.0, np.float32(-6)):
+            assert make(pitch).pitch == -6, type(pitch)
 
     # Found: `pitch=1.5` became 1.
     # Found: every bad number was an error about a mesh.
-    @pytest.mark.parametrize("pitch", [1e-9, 1.5, True, np.True_, "-9", b"-9", [1], np.nan, np.inf])
-    def test_anything_else_is_refused(self, make: Callable[[Any], Any], pitch: Any) -> None:
-        error = refusal(lambda: make(pitch))
-        assert error.code == "invalid_parameter"
-        assert "pitch" in error.message
+    def test_anything_else_is_refused(self, make: Callable[[Any], Any]) -> None:
+        for pitch in (1e-9, 1.5, True, np.True_, "-9", b"-9", [1], np.nan, np.inf):
+            error = refusal(partial(make, pitch))
+            assert error.code == "invalid_parameter", pitch
+            assert "pitch" in error.message, pitch
 
-    @pytest.mark.parametrize("pitch", [-23, 23, 2**70, -(2**70)])
-    def test_out_of_range(self, make: Callable[[Any], Any], pitch: Any) -> None:
-        error = refusal(lambda: make(pitch))
-        assert (type(error), error.code) == (b.LimitError, "too_large")
+    def test_out_of_range(self, make: Callable[[Any], Any]) -> None:
+        for pitch in (-23, 23, 2**70, -(2**70)):
+            error = refusal(partial(make, pitch))
+            assert (type(error), error.code) == (b.LimitError, "too_large"), pitch
 
 
 @pytest.mark.parametrize("call", THREADED.values(), ids=THREADED)
-@pytest.mark.parametrize("threads", [-1, 2**70, 1025, 1.5, "2", True, None, np.nan])
-def test_threads(call: Callable[[Any], Any], threads: Any) -> None:
-    error = refusal(lambda: call(threads))
-    assert error.code == "invalid_parameter"
-    assert "threads" in error.message
+def test_threads(call: Callable[[Any], Any]) -> None:
+    for threads in (-1, 2**70, 1025, 1.5, "2", True, None, np.nan):
+        error = refusal(partial(call, threads))
+        assert error.code == "invalid_parameter", threads
+        assert "threads" in error.message, threads
 
 
 def test_threads_of_other_types() -> None:
@@ -244,14 +245,22 @@ COORDINATES: dict[str, tuple[Any, Callable[[Any], object]]] = {
 
 # Found: imaginary parts, dates, truth values and entries that are masked out became coordinates
 # in silence.
-@pytest.mark.parametrize("kind", NO_NUMBERS)
 @pytest.mark.parametrize("name", COORDINATES)
-def test_coordinates_are_numbers(name: str, kind: str) -> None:
+def test_coordinates_are_numbers(name: str) -> None:
     array, call = COORDINATES[name]
     call(np.asarray(array, dtype=np.float32))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert isinstance(refusal(lambda: call(NO_NUMBERS[kind](array))), b.BspcsgError)
+        for kind, spoilt in NO_NUMBERS.items():
+            assert _is_refused(call, spoilt(array)), kind
+
+
+def _is_refused(call: Callable[[Any], Any], given: Any) -> bool:
+    try:
+        call(given)
+    except b.BspcsgError:
+        return True
+    return False
 
 
 def test_masked_faces_and_values_are_refused() -> None:

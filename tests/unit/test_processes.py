@@ -17,7 +17,7 @@ def ran(name: str, folder: Path, patience: float = 100, **environment: str) -> t
     """Run a program in a folder; return both streams. It must end, and end well."""
     path = os.pathsep.join([str(REPOSITORY), str(REPOSITORY / "tests")])
     ended = subprocess.run(
-        [sys.executable, "-m", "support.processes", name],
+        [sys.executable, "-m", "support.processes", *name.split()],
         cwd=folder,
         env={**os.environ, "PYTHONPATH": path, **environment},
         capture_output=True,
@@ -30,8 +30,8 @@ def ran(name: str, folder: Path, patience: float = 100, **environment: str) -> t
 
 
 # Found: a process that was forked after use waited for ever.
-# Found: a process that was forked after use waited for ever.
 @unix
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["fork", "preload", "with-fork", "with-forkserver"])
 def test_a_process_forks_after_use(name: str, tmp_path: Path) -> None:
     ran(name, tmp_path)
@@ -47,6 +47,7 @@ def test_threads_are_started_where_many_faces_meet(tmp_path: Path) -> None:
     ran("crowd", tmp_path, RAYON_NUM_THREADS="2")
 
 
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("name", ["with-spawn", "joblib"])
 def test_solids_go_to_new_processes_and_come_back(name: str, tmp_path: Path) -> None:
     ran(name, tmp_path)
@@ -70,6 +71,7 @@ def test_a_signal_handler_forks_in_the_middle_of_an_operation(tmp_path: Path) ->
 
 
 @linux
+@pytest.mark.sampled(2)
 @pytest.mark.parametrize("count", ["1", "3"])
 def test_the_number_of_threads_means_the_same_in_a_child(count: str, tmp_path: Path) -> None:
     ran("threads", tmp_path, RAYON_NUM_THREADS=count)
@@ -92,7 +94,6 @@ def test_small_operations_leave_no_memory_behind(tmp_path: Path) -> None:
 
 # Found: a symmetric difference of many operands in one place went a call deeper for each, to the
 # end of the stack.
-# Found: a symmetric difference of many operands in one place went a call deeper for each, to the
-# end of the stack.
-def test_many_symmetric_differences_need_no_deep_stack(tmp_path: Path) -> None:
-    ran("stack", tmp_path)
+@pytest.mark.parametrize("count", [75, pytest.param(300, marks=pytest.mark.deep)])
+def test_many_symmetric_differences_need_no_deep_stack(count: int, tmp_path: Path) -> None:
+    ran(f"stack {count}", tmp_path)

@@ -1,10 +1,36 @@
+import contextlib
+import io
 import math
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import bspcsg as b
+from bspcsg.script import run as running
+
+
+@pytest.fixture
+def here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let scripts run in this process, for a new one takes a third of a second."""
+
+    def run_child(task: bytes, name: str, timeout: float | None) -> int:
+        known = set(sys.modules)
+        with monkeypatch.context() as patch, contextlib.redirect_stdout(sys.stderr):
+            patch.setattr(running, "_shown", [])
+            patch.setattr("sys.argv", [])
+            patch.setattr("sys.path", list(sys.path))
+            patch.setitem(sys.modules, "__main__", sys.modules["__main__"])
+            patch.setattr("sys.stdin", SimpleNamespace(buffer=io.BytesIO(task)))
+            running.serve()
+        for module in set(sys.modules) - known:
+            if str(getattr(sys.modules[module], "__file__", "")).startswith(str(Path(name).parent)):
+                del sys.modules[module]
+        return 0
+
+    monkeypatch.setattr(running, "_run_child", run_child)
 
 
 def script(folder: Path, text: str) -> Path:
@@ -18,6 +44,7 @@ def test_a_result_is_the_solid(tmp_path: Path) -> None:
     assert b.run_script(path).volume == 26
 
 
+@pytest.mark.usefixtures("here")
 def test_results_know_what_made_them(tmp_path: Path) -> None:
     text = "import bspcsg as b\nresult = (b.cube(3) - b.half_space((1, 0, 0), 1)).scale(2)\n"
     result = b.run_script(script(tmp_path, text))
@@ -29,6 +56,7 @@ def test_results_know_what_made_them(tmp_path: Path) -> None:
     assert b.run_script(path).last_operation is None
 
 
+@pytest.mark.usefixtures("here")
 def test_results_may_be_several_or_meshes(tmp_path: Path) -> None:
     path = script(tmp_path, "import bspcsg as b\nresult = [b.cube(1), b.cube(2)]\n")
     assert b.run_script(path).volume == 8
@@ -45,6 +73,7 @@ def test_what_is_shown_is_united_even_after_exit(tmp_path: Path) -> None:
     assert b.run_script(path).volume == 2
 
 
+@pytest.mark.usefixtures("here")
 def test_scripts_see_their_folder_their_arguments_and_defines(tmp_path: Path) -> None:
     (tmp_path / "sizes.py").write_text("HEIGHT = 5\n")
     path = script(
@@ -76,6 +105,7 @@ if early == 9: raise ValueError("line 17")
 
 
 # Found: `-D` did nothing where the script assigns the name, and took any name.
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(
     ("defines", "volume", "left"),
     [
@@ -94,6 +124,7 @@ def test_values_take_the_place_of_what_the_top_level_assigns(
     assert b.run_script(path, arguments=[left], defines=defines).volume == volume
 
 
+@pytest.mark.usefixtures("here")
 def test_names_that_are_not_assigned_cannot_be_set(tmp_path: Path) -> None:
     path = script(tmp_path, ASSIGNING)
     with pytest.raises(b.FormatError) as caught:
@@ -111,6 +142,7 @@ def test_names_that_are_not_assigned_cannot_be_set(tmp_path: Path) -> None:
         b.run_script(path, defines={"w": 1})
 
 
+@pytest.mark.usefixtures("here")
 def test_lines_keep_their_numbers_where_values_are_set(tmp_path: Path) -> None:
     path = script(tmp_path, ASSIGNING)
     with pytest.raises(b.FormatError, match=r"part\.py:17: ValueError: line 17"):
@@ -131,18 +163,25 @@ def test_what_scripts_print_goes_to_standard_error(
         ("def f():\n    return 1 / 0\nf()\n", "script_failed", "part.py:2: ZeroDivisionError: div"),
         ("x = (\n", "script_failed", "part.py:1: SyntaxError: '(' was never closed"),
         ("import bspcsg\nbspcsg.cube(-1)\n", "invalid_parameter", "part.py:2: size must be above"),
-        ("import os\nos._exit(3)\n", "script_died", "ended its process with code 3"),
         ("x = 1\n", "no_result", "left no variable “result”"),
         ("result = 3\n", "invalid_parameter", "Cannot find a mesh in int"),
-        ("while True:\n    pass\n", "timeout", "longer than 2 seconds"),
     ],
 )
+@pytest.mark.usefixtures("here")
 def test_scripts_that_fail(tmp_path: Path, text: str, code: str, says: str) -> None:
-    path = script(tmp_path, text)
     with pytest.raises(b.BspcsgError) as caught:
-        b.run_script(path, timeout=2 if code == "timeout" else 60)
+        b.run_script(script(tmp_path, text))
     assert caught.value.code == code
     assert says in str(caught.value)
+
+
+def test_scripts_that_end_without_an_answer(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError, match="ended its process with code 3") as caught:
+        b.run_script(script(tmp_path, "import os\nos._exit(3)\n"))
+    assert caught.value.code == "script_died"
+    with pytest.raises(b.FormatError, match=r"longer than 0\.5 seconds") as caught:
+        b.run_script(script(tmp_path, "while True:\n    pass\n"), timeout=0.5)
+    assert caught.value.code == "timeout"
 
 
 def test_a_script_that_is_not_there(tmp_path: Path) -> None:
@@ -158,12 +197,14 @@ def test_show_does_nothing_elsewhere() -> None:
 
 # Found: `run` took a script that gives up by `sys.exit("…")` for done, and lost a `result` before
 # `sys.exit(0)`.
+@pytest.mark.usefixtures("here")
 def test_scripts_may_exit_with_a_result(tmp_path: Path) -> None:
     for end in ("sys.exit()", "sys.exit(0)", "sys.exit(None)"):
         text = f"import sys\nimport bspcsg as b\nresult = b.cube(2)\n{end}\n"
         assert b.run_script(script(tmp_path, text)).volume == 8
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(("code", "says"), [('"no width"', "no width"), ("3", "code 3")])
 def test_scripts_that_give_up(tmp_path: Path, code: str, says: str) -> None:
     text = f"import sys\nimport bspcsg as b\nb.show(b.cube(1))\nsys.exit({code})\n"
@@ -174,6 +215,7 @@ def test_scripts_that_give_up(tmp_path: Path, code: str, says: str) -> None:
 
 # Found: errors of scripts that run held the line breaks and control characters of what these
 # said.
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize("end", ["sys.exit({})", "raise ValueError({})"])
 def test_errors_of_scripts_are_one_line(tmp_path: Path, end: str) -> None:
     for words in ("'first\\n  \\x1b[3msecond'", "''"):
@@ -183,6 +225,7 @@ def test_errors_of_scripts_are_one_line(tmp_path: Path, end: str) -> None:
 
 
 # Found: an error of syntax in a module was told at a line of the script that imports it.
+@pytest.mark.usefixtures("here")
 def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) -> None:
     Path(tmp_path, "broken.py").write_text("x = 1\n\n\ndef f(:\n    pass\n")
     with pytest.raises(b.FormatError, match=r"part.py:2: SyntaxError.*broken.py, line 4"):
@@ -191,6 +234,7 @@ def test_errors_of_syntax_in_modules_are_told_at_their_import(tmp_path: Path) ->
 
 # Found: `run_script` took texts for lists of words, and times and values that make no sense ended
 # in raw errors of Python.
+@pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(
     "wrong",
     [
