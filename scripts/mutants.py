@@ -167,7 +167,7 @@ def copy_core(core: Path) -> None:
 
 
 def _is_source(path: Path) -> bool:
-    return path.suffix in (".rs", ".toml") or "kept" in path.parts and path.is_file()
+    return path.suffix in (".rs", ".toml") or ("kept" in path.parts and path.is_file())
 
 
 def _copied(source: Path, target: Path) -> None:

@@ -21,7 +21,14 @@ LARGEST = 8_000_000
 _FOREIGN = re.compile(r"(^|/)(\.git|\.venv|target|out|dist|__pycache__)/|\.(so|pyd|pyc)$")
 
 #: Files that a source distribution has beside the package.
-_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "CHANGELOG.md", "Cargo.toml", "core/Cargo.toml")
+_SOURCES = (
+    "pyproject.toml",
+    "README.md",
+    "LICENSE",
+    "CHANGELOG.md",
+    "Cargo.toml",
+    "core/Cargo.toml",
+)
 
 #: Sections of a library that was not stripped.
 _SYMBOLS = (b".symtab\0", b".debug_info\0")

@@ -28,13 +28,13 @@ def schema_findings(schema: str, *paths: Path) -> str:
 
 
 def test_workflows_and_action_are_well_formed() -> None:
-    assert [path.name for path in WORKFLOWS] == ["check.yml", "release.yml"]
+    assert [path.name for path in WORKFLOWS] == ["check.yml", "nightly.yml", "release.yml"]
     assert schema_findings("vendor.github-workflows", *WORKFLOWS) == ""
     assert schema_findings("vendor.github-actions", ROOT / "action.yml") == ""
 
 
 def test_a_fault_in_a_workflow_is_found(tmp_path: Path) -> None:
-    text = WORKFLOWS[1].read_text("utf-8").replace("runs-on:", "run-on:")
+    text = WORKFLOWS[-1].read_text("utf-8").replace("runs-on:", "run-on:")
     (tmp_path / "broken.yml").write_text(text)
     assert "run-on" in schema_findings("vendor.github-workflows", tmp_path / "broken.yml")
 
