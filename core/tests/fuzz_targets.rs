@@ -4,8 +4,19 @@
 use std::fs;
 use std::path::Path;
 
-use super::fuzz::seeds::seeds;
-use super::fuzz::targets;
+use super::support;
+
+#[path = "../../fuzz/src/scene.rs"]
+mod scene;
+#[expect(dead_code, reason = "libFuzzer's targets write seeds as files")]
+#[path = "../../fuzz/src/seeds.rs"]
+mod seeds;
+#[path = "../../fuzz/src/targets/mod.rs"]
+mod targets;
+#[path = "../../fuzz/src/winding.rs"]
+mod winding;
+
+use seeds::seeds;
 
 fn holds_around_its_seeds(name: &str, target: fn(&[u8])) {
     for (number, seed) in seeds(name).into_iter().enumerate() {

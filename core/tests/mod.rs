@@ -27,7 +27,3 @@ mod sweeps;
 mod traces;
 mod voxels;
 mod watching;
-
-#[expect(dead_code, reason = "libFuzzer's targets write seeds as files")]
-#[path = "../../fuzz/src/lib.rs"]
-mod fuzz;
