@@ -56,6 +56,7 @@ def test_points_on_half_spaces() -> None:
     assert probes.corner_of_a_box() == []
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("clock", [time.process_time, time.perf_counter])
 def test_shares_of_proofs_are_told_of_each_form(clock: measures.Clock) -> None:
     failed, shares = measures.shares_of_proofs(500, 1, clock)
@@ -63,12 +64,14 @@ def test_shares_of_proofs_are_told_of_each_form(clock: measures.Clock) -> None:
     assert all(0 <= share < 1 for share in shares.values())
 
 
+@pytest.mark.deep
 def test_shares_of_checks_are_told_of_each_format() -> None:
     failed, shares = measures.shares_of_checks(500, turns=1)
     assert failed == [] and {"stl", "ply", "glb"} < set(shares)
     assert all(0 <= share < 1 for share in shares.values())
 
 
+@pytest.mark.deep
 @pytest.mark.parametrize("measure", [measures.shares_of_proofs, measures.shares_of_checks])
 def test_a_share_beyond_the_bound_is_a_failure(
     monkeypatch: pytest.MonkeyPatch, measure: Callable[..., measures.Measured]
