@@ -29,7 +29,7 @@ _PLANE = {"circle", "square", "polygon", "offset", "projection", "import", "line
 
 
 #: Scripts whose first node OpenSCAD leaves out, and why it is a solid nevertheless.
-_LEFT_OUT = {
+LEFT_OUT = {
     "openscad-bugs_issue802.csg": (
         "OpenSCAD leaves out the first polyhedron, in which four edges have one face each; they lie"
         " on one line and bound nothing"
@@ -71,7 +71,7 @@ def compare(folder: Path, row: dict[str, str]) -> tuple[str, str]:
     reference = float(row["ref_volume"])
     names = {entry.partition(":")[0] for entry in row["nodes"].split()}
     allowed = tolerance(solid, bool(names & _PLANE)) / volume
-    reason = _LEFT_OUT.get(row["file"])
+    reason = LEFT_OUT.get(row["file"])
     if reason is not None:
         reference += first_node(folder / row["file"]).volume
     relative, rounded = (abs(v / reference - 1) for v in (volume, six_digits(solid)))

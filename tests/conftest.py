@@ -42,7 +42,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         return
     cases = Counter(map(_function, items))
     seen: Counter[str] = Counter()
-    kept, left = [], []
+    kept: list[pytest.Item] = []
+    left: list[pytest.Item] = []
     for item in items:
         name = _function(item)
         seen[name] += 1
@@ -62,7 +63,7 @@ def _is_drawn(item: pytest.Item, number: int, cases: int) -> bool:
     sampled = item.get_closest_marker("sampled")
     if sampled is None:
         return True
-    step = min(*sampled.args, cases)
+    step: int = min(*sampled.args, cases)
     return number % step == draw(_function(item), step)
 
 

@@ -206,6 +206,7 @@ def test_round_boxes_are_their_own_hull(size: float | tuple[float, ...], share: 
 PRISMS = [(3, 2.0, 3.0), (4, 1.0, 1.0), (5, 4.0, 1.0), (8, 1.0, 9.0), (24, 2.0, 1.0)]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("sides, r, h", PRISMS)
 @pytest.mark.parametrize("share", [0.3, 1e-4])
 def test_convex_solids_without_edges_are_their_own_hull(

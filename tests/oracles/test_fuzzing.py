@@ -26,11 +26,11 @@ from fuzzing.places import Balls, Below, Point, Surface, Triangle, location, win
 from fuzzing.scenes import UNIT, Body, Part, Scene, cuboid_part, random_scene
 from fuzzing.shrink import case_of, keep_case, shrunk
 from fuzzing.sizes import a_size, ball, far_and_wide, judge_sized, sized_scene, thresholds
-from support import DEEP
+from support import DEEP, drawn
 from support.shapes import cuboid, octahedron
 
-ROUNDS = 2000 if DEEP else 25
-SIZED = 500 if DEEP else 5
+ROUNDS = drawn(range(2000 if DEEP else 25), 3)
+SIZED = drawn(range(500 if DEEP else 5), 2)
 
 
 def triangles(low: Point, high: Point) -> tuple[Triangle, ...]:
@@ -81,13 +81,13 @@ def test_rules_count_windings() -> None:
 
 @pytest.mark.timeout(3600 if DEEP else 240)
 def test_random_scenes() -> None:
-    wrong = {k: judge(random_scene(np.random.default_rng([0, k]))) for k in range(ROUNDS)}
+    wrong = {k: judge(random_scene(np.random.default_rng([0, k]))) for k in ROUNDS}
     assert not {k: found for k, found in wrong.items() if found}
 
 
 @pytest.mark.timeout(3600 if DEEP else 240)
 def test_random_scenes_of_sizes() -> None:
-    wrong = {k: judge_sized(sized_scene(np.random.default_rng([7, k]))) for k in range(SIZED)}
+    wrong = {k: judge_sized(sized_scene(np.random.default_rng([7, k]))) for k in SIZED}
     assert not {k: found for k, found in wrong.items() if found}
 
 
@@ -149,7 +149,7 @@ def test_an_archive_that_says_it_is_encrypted_is_damaged_further() -> None:
 
 @pytest.mark.parametrize("kind", FORMATS)
 def test_random_files(kind: str, tmp_path: Path) -> None:
-    for k in range(ROUNDS if DEEP else 12):
+    for k in drawn(range(2000 if DEEP else 12), 3):
         file = random_file(np.random.default_rng([0, k]), kind)
         assert judge_file(file, tmp_path) == [], k
 

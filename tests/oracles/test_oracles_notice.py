@@ -194,6 +194,7 @@ NOTICED: list[tuple[tuple[str, str], dict[str, Any], Broken]] = [
 ]
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("oracle", "arguments", "fault"), NOTICED, ids=lambda each: getattr(each, "__name__", None)
 )
@@ -259,6 +260,7 @@ def test_the_rival_gives_an_answer_of_its_own() -> None:
     assert {op: mesh.volume for op, mesh in asked.items()} == {"or": 15, "and": 1, "xor": 14}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "change",
     [without_triangle, triangle_turned, lambda mesh: vertex_moved(mesh, 0.2)],

@@ -126,6 +126,7 @@ def rays_from(eye: Any, facets: Any, random: np.random.Generator) -> list[tuple[
     return [(start, minus(exact(aim), start)) for aim in aims]
 
 
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("policy", bsp.POLICIES)
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize("top", [0, 4])

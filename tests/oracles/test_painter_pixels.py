@@ -14,11 +14,15 @@ from PIL import Image
 
 import bspcsg as b
 from bspcsg import bsp
+from support import DEEP, draw
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Exact: TypeAlias = list[Fraction]
 
 SIZE = (240, 180)
+
+#: So many pixels of a picture are judged.
+PIXELS = 400 if DEEP else 130
 
 #: Pixels from an edge or from a line where facets cross within which a pixel is not judged: Pillow
 #: rounds corners to pixels, and paints every pixel that a border touches.
@@ -152,13 +156,13 @@ def distance(spot: Floats, ends: Floats) -> float:
 
 
 @cache
-def judged(name: str, count: int) -> list[tuple[tuple[int, int], int]]:
+def judged(name: str) -> list[tuple[tuple[int, int], int]]:
     """Return pixels away from all borders, and what is seen there."""
     facets, camera = SCENES[name]
-    random = np.random.default_rng(9)
+    random = np.random.default_rng(draw(name, 2**32))
     exact, edges = rational(facets), borders(facets, camera)
     chosen: list[tuple[tuple[int, int], int]] = []
-    while len(chosen) < count:
+    while len(chosen) < PIXELS:
         spot = random.integers(0, SIZE)
         middle: Floats = spot.astype(np.float64) + 0.5
         if distance(middle, edges) < CLEAR:
@@ -204,6 +208,7 @@ def windings(path: str, x: float, y: float) -> int:
     return total
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("policy", ["first", "random", "least-splits"])
 @pytest.mark.parametrize("name", SCENES)
 def test_nothing_is_painted_over_what_is_nearer(name: str, policy: bsp.Policy) -> None:
@@ -213,7 +218,7 @@ def test_nothing_is_painted_over_what_is_nearer(name: str, policy: bsp.Policy) -
     pixels = np.asarray(Image.open(io.BytesIO(picture.png)).convert("RGB"))
     wrong = [
         ((x, y), answer)
-        for (x, y), answer in judged(name, 400)
+        for (x, y), answer in judged(name)
         if colour_sources[tuple(pixels[y, x].tolist())] != answer
     ]
     assert not wrong
@@ -227,7 +232,7 @@ def test_the_last_path_at_a_pixel_is_the_nearest_facet(name: str) -> None:
     _, _, grid_width, _ = re.findall(r'viewBox="(\S+) (\S+) (\S+) (\S+)"', picture.svg)[0]
     grid = int(grid_width) / SIZE[0]
     paths = re.findall(r'<path fill="#(\w+)" [^>]*d="([^"]*)"', picture.svg)
-    for (x, y), answer in judged(name, 400)[:80]:
+    for (x, y), answer in judged(name)[: PIXELS // 5]:
         spot = ((x + 0.5) * grid, (y + 0.5) * grid)
         fills = [fill for fill, path in paths if windings(path, *spot)]
         last = tuple(bytes.fromhex(fills[-1])) if fills else (255, 255, 255)
@@ -241,7 +246,7 @@ def test_leaving_out_back_faces_of_a_closed_surface_changes_nothing() -> None:
     culled, whole = (bsp.picture(mesh, cull=cull, **looks) for cull in (None, False))
     assert len(culled.painting.source) < 0.7 * len(whole.painting.source)
     first, second = (np.asarray(Image.open(io.BytesIO(p.png))) for p in (culled, whole))
-    pixels = judged("part", 400)
+    pixels = judged("part")
     assert all((first[y, x] == second[y, x]).all() for (x, y), _ in pixels)
 
 

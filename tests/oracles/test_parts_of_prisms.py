@@ -34,6 +34,7 @@ def base_and_prism(seed: int) -> tuple[b.Region, b.Solid]:
     return base, prism
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
 @pytest.mark.parametrize("first", range(0, 120, 20))
 def test_parts_of_prisms_are_prisms_over_parts(first: int, axis: str) -> None:

@@ -119,11 +119,13 @@ HERE = (0, 0, 0)
 # Found: `offset` inwards and `rounded` of bodies that are not convex left shells a step thin
 # beside them (7 of 9 random ones failed, one by a `ZeroDivisionError`), which `rounded` made
 # thick; of convex ones narrow faces could cut away most.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(24))
 def test_verbs_do_not_depend_on_the_lattice(seed: int) -> None:
     assert_alike([(made(seed, pitch), 1, HERE) for pitch in PITCHES])
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(30, 40))
 def test_verbs_do_not_depend_on_the_size(seed: int) -> None:
     units = (1, 1e3, 1e-3, 1e9, 1e-9)
@@ -131,12 +133,14 @@ def test_verbs_do_not_depend_on_the_size(seed: int) -> None:
 
 
 # Found: `warp` refused solids that touch themselves, by less than rounding.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(45, 55))
 def test_verbs_do_not_depend_on_the_place(seed: int) -> None:
     places = (HERE, (1000, -2000, 500), (1e5, 1e5, -1e5))
     assert_alike([(made(seed, at=at), 1, at) for at in places], 1e-5)
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("seed", range(60, 70))
 def test_verbs_do_not_depend_on_where_a_set_comes_from(seed: int) -> None:
     solid = made(seed)

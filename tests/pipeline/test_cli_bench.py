@@ -255,6 +255,7 @@ def test_dense_places_are_a_suite_of_their_own(capsys: Capture) -> None:
     assert code == 2 and "leaves none" in err
 
 
+@pytest.mark.deep
 @pytest.mark.timeout(300)
 def test_dense_places_are_measured_at_two_sizes(capsys: Capture, tmp_path: Path) -> None:
     path = tmp_path / "r.json"

@@ -73,6 +73,7 @@ def test_a_page_follows_its_script(folder: Path) -> None:
         assert status == 200 and "part.py:1: SyntaxError" in page and "live" not in page[:200]
 
 
+@pytest.mark.deep
 def test_a_script_that_writes_beside_itself_runs_once(folder: Path) -> None:
     Path("part.py").write_text(
         "import bspcsg as b, pathlib, time\nresult = b.cube(2)\n"
@@ -139,6 +140,7 @@ def until(found: Callable[[], object]) -> None:
     raise AssertionError(_SAID.read_text("utf-8"))
 
 
+@pytest.mark.deep
 def test_a_script_runs_again_when_it_changes(folder: Path) -> None:
     Path("part.py").write_text(_SCRIPT.format(side=2))
     with watching("part.py", "--watch", "-o", "part.stl") as running:
@@ -154,6 +156,7 @@ def test_a_script_runs_again_when_it_changes(folder: Path) -> None:
     assert running.returncode == 0 and b.io.load("part.stl").volume == 27
 
 
+@pytest.mark.deep
 def test_a_result_is_shown_without_a_file(folder: Path) -> None:
     Path("part.py").write_text(_SCRIPT.format(side=2))
     before = sorted(os.listdir())

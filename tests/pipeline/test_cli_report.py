@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import bspcsg as b
-from support.cli import Capture, finished, ran
+from support.cli import Capture, Piped, ran
 from support.results import case, disagreeing, header, write_results
 
 
@@ -44,18 +44,18 @@ def test_json(shards: Path, capsys: Capture) -> None:
     assert kept["verdicts"] == {"DISAGREE": 1, "agree": 1} and len(kept["results"]) == 2
 
 
-def test_junit_by_suffix_and_markdown_to_a_stream(shards: Path, capsys: Capture) -> None:
-    assert ran(capsys, "report", "r-1.jsonl", "r-2.jsonl", "-o", "r.xml")[0] == 0
+def test_junit_by_suffix_and_markdown_to_a_stream(shards: Path, piped: Piped) -> None:
+    assert piped("report", "r-1.jsonl", "r-2.jsonl", "-o", "r.xml")[0] == 0
     root = ElementTree.parse("r.xml").getroot()
     assert (root.get("tests"), root.get("failures")) == ("2", "1")
-    code, out, err = finished("report", "r-1.jsonl", "-o", "-", "--format", "md", cwd=shards)
+    code, out, err = piped("report", "r-1.jsonl", "-o", "-", "--format", "md")
     assert (code, err) == (0, b"") and out.startswith(b"# Validation") and b"| agree |" in out
 
 
-def test_results_from_a_stream(shards: Path) -> None:
+def test_results_from_a_stream(shards: Path, piped: Piped) -> None:
     both = Path("r-1.jsonl").read_bytes() + Path("r-2.jsonl").read_bytes()
     arguments = ("report", "-", "-o", "-", "--format", "md")
-    code, out, _ = finished(*arguments, cwd=shards, given=both)
+    code, out, _ = piped(*arguments, given=both)
     assert code == 0 and b"1 of 2 cases failed" in out
 
 

@@ -79,6 +79,7 @@ result._node.content = TreeLeaf(b.cube(2).tree, result._node.content.record)
 
 
 # Found: `--check` did nothing for Python scripts.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "result",
     [

@@ -26,6 +26,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 # Found: scripts were refused by most verbs.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     ("line", "volume"),
     [
@@ -45,6 +46,7 @@ def test_scripts_become_meshes(folder: Path, capsys: Capture, line: str, volume:
     assert b.load("x.ply").volume_exact == volume
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "line",
     [

@@ -5,7 +5,6 @@ import os
 import resource
 import signal
 import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from typing import Any
 import pytest
 
 import bspcsg as b
-from support.cli import Capture, finished, process, put, ran
+from support.cli import Capture, Piped, finished, process, put, ran
 from support.shapes import icosphere, moved
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
@@ -26,10 +25,10 @@ def volume_of(data: bytes, suffix: str) -> float:
 
 
 @pytest.mark.parametrize("suffix", ["stl", "ply", "3mf", "glb"])
-def test_streams_in_and_out(folder: Path, suffix: str) -> None:
+def test_streams_in_and_out(folder: Path, piped: Piped, suffix: str) -> None:
     given = Path("c.stl").read_bytes()
     arguments = ["union", "a.off", "-", "--from", "stl", "-o", "-", "--to", suffix]
-    code, out, err = finished(*arguments, given=given)
+    code, out, err = piped(*arguments, given=given)
     assert code == 0 and volume_of(out, suffix) == pytest.approx(15, rel=1e-6)
     # The mesh has standard output to itself; what is told goes beside it.
     assert b"check: agree" in err
@@ -67,19 +66,19 @@ def test_streams_that_cannot_be(
     assert ("error" in out) == ("--json" in arguments)
 
 
-def test_an_empty_stream(folder: Path) -> None:
-    code, out, err = finished("union", "a.off", "-", "--from", "stl", "-o", "x.ply")
+def test_an_empty_stream(folder: Path, piped: Piped) -> None:
+    code, out, err = piped("union", "a.off", "-", "--from", "stl", "-o", "x.ply")
     assert (code, out, err) == (3, b"", b"bspcsg: error: -: the file is empty.\n")
 
 
 @POSIX
 @pytest.mark.parametrize("suffix", [b"stl", b"3mf", b"glb", b"obj"])
-def test_names_that_are_no_text(folder: Path, suffix: bytes) -> None:
+def test_names_that_are_no_text(folder: Path, piped: Piped, suffix: bytes) -> None:
     os.rename(b"c.stl", b"c\xff\n.stl")
     name = b"x\xfe." + suffix
-    code, out, err = finished("union", "a.off", b"c\xff\n.stl", "-o", name)
+    code, out, err = piped("union", "a.off", b"c\xff\n.stl", "-o", name)
     assert code == 0 and out.startswith(name) and os.path.exists(name)
-    code, out, err = finished("info", b"none\xff.stl")
+    code, out, err = piped("info", b"none\xff.stl")
     assert code == 3 and b"none\xff.stl: cannot read" in err
 
 
@@ -115,6 +114,7 @@ def test_a_full_disk(
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no /dev/full")
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize(
     "arguments", [["info", "a.off"], ["check", "a.off"], ["convert", "a.off", "-o-", "--to", "stl"]]
 )
@@ -131,6 +131,7 @@ def closed(number: int) -> Any:
 
 
 @POSIX
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -148,6 +149,7 @@ def test_a_closed_input_is_an_empty_one(folder: Path, arguments: list[str], said
 
 
 @POSIX
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize(
     "arguments",
     [
@@ -172,13 +174,13 @@ def test_no_output_file_takes_the_place_of_a_closed_stream(folder: Path) -> None
     assert volume_of(Path("x.off").read_bytes(), "off") == 15
 
 
-def test_scripts_from_a_stream(folder: Path) -> None:
+def test_scripts_from_a_stream(piped: Piped) -> None:
     arguments = ("run", "-", "-o", "-", "--to", "off", "-q")
-    code, out, _ = finished(*arguments, given=b"cube(3);")
+    code, out, _ = piped(*arguments, given=b"cube(3);")
     assert code == 0 and volume_of(out, "off") == 27
-    code, _, err = finished(*arguments, given=b"cube(3);\n\n  roof();")
+    code, _, err = piped(*arguments, given=b"cube(3);\n\n  roof();")
     assert code == 3 and err.startswith(b"bspcsg: error: -:3:3: roof() is not supported. ")
-    assert finished(*arguments, given=b"\xff")[0] == 3
+    assert piped(*arguments, given=b"\xff")[0] == 3
 
 
 @pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="nothing is forbidden to root")
@@ -212,6 +214,7 @@ def test_folders_are_no_files(folder: Path, capsys: Capture, verb: str) -> None:
 
 
 @POSIX
+@pytest.mark.deep
 @pytest.mark.parametrize("verb", ["eval", "compare"])
 def test_interrupts_are_quiet(folder: Path, verb: str) -> None:
     put("s.ply", icosphere(6))
@@ -229,6 +232,7 @@ def test_interrupts_are_quiet(folder: Path, verb: str) -> None:
 SHELLS = {"bash": b"complete", "zsh": b"compdef", "fish": b"complete"}
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("shell", SHELLS)
 def test_completion_scripts(shell: str) -> None:
     code, out, _ = finished(more={"_BSPCSG_COMPLETE": f"{shell}_source"})
@@ -247,13 +251,13 @@ def test_completion_scripts(shell: str) -> None:
         ("bspcsg bench cub", {b"plain,cubes"}),
     ],
 )
-def test_completions(words: str, found: set[bytes]) -> None:
-    more = {
-        "_BSPCSG_COMPLETE": "bash_complete",
-        "COMP_WORDS": words,
-        "COMP_CWORD": str(len(words.split()) - 1),
-    }
-    code, out, _ = finished(more=more)
+def test_completions(
+    monkeypatch: pytest.MonkeyPatch, piped: Piped, words: str, found: set[bytes]
+) -> None:
+    monkeypatch.setenv("_BSPCSG_COMPLETE", "bash_complete")
+    monkeypatch.setenv("COMP_WORDS", words)
+    monkeypatch.setenv("COMP_CWORD", str(len(words.split()) - 1))
+    code, out, _ = piped()
     assert code == 0 and set(out.split()) == found
 
 
@@ -266,22 +270,6 @@ def test_the_version_comes_at_once() -> None:
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         spent.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
     assert min(spent) < 0.2
-
-
-@pytest.mark.parametrize("arguments", [["--version"], ["--help"], ["union", "--help"]])
-def test_help_needs_no_numpy(arguments: list[str]) -> None:
-    text = (
-        "import sys; from bspcsg.cli.main import run; code = run(sys.argv[1:]);"
-        " sys.exit(code or 'numpy' in sys.modules or 'trimesh' in sys.modules)"
-    )
-    path = str(Path(b.__file__).parent.parent)
-    done = subprocess.run(
-        [sys.executable, "-c", text, *arguments],
-        env={**os.environ, "PYTHONPATH": path},
-        stdout=subprocess.DEVNULL,
-        check=False,
-    )
-    assert done.returncode == 0
 
 
 def test_folders_that_are_forbidden(

@@ -36,6 +36,7 @@ def test_every_picture_is_written_by_code_that_is_shown_or_named() -> None:
 
 
 # Found: the gallery showed no code.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("block", BLOCKS, ids=lambda block: pictures(block)[0])
 def test_the_code_on_the_page_makes_the_picture_below_it(block: str, tmp_path: Path) -> None:
     lines = [line for line in block.splitlines() if line]

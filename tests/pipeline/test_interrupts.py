@@ -106,6 +106,7 @@ def interrupted(delay: float, *arguments: str) -> tuple[int, bytes, bytes]:
 
 # Found: Ctrl-C in the first 0.1 s printed a traceback.
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.sampled(6)
 @pytest.mark.parametrize("delay", [k / 20 for k in range(13)])
 def test_interrupts_are_quiet_at_any_moment(tmp_path: Path, delay: float) -> None:
     b.sphere(1, segments=300).save(tmp_path / "a.stl")
@@ -117,6 +118,7 @@ def test_interrupts_are_quiet_at_any_moment(tmp_path: Path, delay: float) -> Non
     assert [path.name for path in tmp_path.iterdir() if path.suffix == ".part"] == []
 
 
+@pytest.mark.sampled(4)
 @pytest.mark.parametrize("program", ["/usr/bin/bspcsg", "bspcsg.exe", "-m", "other.py"])
 @pytest.mark.parametrize(
     "name", ["bspcsg._core", "bspcsg.conveniences", "bspcsg.errors", "dataclasses", "nothing"]
@@ -141,6 +143,7 @@ def test_interrupts_are_quiet_while_the_package_is_imported(program: str, name: 
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.sampled(5)
 @pytest.mark.parametrize("delay", [0.0, 0.1, 0.3, 0.6, 1.0])
 def test_scripts_are_interrupted_quietly(tmp_path: Path, delay: float) -> None:
     (tmp_path / "slow.py").write_text(SLOW)
@@ -164,6 +167,7 @@ def test_scripts_are_interrupted_quietly_while_python_starts(
     assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, set())
 
 
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("written", [0, 1, 20])
 def test_scripts_whose_parent_was_stopped_are_quiet(written: int) -> None:
     task = pickle.dumps(("slow.py", [], {}, "answer"))

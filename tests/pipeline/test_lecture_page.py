@@ -3,7 +3,6 @@
 import json
 import math
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ import bspcsg
 from bspcsg.bsp import Intervals, PartitionTree, Region
 from bspcsg.bsp.trees.analysis import shielding_distance
 from bspcsg.report.lecture.page import CHAPTERS, SCRIPTS, lecture_page
-from support.browser import Browser, started
+from support.browser import Browser
 
 _MOST_BYTES = 2_000_000
 _READY = "document.documentElement.dataset.ready === 'yes'"
@@ -30,11 +29,11 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def browser(page: Path) -> Iterator[Browser]:
-    with started(webgl=False) as running:
-        running.open(page)
-        running.wait(_READY)
-        yield running
+def browser(browser: Browser, page: Path) -> Browser:
+    """Return the one browser, which shows the lecture from here on."""
+    browser.open(page)
+    browser.wait(_READY)
+    return browser
 
 
 def _tile(browser: Browser, figure: str, key: str) -> str:

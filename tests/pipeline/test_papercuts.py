@@ -13,7 +13,7 @@ import pytest
 import bspcsg as b
 from bspcsg.cli.console import status
 from bspcsg.cli.console.tables import table_text
-from support.cli import Capture, finished, process, put, ran
+from support.cli import Capture, Piped, finished, process, put, ran
 from support.shapes import cuboid, icosphere
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
@@ -129,20 +129,20 @@ def test_names_that_look_like_patterns_are_names(folder: Path, capsys: Capture) 
     assert ran(capsys, "check", "a[1].off")[0] == 0
 
 
-def test_scripts_come_from_standard_input(folder: Path) -> None:
-    code, out, err = finished(
+def test_scripts_come_from_standard_input(folder: Path, piped: Piped) -> None:
+    code, out, err = piped(
         *["union", "a.off", "-", "--from", "csg", "-o", "x.ply"], given=CSG.encode()
     )
     assert code == 0, err
     assert b.load("x.ply").volume == 12
-    made = finished("tree", "-", "--to", "json", "-o", "m.json", given=CSG.encode())
+    made = piped("tree", "-", "--to", "json", "-o", "m.json", given=CSG.encode())
     assert made[0] == 0
     tree = Path("m.json").read_bytes()
-    code, out, _ = finished("info", "-", "--from", "json", "--json", given=tree)
+    code, out, _ = piped("info", "-", "--from", "json", "--json", given=tree)
     assert code == 0 and json.loads(out)["files"][0]["volume"] == 4
-    code, _, err = finished("info", "-", "--from", "csg", given=b"cube(;")
+    code, _, err = piped("info", "-", "--from", "csg", given=b"cube(;")
     assert code == 3 and err.startswith(b"bspcsg: error: -:1:6: expected")
-    code, _, err = finished("info", "-", "--from", "py", given=b"")
+    code, _, err = piped("info", "-", "--from", "py", given=b"")
     assert code == 2 and b"-: .py scripts are run by name; save it to a file." in err
 
 
@@ -283,6 +283,7 @@ def test_seconds_count_from_the_start_of_the_process(folder: Path) -> None:
 
 
 @POSIX
+@pytest.mark.deep
 def test_long_work_says_for_how_long_at_a_terminal(folder: Path) -> None:
     leader, follower = pty.openpty()
     running = process(

@@ -3,9 +3,14 @@
 import json
 from pathlib import Path
 
+import pytest
+
 from support.cli import script
 
 ROOT = Path(__file__).parents[2]
+
+#: They take long, and what they run has tests of its own.
+pytestmark = pytest.mark.deep
 
 
 def test_campaign_goes_on_where_it_stopped(tmp_path: Path) -> None:

@@ -12,6 +12,9 @@ from support.browser import Browser, started
 from support.cli import script
 from support.documents import DOCS, ROOT
 
+#: Building the site takes long.
+pytestmark = pytest.mark.deep
+
 #: Attributes by which a page loads something, or leads somewhere.
 _LOADED = {
     ("script", "src"),

@@ -60,7 +60,12 @@ def test_the_version_and_the_help_need_no_numpy(arguments: tuple[str, ...]) -> N
     assert imported(*arguments).isdisjoint({*HEAVY, "numpy", "manifold3d"})
 
 
+def test_the_list_of_verbs_needs_no_numpy() -> None:
+    assert imported("--help").isdisjoint({"numpy", "trimesh"})
+
+
 # Found: GLB cost an import of trimesh.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["stl", "obj", "ply"])
 def test_a_checked_boolean_imports_little(cubes: Path, kind: str) -> None:
     result = str(cubes / f"c.{kind}")

@@ -196,6 +196,7 @@ def test_what_a_plain_install_brings_is_what_doctor_asks_for() -> None:
     assert brought == set(doctor._REQUIRED)
 
 
+@pytest.mark.deep
 def test_the_smoke_test_passes(tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "scripts/smoke.py")]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)

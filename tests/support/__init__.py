@@ -3,7 +3,11 @@
 import os
 import subprocess
 import zlib
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeVar
+
+T = TypeVar("T")
 
 #: True to take the time for everything, as `scripts/check --deep` does.
 DEEP = bool(os.environ.get("BSPCSG_DEEP"))
@@ -25,3 +29,8 @@ COMMIT = os.environ.get("BSPCSG_COMMIT") or _commit()
 def draw(name: str, count: int) -> int:
     """Return a number below `count` that depends on the commit and on a name."""
     return zlib.crc32(f"{COMMIT} {name}".encode()) % count
+
+
+def drawn(values: Sequence[T], step: int) -> Sequence[T]:
+    """Return one value in `step`, drawn by the commit; all of them in a deep run."""
+    return values if DEEP else values[draw(repr(values), step) :: step]

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import pytest
 
@@ -17,6 +17,13 @@ from bspcsg.io import RawMesh, write
 from .shapes import Arrays
 
 Capture = pytest.CaptureFixture[str]
+
+
+class Piped(Protocol):
+    """Runs a command with bytes in its streams."""
+
+    def __call__(self, *arguments: str | bytes, given: bytes = b"") -> tuple[int, bytes, bytes]:
+        """Return exit code and both streams."""
 
 
 def put(name: str, mesh: Arrays) -> None:
