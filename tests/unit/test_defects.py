@@ -41,7 +41,7 @@ def test_a_panic_is_an_error_with_a_report(size: int, capfd: pytest.CaptureFixtu
     with pytest.raises(b.InternalError, match="a panic on purpose") as caught, core_errors():
         _core.fail_on_purpose(True, size)
     assert caught.value.code == "internal"
-    assert re.search(r"a panic at src/python/mod\.rs:\d+:\d+: ", str(caught.value))
+    assert re.search(r"a panic at core/src/python/mod\.rs:\d+:\d+: ", str(caught.value))
     facts = facts_of(caught.value)
     assert "a panic on purpose" in str(facts["message"])
     assert facts["bspcsg"] == b.__version__

@@ -75,9 +75,9 @@ def test_a_little_of_each_layer_works_without_asserts_and_docstrings() -> None:
     ended = subprocess.run(
         [sys.executable, "-OO", __file__],
         cwd=REPOSITORY,
-        env={**os.environ, "PYTHONPATH": str(REPOSITORY)},
+        env={**os.environ, "PYTHONPATH": str(REPOSITORY), "PYTHONIOENCODING": "utf-8"},
         capture_output=True,
-        text=True,
+        encoding="utf-8",
         check=True,
     )
     *_, last = ended.stdout.splitlines()
