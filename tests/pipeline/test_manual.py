@@ -38,6 +38,7 @@ def name(path: Path) -> str:
 
 # Found: a page called a method that is not there.
 # Found: the first example of the manual's page on `compare` showed three errors.
+@pytest.mark.sampled(3)
 @pytest.mark.parametrize("path", PAGES, ids=name)
 def test_pages_show_what_happens(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
