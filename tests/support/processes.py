@@ -315,6 +315,18 @@ def threads() -> None:
     assert ended(in_child(child)) == 0
 
 
+def ending(after: int = 100) -> None:
+    """The program ends while daemon threads are in the core, after so many milliseconds."""
+
+    def work() -> None:
+        while True:
+            assert (b.sphere(2, segments=64) - b.sphere(1.9, segments=64).rotate(10)).volume > 0
+
+    for _ in range(2):
+        threading.Thread(target=work, daemon=True).start()
+    time.sleep(after / 1000)
+
+
 def many(jobs: int = 1000) -> None:
     """Many jobs one after the other, and 64 at a time, through a pool that was forked."""
     job(0).to_mesh()
@@ -373,6 +385,7 @@ PROGRAMS: dict[str, Callable[..., None]] = {
     "handler": handler,
     "threads": threads,
     "many": many,
+    "ending": ending,
     "memory": memory,
     "stack": stack,
 }

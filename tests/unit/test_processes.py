@@ -37,6 +37,12 @@ def test_a_process_forks_after_use(name: str, tmp_path: Path) -> None:
     ran(name, tmp_path)
 
 
+# Found: a program that ended while a daemon thread was in the core was aborted.
+@pytest.mark.parametrize("after", [50, 200, 400])
+def test_a_program_ends_while_threads_are_in_the_core(after: int, tmp_path: Path) -> None:
+    ran(f"ending {after}", tmp_path)
+
+
 @unix
 def test_one_thread_is_a_pool_too(tmp_path: Path) -> None:
     ran("fork", tmp_path, RAYON_NUM_THREADS="1")

@@ -24,7 +24,7 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::panic::PanicException;
 use pyo3::prelude::*;
 
-use self::calls::{errors, forking, pool, run};
+use self::calls::{ending, errors, forking, pool, run};
 use self::rays::scene::RayScene;
 use self::rays::tree::RayTree;
 use self::sets::objects::ObjectTree;
@@ -75,6 +75,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     panics::listen();
     forking::watch(module)?;
+    ending::watch(module)?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;
     let panic = module.py().get_type::<PanicException>();
     module.add("PanicException", panic)?;

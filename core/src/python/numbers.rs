@@ -8,6 +8,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::arrays::{flat, rows};
+use super::ending::detached;
 use super::errors::to_python;
 use crate::arith::convert::as_double;
 
@@ -41,7 +42,7 @@ fn in_rows<'py, T: Decimal + Element>(
     text: &[u8],
     row: &[u8],
 ) -> PyResult<Bound<'py, PyArray1<T>>> {
-    let found = py.detach(|| scanned(text, row));
+    let found = detached(py, || scanned(text, row));
     let values = found.map_err(|at| PyValueError::new_err(format!("no such line at byte {at}")))?;
     Ok(PyArray1::from_vec(py, values))
 }
@@ -58,7 +59,7 @@ pub fn are_triangles(
     triangles: PyReadonlyArray2<'_, i64>,
 ) -> PyResult<bool> {
     let expected = rows(&triangles, "triangles").map_err(|e| to_python(py, &e))?;
-    Ok(py.detach(|| same_triangles(faces, &expected)))
+    Ok(detached(py, || same_triangles(faces, &expected)))
 }
 
 /// True if some bytes are these numbers, bit by bit; each takes eight, the lowest first, or the highest
@@ -71,7 +72,7 @@ pub fn are_words(
     big_endian: bool,
 ) -> bool {
     let expected = flat(&words);
-    py.detach(|| {
+    detached(py, || {
         if big_endian {
             same_words(data, &expected, u64::from_be_bytes)
         } else {

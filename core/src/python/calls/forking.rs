@@ -4,7 +4,9 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::IntoPyDict;
 
-/// Has Python call [`settle`] before each fork, where there are forks.
+use super::ending::forget_threads;
+
+/// Has Python call [`settle`] before each fork and [`begin_anew`] in the child, if there are forks.
 ///
 /// # Errors
 /// What Python raises.
@@ -12,10 +14,17 @@ pub fn watch(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let os = module.py().import("os")?;
     if let Some(register) = os.getattr_opt("register_at_fork")? {
         let settle = wrap_pyfunction!(settle, module)?;
-        let options = [("before", settle)];
+        let begin_anew = wrap_pyfunction!(begin_anew, module)?;
+        let options = [("before", settle), ("after_in_child", begin_anew)];
         register.call((), Some(&options.into_py_dict(module.py())?))?;
     }
     Ok(())
+}
+
+/// Forgets the other threads of the process that was forked.
+#[pyfunction]
+fn begin_anew() {
+    forget_threads();
 }
 
 /// Completes what the first call that takes arrays sets up once for the process.

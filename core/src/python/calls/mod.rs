@@ -1,5 +1,6 @@
 //! Calls from Python: threads, signals, forks and failures.
 
+pub mod ending;
 pub mod errors;
 pub mod forking;
 pub mod in_use;

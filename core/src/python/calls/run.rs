@@ -5,6 +5,7 @@ use std::sync::{mpsc, Arc};
 
 use pyo3::prelude::*;
 
+use super::ending::{attached, detached};
 use super::errors::to_python;
 use super::pool::{pool, Pool};
 use crate::error::panics::caught;
@@ -59,12 +60,12 @@ pub fn run<T: Send>(
     let call = Call::new();
     let result = if size < SMALL {
         let before = HELPERS.replace((threads, None));
-        let result = py.detach(|| call.run_here(MEANS, work));
+        let result = detached(py, || call.run_here(MEANS, work));
         HELPERS.set(before);
         result
     } else {
         let pool = pool(py, threads).map_err(|e| to_python(py, &e))?;
-        py.detach(|| shared(&pool, &call, work))
+        detached(py, || shared(&pool, &call, work))
     };
     match RAISED.take() {
         Some(exception) => Err(exception),
@@ -96,7 +97,7 @@ fn hand_over(task: Task, share: Share<'_>) {
 /// The pool for this thread's call; `None` if it has one thread, or the system starts none.
 fn helpers() -> Option<Arc<Pool>> {
     HELPERS.with_borrow_mut(|(threads, found)| {
-        let ask = || Python::attach(|py| pool(py, *threads).ok());
+        let ask = || attached(|py| pool(py, *threads).ok());
         *found = found.take().or_else(ask);
         let several = |pool: &&Arc<Pool>| pool.threads.current_num_threads() > 1;
         found.as_ref().filter(several).map(Arc::clone)
@@ -134,7 +135,7 @@ fn awaited<T: Send>(pool: &Pool, task: Task, work: impl FnOnce() -> T + Send) ->
 /// this stack, so that there is no way on and none back: the child ends with a word, not by waiting.
 fn signal_raised() -> bool {
     let process = std::process::id();
-    let raised = Python::attach(|py| py.check_signals().and_then(|()| tell_watcher(py)).err());
+    let raised = attached(|py| py.check_signals().and_then(|()| tell_watcher(py)).err());
     if std::process::id() != process {
         eprintln!(
             "bspcsg: a signal handler forked this process in the middle of an operation, which \

@@ -21,6 +21,7 @@ use crate::mesh::facets::{check_reach, facets, snap_corners, suited_pitch};
 use crate::mesh::grid::Pitch;
 use crate::mesh::handle::NodeId;
 use crate::python::arrays::array;
+use crate::python::calls::ending::attached;
 use crate::python::calls::errors::{blamed, to_python};
 use crate::python::calls::run::run;
 use crate::python::hyperplanes::{FromRow, Row};
@@ -501,7 +502,7 @@ fn ask<S: FromRow>(answer: Py<PyAny>, raised: Raised, sample: Sample) -> Ask<S> 
         sample,
         answer: Box::new(move |depth, count, candidates| {
             let rows: Vec<_> = candidates.iter().map(candidate_row).collect();
-            let found = Python::attach(|py| {
+            let found = attached(|py| {
                 let found = answer.call1(py, (depth, count, rows))?;
                 found.extract::<(usize, Option<Row>)>(py)
             });
