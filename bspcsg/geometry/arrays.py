@@ -52,8 +52,7 @@ def doubles_or_none(values: Any) -> FloatArray | None:
 
 def is_masked(values: Any) -> bool:
     """Say whether an array has entries that are masked out, which numpy would show again."""
-    # Whoever has such an array has imported this.
+    # Whoever has such an array has imported this; another thread may just be importing it.
     masks: Any = sys.modules.get("numpy.ma")
-    if masks is None or not isinstance(values, masks.MaskedArray):
-        return False
-    return bool(masks.is_masked(values))
+    kind = getattr(masks, "MaskedArray", ())
+    return isinstance(values, kind) and bool(masks.is_masked(values))

@@ -1,9 +1,10 @@
 """Meshes of other libraries, some of them by stand-ins with the same attributes."""
 
 import io
+import sys
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import manifold3d
@@ -344,3 +345,10 @@ def test_arrays_by_columns_are_certified_as_what_they_are() -> None:
     proof = certify(*by_columns)
     assert proof.ok and proof.triangles == 12
     assert surfaces_of(by_columns[1], 8).tolist() == [0] * 12
+
+
+# Found: arrays were refused while another thread imported `numpy.ma`.
+def test_arrays_are_taken_while_a_module_is_half_imported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "numpy.ma", ModuleType("numpy.ma"))
+    mesh = b.cube(2).to_mesh()
+    assert b.Solid(mesh.vertices, mesh.faces).volume == 8
