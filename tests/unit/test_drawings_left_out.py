@@ -20,6 +20,10 @@ def square(space: Any) -> Any:
     return space.add_lwpolyline(SQUARE, close=True)
 
 
+def dot(space: Any) -> Any:
+    return space.add_circle((7, 7), 0)
+
+
 def written(folder: Path, draw: Draw) -> Path:
     """Return a DXF file of what is drawn in the model space of a document."""
     document = ezdxf.new()
@@ -57,6 +61,14 @@ LEFT_OUT: dict[str, tuple[Draw, str]] = {
     "beside an outline": (
         lambda space, _: (square(space), space.add_point((1, 1))),
         r"left out: POINT \(1\)\.$",
+    ),
+    "meshes": (
+        lambda space, _: (square(space), space.add_polymesh((3, 3)), space.add_polyface()),
+        r"left out: POLYLINE \(2\)\.$",
+    ),
+    "points": (
+        lambda space, _: (square(space), space.add_line((9, 9), (9, 9)), dot(space)),
+        r"left out: line that surrounds nothing \(2\)\.$",
     ),
     "in blocks": (in_blocks, r"left out: ATTRIB \(1\), HATCH \(2\)\.$"),
     "nothing": (lambda *_: None, "the region is empty: the drawing has nothing to fill"),
@@ -238,7 +250,7 @@ def test_a_switch_draws_the_first_child_that_fits(
 
 
 def test_scripts_tell_what_svg_files_hold_beside_shapes(tmp_path: Path) -> None:
-    (tmp_path / "a.svg").write_text(SVG.format('<text>A</text><use href="#a"/><rect id="a"/>'))
+    (tmp_path / "a.svg").write_text(SVG.format('<switch><text>A</text></switch><use href="#a"/>'))
     says = r"import\(\): a\.svg: left out: text \(1\), use of what is not there \(1\)\.$"
     with pytest.warns(csg.CsgWarning, match=says):
         assert not imported(tmp_path / "a.svg").is_empty

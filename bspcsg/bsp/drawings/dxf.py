@@ -70,9 +70,9 @@ def load_dxf(
         is_wanted = partial(_is_among, wanted)
         layout = drawn_layout(document, is_wanted, lost)
         chains = list(chains_of(layout, is_wanted, chord, lost))
-    loops = _closed(chains, os.fspath(path))
-    lost.outlines = len(loops)
-    region = Region(loops, winding=winding, pitch=pitch)
+    region = Region(
+        lost.surrounding(_closed(chains, os.fspath(path))), winding=winding, pitch=pitch
+    )
     lost.tell(path, region)
     return region
 
@@ -198,7 +198,7 @@ def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
         ends = np.array([(chain[0], chain[-1]) for chain in rest])
         size = float(np.ptp(np.concatenate(chains), axis=0).max())
         loops += _joined(rest, _places(ends, size), name)
-    return [loop for loop in loops if len(loop) >= 3]
+    return loops
 
 
 #: Ends that are a part of the drawing's size apart are joined, but not more.

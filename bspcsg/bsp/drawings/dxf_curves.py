@@ -205,7 +205,8 @@ def _old_polyline(entity: Any, chord: float) -> FloatArray:
         points = _flat(entity.points())
         return np.concatenate([points, points[:1]]) if entity.is_closed else points
     if not entity.is_2d_polyline:
-        raise ValueError("a mesh is no outline")
+        # A mesh.
+        return _NONE
     rows = [
         (vertex.dxf.location.x, vertex.dxf.location.y, vertex.dxf.get("bulge", 0.0))
         for vertex in entity.vertices

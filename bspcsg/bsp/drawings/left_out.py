@@ -5,6 +5,9 @@ import warnings
 from collections import Counter
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from ..._types import FloatArray
 from ..sets.region import Region
 
 #: Kinds that are named, and letters of each.
@@ -34,6 +37,13 @@ class LeftOut:
         """Count things that are left out."""
         if count:
             self.counts[kind] += count
+
+    def surrounding(self, loops: list[FloatArray]) -> list[FloatArray]:
+        """Return the outlines that have three corners; the others are left out."""
+        found = [loop for loop in loops if len(np.unique(loop, axis=0)) >= 3]
+        self.add("line that surrounds nothing", len(loops) - len(found))
+        self.outlines += len(found)
+        return found
 
     def words(self, region: Region) -> str:
         """Return sentences on what the region of the drawing lacks; none if it has everything."""

@@ -60,11 +60,7 @@ def dxf_region(
             for chain in _limited(_flat(entities, lost), arguments, abs(scale), lost)
         ]
     proper = [chain for chain in chains if len(chain) > 1]
-    joined = _joined(proper)
-    loops = [loop for loop in joined if len(np.unique(loop, axis=0)) >= 3]
-    lost.add("line that surrounds nothing", len(joined) - len(loops))
-    lost.outlines = len(loops)
-    return Region(loops, winding="even-odd")
+    return Region(lost.surrounding(_joined(proper)), winding="even-odd")
 
 
 def _entities(document: Any, layer: str, lost: LeftOut) -> Iterator[Any]:

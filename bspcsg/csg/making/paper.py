@@ -91,6 +91,9 @@ def _prepare(root: ElementTree.Element) -> None:
     """Take away what does not count, and the view box, which is looked at apart."""
     for parent in list(root.iter()):
         parent[:] = [child for child in parent if name_of(child) != "style"]
+        if name_of(parent) == "switch":
+            # All of its children are drawn.
+            parent.tag = parent.tag.removesuffix("switch") + "g"
         if name_of(parent) == "use":
             # It shows nothing then, and is told.
             parent.attrib = {key: parent.attrib[key] for key in parent.attrib if key not in HREF}
