@@ -259,13 +259,55 @@ def _points_of(elements: Any, segment: Any, steps: Callable[[Any], int]) -> list
     if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
         return [_complex(segment.end)]
     count = steps(segment)
-    return [*_on_curve(segment, np.arange(1, count) / count).tolist(), _complex(segment.end)]
+    inner = curve_of(segment)(np.arange(1, count) / count)
+    return [*inner.tolist(), _complex(segment.end)]
 
 
-def _on_curve(segment: Any, parameters: FloatArray) -> Any:
-    """Return points of an arc or a curve as complex numbers."""
-    points = np.asarray(segment.npoint(parameters), dtype=np.float64).reshape(-1, 2)
-    return points[:, 0] + 1j * points[:, 1]
+def curve_of(segment: Any) -> Callable[[FloatArray], Any]:
+    """Return what gives the points of an arc or a curve, as complex numbers, by its parameters."""
+    elements = optional("svgelements", "svgelements")
+    if isinstance(segment, elements.Arc) and segment.sweep:
+        ends = (segment.start, segment.center, segment.prx, segment.pry)
+        start, center, across, along = map(_complex, ends)
+        if across != center and along != center:
+            return _arc_of(
+                start - center, center, across - center, abs(along - center), float(segment.sweep)
+            )
+
+    def curve(parameters: FloatArray) -> Any:
+        points = np.asarray(segment.npoint(parameters), dtype=np.float64).reshape(-1, 2)
+        return points[:, 0] + 1j * points[:, 1]
+
+    return curve
+
+
+def _arc_of(
+    first: complex, center: complex, wide: complex, height: float, sweep: float
+) -> Callable[[FloatArray], Any]:
+    """Return the points of an arc by its parameters.
+
+    svgelements measures the arc again at each call, which takes ten times as long as the points.
+
+    Parameters
+    ----------
+    first, wide : complex
+        Its beginning and the end of its first axis, seen from its center.
+    center : complex
+    height : float
+        Half of its other axis.
+    sweep : float
+        How far it goes.
+    """
+    width = abs(wide)
+    high = 1j * height * wide / width
+    begins = first / wide
+    start = math.atan2(begins.imag * width / height, begins.real)
+
+    def curve(parameters: FloatArray) -> Any:
+        angles = start + sweep * parameters
+        return center + wide * np.cos(angles) + high * np.sin(angles)
+
+    return curve
 
 
 def _complex(point: Any) -> complex:
@@ -282,11 +324,11 @@ def _within(shape: Any, chord: float) -> Callable[[Any], int]:
 
 def _steps(segment: Any, chord: float) -> int:
     """Return how many chords stay within the tolerance, tried at points between."""
-    steps = 2
+    curve, steps = curve_of(segment), 2
     while steps < 1 << 12:
-        curve = _on_curve(segment, np.arange(4 * steps + 1) / (4 * steps))
-        start, end = curve[:-4:4], curve[4::4]
-        if max(_distance(curve[k::4], start, end) for k in (1, 2, 3)) <= chord:
+        points = curve(np.arange(4 * steps + 1) / (4 * steps))
+        inner = points[:-1].reshape(-1, 4)[:, 1:]
+        if _distance(inner, points[:-4:4, None], points[4::4, None]) <= chord:
             break
         steps *= 2
     return steps
