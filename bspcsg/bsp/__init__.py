@@ -7,6 +7,7 @@ are snapped to first.
 """
 
 from .drawings.dxf import load_dxf, save_dxf
+from .drawings.left_out import DrawingWarning
 from .drawings.svg import load_svg, save_svg
 from .painting.camera import Camera
 from .painting.panorama import panorama
@@ -72,6 +73,7 @@ __all__ = [
     "Comparison",
     "Construction",
     "Division",
+    "DrawingWarning",
     "Fragments",
     "HitLists",
     "Hits",

@@ -90,7 +90,8 @@ def evaluate(
     -----
     CsgWarning
         For what is left out as OpenSCAD leaves it out: files that are not there, numbers that are
-        not finite, points that are missing, children of the other dimension.
+        not finite, points that are missing, children of the other dimension, and what drawings
+        hold beside outlines.
     """
     word(get_args(OnInvalid), on_invalid, "on_invalid")
     polishes, skips = truth_value(polish, "polish"), truth_value(lenient, "lenient")

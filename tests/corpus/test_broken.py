@@ -190,6 +190,7 @@ def test_changed_meshes(suffix: str, text: bool, changes: list[tuple[float, int,
     read_or_refused(lambda: b.load(f"in{suffix}"), f"in{suffix}")
 
 
+@pytest.mark.filterwarnings("ignore::bspcsg.bsp.DrawingWarning")
 @pytest.mark.parametrize("suffix", [".csg", ".json", ".svg", ".dxf"])
 @settings(max_examples=20)
 @given(changes=CHANGES)

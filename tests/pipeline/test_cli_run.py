@@ -123,6 +123,21 @@ def test_what_is_left_out_is_told(folder: Path, capsys: Capture) -> None:
     assert b.load("x.off").volume_exact == 1
 
 
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg">
+<rect width="72" height="72"/><text>A</text></svg>"""
+
+
+def test_what_drawings_lack_is_told(folder: Path, capsys: Capture) -> None:
+    Path("a.svg").write_text(DRAWING)
+    Path("a.csg").write_text('linear_extrude(height = 1) import(file = "a.svg");')
+    code, _, err = ran(capsys, "run", "a.csg", "-o", "x.off")
+    assert code == 0 and "warning: a.csg:1:28: import(): a.svg: left out: text (1)." in err
+    assert "left out" not in ran(capsys, "run", "a.csg", "-o", "x.off", "-q")[2]
+    Path("a.py").write_text('import bspcsg as b\nresult = b.Region.from_svg("a.svg").extrude(1)\n')
+    code, _, said = finished("run", "a.py", "-o", "x.off")
+    assert code == 0 and b"DrawingWarning: a.svg: left out: text (1)." in said
+
+
 def test_scripts_read_no_other_folders_unless_allowed(folder: Path, capsys: Capture) -> None:
     Path("own").mkdir()
     Path("other").mkdir()

@@ -13,6 +13,7 @@ import pytest
 import bspcsg as b
 from bspcsg import bsp
 from bspcsg.bsp.drawings.dxf import dxf_data
+from bspcsg.bsp.drawings.svg import curve_of
 
 R = bsp.Region
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9" width="90mm">{}</svg>'
@@ -58,7 +59,8 @@ def test_drawings_far_out_and_of_large_and_small_parts_come_back(
 def test_the_empty_region_is_a_drawing_too(suffix: str, tmp_path: Path) -> None:
     path = tmp_path / f"empty.{suffix}"
     getattr(R.empty(), f"to_{suffix}")(path)
-    assert getattr(R, f"from_{suffix}")(path).is_empty
+    with pytest.warns(bsp.DrawingWarning, match=f"empty.{suffix}: the region is empty"):
+        assert getattr(R, f"from_{suffix}")(path).is_empty
     with pytest.raises(b.UnboundedError):
         getattr(R.full(), f"to_{suffix}")(path)
 
@@ -84,10 +86,12 @@ def test_svg_fill_rules(tmp_path: Path) -> None:
     styled = f'<g style="fill-rule:evenodd">{path.format("")}</g>'
     assert drawn(tmp_path, styled).area == 12
     for hidden in ('fill="none"', 'style="fill:none"', 'display="none"'):
-        assert drawn(tmp_path, path.format(hidden)).is_empty
+        with pytest.warns(bsp.DrawingWarning, match="nothing to fill"):
+            assert drawn(tmp_path, path.format(hidden)).is_empty
     two = '<rect width="2" height="2"/><rect x="1" width="2" height="2"/>'
     assert drawn(tmp_path, two).area == 6
-    assert drawn(tmp_path, '<line x2="4" y2="4" stroke="black"/><text>hi</text>').is_empty
+    with pytest.warns(bsp.DrawingWarning, match=r"left out: stroke \(1\), text \(1\)\. The region"):
+        assert drawn(tmp_path, '<line x2="4" y2="4" stroke="black"/><text>hi</text>').is_empty
 
 
 BOMB = '<!DOCTYPE svg [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;">]><svg>&b;</svg>'
@@ -217,7 +221,8 @@ def test_what_is_not_filled_or_shown_is_left_out(tmp_path: Path, said: str) -> N
 def test_drawings_that_are_not_displayed_are_empty(tmp_path: Path, said: str) -> None:
     text = f'<svg xmlns="http://www.w3.org/2000/svg" {said}>{SQUARE_PATH.format("")}</svg>'
     (tmp_path / "x.svg").write_text(text)
-    assert R.from_svg(tmp_path / "x.svg").is_empty
+    with pytest.warns(bsp.DrawingWarning, match="nothing to fill"):
+        assert R.from_svg(tmp_path / "x.svg").is_empty
 
 
 def test_even_odd_is_told_in_any_case(tmp_path: Path) -> None:
@@ -232,3 +237,14 @@ def test_margins_without_a_page_are_refused(tmp_path: Path, margin: float) -> No
     with pytest.raises(b.InvalidParameterError, match="margin"):
         bsp.save_svg(R.rectangle(4), tmp_path / "x.svg", margin=margin)
     assert not (tmp_path / "x.svg").exists()
+
+
+# An arc is measured once, and its points are those of svgelements, which measures it at each call.
+@pytest.mark.parametrize("radii", ["5 3 30", "4 4 0", "0.5 9 -200", "7 7 90"])
+@pytest.mark.parametrize("flags", ["0 0", "0 1", "1 0", "1 1"])
+def test_points_of_arcs_are_those_of_svgelements(radii: str, flags: str) -> None:
+    elements = pytest.importorskip("svgelements")
+    (arc,) = elements.Path(f"M1 2 A {radii} {flags} 4 -3")[1:]
+    parameters = np.arange(1, 40) / 40
+    found, expected = curve_of(arc)(parameters), np.asarray(arc.npoint(parameters))
+    assert np.allclose(np.column_stack([found.real, found.imag]), expected, rtol=0, atol=1e-12)

@@ -187,6 +187,10 @@ ROWS: dict[str, Row] = {
         {"origins": [START], "directions": [AHEAD], "max_t": 3.0, "threads": 1},
     ),
     "RayCaster.refitted": (CASTER.refitted, {"facets": S}),
+    "SphericalRegion": (
+        bsp.SphericalRegion,
+        {"cone": bsp.ObjectTree.uniform(3, full=True, pitch=0)},
+    ),
     "SphericalRegion.arc": (bsp.SphericalRegion.arc, {"start": (1, 0), "end": (0, 1)}),
     "SphericalRegion.classify": (CAP.classify, {"directions": [(1, 0, 0)]}),
     "SphericalRegion.empty": (bsp.SphericalRegion.empty, {"dimension": 3}),

@@ -117,6 +117,7 @@ EXAMPLES: dict[type, Callable[[], Any]] = {
     bsp.Tests: lambda: grown().test_ray(STARTS, ALONG),
     csg.Argument: lambda: SCRIPT.nodes[0].children[0].arguments[0],
     csg.CsgTree: lambda: SCRIPT,
+    bsp.DrawingWarning: lambda: bsp.DrawingWarning("something"),
     csg.CsgWarning: lambda: csg.CsgWarning("something"),
     csg.Node: lambda: SCRIPT.nodes[0],
     csg.Polish: lambda: csg.Polish(-4, 5e-5),

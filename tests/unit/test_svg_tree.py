@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg import Region
+from bspcsg import Region, bsp
 from bspcsg.bsp.drawings import svg_tree
 
 SPACES = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
@@ -120,7 +120,8 @@ def test_what_is_used(tmp_path: Path, name: str) -> None:
     "declared", ["symbol", "mask", "marker", "pattern", "clipPath", "defs", "foreignObject"]
 )
 def test_what_is_declared_shows_nothing(tmp_path: Path, declared: str) -> None:
-    assert region_of(tmp_path, f'<{declared} id="x">{SQUARE}</{declared}>').is_empty
+    with pytest.warns(bsp.DrawingWarning, match="region is empty"):
+        assert region_of(tmp_path, f'<{declared} id="x">{SQUARE}</{declared}>').is_empty
 
 
 @pytest.mark.parametrize(

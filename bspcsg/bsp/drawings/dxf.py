@@ -5,6 +5,7 @@ import os
 import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ from ...mesh.interop import optional
 from ...parameters import file_path, of_kind, positive, shown
 from ..sets.region import Region
 from .dxf_curves import chains_of
+from .dxf_layouts import drawn_layout
+from .dxf_markers import with_markers
+from .left_out import LeftOut
 
 
 def load_dxf(
@@ -30,7 +34,8 @@ def load_dxf(
     """Read the closed outlines in the model space of a DXF file as one region.
 
     Lines, arcs, circles, ellipses, splines and polylines count, those of inserted blocks, too;
-    pieces are joined where their ends lie within a millionth of the drawing's size.
+    pieces are joined where their ends lie within a millionth of the drawing's size. Of a drawing
+    with nothing in its model space, the paper space is read.
 
     Parameters
     ----------
@@ -47,15 +52,29 @@ def load_dxf(
     ------
     FormatError
         If the file cannot be read, is no DXF, lacks one of the layers (`code`
-        ``"unknown_name"``), or an outline is open or branches (``"not_closed"``).
+        ``"unknown_name"``), or an outline is open or branches (``"not_closed"``). Binary DXF is
+        refused (``"unsupported"``).
+
+    Warns
+    -----
+    DrawingWarning
+        Names the kinds of what is left out, such as hatches and text, and says that the region is
+        empty.
     """
     chord = positive(tolerance, "tolerance")
     names = None if layers is None else _names(layers)
     document = read_document(path)
     with format_errors(os.fspath(path), "DXF"):
         wanted = None if names is None else _wanted(names, document, os.fspath(path))
-        chains = list(chains_of(document.modelspace(), wanted, chord))
-    return Region(_closed(chains, os.fspath(path)), winding=winding, pitch=pitch)
+        lost = LeftOut()
+        is_wanted = partial(_is_among, wanted)
+        layout = drawn_layout(document, is_wanted, lost)
+        chains = list(chains_of(layout, is_wanted, chord, lost))
+    region = Region(
+        lost.surrounding(_closed(chains, os.fspath(path))), winding=winding, pitch=pitch
+    )
+    lost.tell(path, region)
+    return region
 
 
 def _names(layers: Any) -> set[str]:
@@ -83,6 +102,10 @@ def _wanted(names: set[str], document: Any, file: str) -> set[str]:
         message = f"{file}: there is no layer {shown(unknown[0])}; it has {known}."
         raise FormatError(message, "unknown_name")
     return {name.casefold() for name in names}
+
+
+def _is_among(wanted: set[str] | None, layer: str) -> bool:
+    return wanted is None or layer.casefold() in wanted
 
 
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
@@ -133,13 +156,25 @@ def _without_time(options: Any) -> Iterator[None]:
             options.write_fixed_meta_data_for_testing = before
 
 
+#: What binary files begin with.
+_BINARY = b"AutoCAD Binary DXF"
+
+_TEXT_OF_BINARY = (
+    "{}: this is a binary DXF; save it as a text DXF first, for example in Python with"
+    ' ezdxf.readfile("in.dxf").saveas("out.dxf").'
+)
+
+
 def read_document(path: str | os.PathLike[str]) -> Any:
     """Return the ezdxf document of a file; `FormatError` if it is none."""
     ezdxf = optional("ezdxf", "ezdxf")
     name = file_path(path)
-    data = limited_content(name).replace(b"\r\n", b"\n")
+    data = limited_content(name)
+    if data.startswith(_BINARY):
+        raise FormatError(_TEXT_OF_BINARY.format(name), "unsupported")
     try:
-        return ezdxf.read(io.StringIO(_decoded(data)))
+        text = _decoded(data.replace(b"\r\n", b"\n"))
+        return ezdxf.document.Drawing.load(with_markers(io.StringIO(text)))
     except Exception as error:  # what ezdxf raises on damaged files is of any kind
         raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
 
@@ -163,7 +198,7 @@ def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
         ends = np.array([(chain[0], chain[-1]) for chain in rest])
         size = float(np.ptp(np.concatenate(chains), axis=0).max())
         loops += _joined(rest, _places(ends, size), name)
-    return [loop for loop in loops if len(loop) >= 3]
+    return loops
 
 
 #: Ends that are a part of the drawing's size apart are joined, but not more.

@@ -5,12 +5,14 @@ arcs are cut into chords here.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
 from ..._types import FloatArray
+from .dxf_layouts import ANY_LAYER, WINDOW
+from .left_out import LeftOut
 
 #: Entities that are outlines, and those that hold entities.
 _CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])
@@ -23,66 +25,88 @@ MOST_IN_BLOCKS = 1 << 17
 _DEEPEST_BLOCK = 64
 _MOST_CHORDS = 1 << 20
 
-#: The layer of a block's entities that are to lie on the layer of each of its insertions.
-_ANY_LAYER = "0"
+#: The corners of what is no outline.
+_NONE = np.zeros((0, 2))
 
 #: Vertices that only help to draw a curve: corners of the frame of a spline.
 _FRAME = 16
 
 
-def chains_of(layout: Any, layers: set[str] | None, chord: float) -> Iterator[FloatArray]:
+def chains_of(
+    layout: Any, is_wanted: Callable[[str], bool], chord: float, lost: LeftOut
+) -> Iterator[FloatArray]:
     """Yield the corners of each outline, (n, 2); those of closed ones end as they begin.
 
     Parameters
     ----------
     layout : ezdxf layout
         Insertions of blocks stand for what these hold.
-    layers : set of str, optional
-        Those that count, casefolded; all by default.
+    is_wanted : callable
+        Says whether a layer counts.
     chord : float
         Largest distance between a curve and its chords.
+    lost : LeftOut
+        Gets what is no outline.
 
     Raises
     ------
     ValueError
         If blocks contain themselves or too much, or a curve would have too many chords.
     """
-    for entity, layer in _entities(layout):
-        if layers is None or layer.casefold() in layers:
-            chain = _chain(entity, chord)
+    for entity, layer, is_placed in _entities(layout):
+        if is_wanted(layer):
+            chain = _NONE
+            if is_placed and entity.dxftype() in _CURVES:
+                chain = _chain(entity, chord)
             if len(chain) > 1:
                 yield chain
+            elif entity.dxftype() != WINDOW:
+                lost.add(entity.dxftype())
 
 
-def _entities(layout: Any) -> Iterator[tuple[Any, str]]:
-    """Yield the curves of a layout and of the blocks in it, each with its layer."""
-    waiting = [(iter(layout), _ANY_LAYER)]
+def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
+    """Yield the entities of a layout and of the blocks in it, but not those that insert blocks.
+
+    Each comes with its layer, and false if it could not be moved to its place.
+    """
+    waiting: list[tuple[Iterator[tuple[Any, bool]], str]] = [
+        (((entity, True) for entity in layout), ANY_LAYER)
+    ]
     count = 0
     while waiting:
         entities, outer = waiting[-1]
-        entity = next(entities, None)
+        entity, is_placed = next(entities, (None, False))
         if entity is None:
             waiting.pop()
             continue
         count += len(waiting) > 1
         if count > MOST_IN_BLOCKS:
             raise ValueError("its blocks hold too much")
-        layer = entity.dxf.layer if entity.dxf.layer != _ANY_LAYER else outer
-        if entity.dxftype() in _CURVES:
-            yield entity, layer
-        elif entity.dxftype() == _BLOCK:
+        layer = entity.dxf.get("layer") or ANY_LAYER
+        layer = outer if layer == ANY_LAYER else layer
+        if entity.dxftype() == _BLOCK and is_placed:
             if len(waiting) > _DEEPEST_BLOCK:
                 raise ValueError("its blocks contain each other too often")
-            waiting.append((_inserted(entity), layer))
+            waiting.append((inserted(entity), layer))
+        else:
+            yield entity, layer, is_placed
 
 
-def _inserted(insert: Any) -> Iterator[Any]:
-    """Yield what one insertion of a block puts into the drawing, row by row."""
+def inserted(insert: Any, *, rows: bool = True) -> Iterator[tuple[Any, bool]]:
+    """Yield what one insertion of a block puts into the drawing, row by row.
+
+    Beside each stands whether it is moved to its place: ezdxf cannot move all.
+    """
     if insert.block() is None:
         raise ValueError(f"there is no block called “{insert.dxf.name}”")
-    if insert.mcount > 1:
-        return iter(insert.multi_insert())
-    return iter(insert.virtual_entities())
+    if insert.mcount > 1 and rows:
+        yield from ((one, True) for one in insert.multi_insert())
+        return
+    unmoved: list[Any] = []
+    placed = insert.virtual_entities(skipped_entity_callback=lambda one, _: unmoved.append(one))
+    yield from ((one, True) for one in placed)
+    yield from ((one, False) for one in unmoved)
+    yield from ((one, False) for one in insert.attribs if not one.is_invisible)
 
 
 def _chain(entity: Any, chord: float) -> FloatArray:
@@ -91,6 +115,8 @@ def _chain(entity: Any, chord: float) -> FloatArray:
         return _flat([entity.dxf.start, entity.dxf.end])
     if kind == "ELLIPSE" and _is_full(entity):
         return _closed(_flat(_from_its_axis(entity).flattening(chord)))
+    if kind == "SPLINE" and not len(entity.control_points) and not len(entity.fit_points):
+        return _NONE
     if kind in ("ELLIPSE", "SPLINE"):
         return _flat(entity.flattening(chord))
     if kind == "LWPOLYLINE":
@@ -179,7 +205,8 @@ def _old_polyline(entity: Any, chord: float) -> FloatArray:
         points = _flat(entity.points())
         return np.concatenate([points, points[:1]]) if entity.is_closed else points
     if not entity.is_2d_polyline:
-        raise ValueError("a mesh is no outline")
+        # A mesh.
+        return _NONE
     rows = [
         (vertex.dxf.location.x, vertex.dxf.location.y, vertex.dxf.get("bulge", 0.0))
         for vertex in entity.vertices

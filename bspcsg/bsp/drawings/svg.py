@@ -19,7 +19,8 @@ from ...mesh.interop import optional
 from ...parameters import file_path, not_negative, of_kind, positive, shown, winding_rule
 from ..sets.region import Region
 from ..trees.facets import chosen_pitch
-from .svg_tree import make_plain, name_of
+from .left_out import LeftOut
+from .svg_tree import NO_SHAPES, make_plain, name_of
 
 
 def load_svg(
@@ -45,31 +46,44 @@ def load_svg(
     Region
         In the user units of the outermost element (its size on paper and its view box do not
         matter), y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images
-        and what is not filled are left out; an open subpath counts as closed, as when it is filled.
+        and what is not filled are left out; of a ``switch`` the first child that fits is drawn, in
+        English if there is a choice; an open subpath counts as closed, as when it is filled.
         Clip paths and masks do not count; of style sheets only rules for a tag, a class or an id.
 
     Raises
     ------
     FormatError
         If the file cannot be read, is no well-formed SVG, or declares an entity.
+
+    Warns
+    -----
+    DrawingWarning
+        Names the kinds of what is left out, and says that the region is empty.
     """
+    lost = LeftOut()
     chord = positive(tolerance, "tolerance")
     rule = None if winding is None else winding_rule(winding)
     found: list[tuple[list[FloatArray], WindingRule]] = []
-    for shape in shown_shapes(path, make_plain):
+    for shape in shown_shapes(path, make_plain, lost):
+        loops: list[FloatArray] = []
         if _is_filled(shape):
             with format_errors(os.fspath(path), "SVG"):
                 outlines = outlines_of(shape, _within(shape, chord))
                 loops = [corners for corners, _ in outlines if len(corners) >= 3]
             found.append((loops, rule or _rule(shape)))
+        if not loops and _keyword(shape, "stroke") not in ("", "none"):
+            lost.add("stroke")
+        lost.outlines += len(loops)
     points = [np.zeros((0, 2)), *(corners for loops, _ in found for corners in loops)]
     common = chosen_pitch(pitch, np.concatenate(points))
     shapes = (Region(loops, winding=kind, pitch=common) for loops, kind in found)
-    return Region.compose([Region(pitch=common), *shapes])
+    region = Region.compose([Region(pitch=common), *shapes])
+    lost.tell(path, region)
+    return region
 
 
 def shown_shapes(
-    path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None]
+    path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None], lost: LeftOut
 ) -> list[Any]:
     """Return svgelements' shapes of a file, but for those that are not shown.
 
@@ -80,6 +94,8 @@ def shown_shapes(
     path : path
     prepare : callable
         Changes the outermost element before it is looked at; takes off its view box.
+    lost : LeftOut
+        Gets what is shown, but is no shape.
 
     Raises
     ------
@@ -96,12 +112,22 @@ def shown_shapes(
         plain = io.BytesIO(ElementTree.tostring(root))
         drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
         # svgelements makes nothing of a drawing that is not displayed.
-        found = () if drawing is None else drawing.elements()
+        found = [] if drawing is None else [one for one in drawing.elements() if _is_shown(one)]
         shapes = [shape for shape in found if isinstance(shape, elements.Shape)]
+        for element in found:
+            lost.add(*_no_shape(element))
     except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
         raise FormatError(message, "syntax") from error
-    return [shape for shape in shapes if _is_shown(shape)]
+    return shapes
+
+
+def _no_shape(element: Any) -> tuple[str, int]:
+    """Return what an element without a shape is called, and 1 if it shows something."""
+    name = str(element.values.get("tag"))
+    if name == "use":
+        return "use of what is not there", int(not len(element))
+    return name, int(name in NO_SHAPES)
 
 
 def save_svg(
@@ -233,13 +259,55 @@ def _points_of(elements: Any, segment: Any, steps: Callable[[Any], int]) -> list
     if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
         return [_complex(segment.end)]
     count = steps(segment)
-    return [*_on_curve(segment, np.arange(1, count) / count).tolist(), _complex(segment.end)]
+    inner = curve_of(segment)(np.arange(1, count) / count)
+    return [*inner.tolist(), _complex(segment.end)]
 
 
-def _on_curve(segment: Any, parameters: FloatArray) -> Any:
-    """Return points of an arc or a curve as complex numbers."""
-    points = np.asarray(segment.npoint(parameters), dtype=np.float64).reshape(-1, 2)
-    return points[:, 0] + 1j * points[:, 1]
+def curve_of(segment: Any) -> Callable[[FloatArray], Any]:
+    """Return what gives the points of an arc or a curve, as complex numbers, by its parameters."""
+    elements = optional("svgelements", "svgelements")
+    if isinstance(segment, elements.Arc) and segment.sweep:
+        ends = (segment.start, segment.center, segment.prx, segment.pry)
+        start, center, across, along = map(_complex, ends)
+        if across != center and along != center:
+            return _arc_of(
+                start - center, center, across - center, abs(along - center), float(segment.sweep)
+            )
+
+    def curve(parameters: FloatArray) -> Any:
+        points = np.asarray(segment.npoint(parameters), dtype=np.float64).reshape(-1, 2)
+        return points[:, 0] + 1j * points[:, 1]
+
+    return curve
+
+
+def _arc_of(
+    first: complex, center: complex, wide: complex, height: float, sweep: float
+) -> Callable[[FloatArray], Any]:
+    """Return the points of an arc by its parameters.
+
+    svgelements measures the arc again at each call, which takes ten times as long as the points.
+
+    Parameters
+    ----------
+    first, wide : complex
+        Its beginning and the end of its first axis, seen from its center.
+    center : complex
+    height : float
+        Half of its other axis.
+    sweep : float
+        How far it goes.
+    """
+    width = abs(wide)
+    high = 1j * height * wide / width
+    begins = first / wide
+    start = math.atan2(begins.imag * width / height, begins.real)
+
+    def curve(parameters: FloatArray) -> Any:
+        angles = start + sweep * parameters
+        return center + wide * np.cos(angles) + high * np.sin(angles)
+
+    return curve
 
 
 def _complex(point: Any) -> complex:
@@ -256,11 +324,11 @@ def _within(shape: Any, chord: float) -> Callable[[Any], int]:
 
 def _steps(segment: Any, chord: float) -> int:
     """Return how many chords stay within the tolerance, tried at points between."""
-    steps = 2
+    curve, steps = curve_of(segment), 2
     while steps < 1 << 12:
-        curve = _on_curve(segment, np.arange(4 * steps + 1) / (4 * steps))
-        start, end = curve[:-4:4], curve[4::4]
-        if max(_distance(curve[k::4], start, end) for k in (1, 2, 3)) <= chord:
+        points = curve(np.arange(4 * steps + 1) / (4 * steps))
+        inner = points[:-1].reshape(-1, 4)[:, 1:]
+        if _distance(inner, points[:-4:4, None], points[4::4, None]) <= chord:
             break
         steps *= 2
     return steps

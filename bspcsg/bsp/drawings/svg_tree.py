@@ -16,8 +16,19 @@ from ...mesh.interop import optional
 #: Elements that show nothing where they are declared; what they hold may be used from elsewhere.
 _DECLARED = frozenset({"symbol", "mask", "marker", "pattern", "clipPath"})
 
-#: Elements with contents of other kinds.
-_FOREIGN = frozenset({"foreignObject", "metadata", "glyph", "missing-glyph"})
+#: Elements that show what is no shape; a `switch` is one as long as no child of it fits.
+NO_SHAPES = frozenset(
+    {"text", "image", "foreignObject", "switch", "video", "audio", "canvas", "iframe"}
+)
+
+#: Elements with contents of other kinds that show nothing.
+_FOREIGN = frozenset({"metadata", "glyph", "missing-glyph"})
+
+#: Elements that a `switch` passes over.
+_SILENT = frozenset({"title", "desc", "defs", "style", "script"})
+
+#: The language of a drawing that has a choice of them.
+_LANGUAGE = "en"
 
 #: Sizes that must not be negative, by the elements that have them.
 _SIZES = {"rect": ("width", "height"), "circle": ("r",), "ellipse": ("rx", "ry")}
@@ -26,7 +37,8 @@ _SIZES = {"rect": ("width", "height"), "circle": ("r",), "ellipse": ("rx", "ry")
 _MOST_SHOWN = 1 << 17
 _DEEPEST_USE = 64
 
-_HREF = ("href", "{http://www.w3.org/1999/xlink}href")
+#: Attributes that name what is used.
+HREF = ("href", "{http://www.w3.org/1999/xlink}href")
 
 #: A size in user units, where it is known.
 _Size = tuple[float, float] | None
@@ -63,7 +75,8 @@ def make_plain(root: Element) -> None:
 def _drop(root: Element) -> None:
     """Drop what is no drawing, and shapes that show nothing because they say too little."""
     for parent in list(root.iter()):
-        parent[:] = [child for child in parent if _is_drawn(child)]
+        foreign = name_of(parent) == "foreignObject"
+        parent[:] = [child for child in parent if not foreign and _is_drawn(child)]
 
 
 def _is_drawn(element: Element) -> bool:
@@ -71,13 +84,28 @@ def _is_drawn(element: Element) -> bool:
     sizes = [element.get(size, "") for size in _SIZES.get(name, ())]
     if name in _FOREIGN or any(size.strip().startswith("-") for size in sizes):
         return False
+    if name == "text":
+        return any(text.strip() for text in element.itertext())
     return name != "path" or bool(element.get("d"))
 
 
 def _switch(element: Element) -> None:
-    """Leave the first child that needs nothing special."""
-    fit = [child for child in element if not child.get("requiredExtensions")]
-    element[:] = fit[:1]
+    """Make a group of a switch with the first child that fits, if one does."""
+    shown = [child for child in element if name_of(child) not in _SILENT]
+    first = next(filter(_fits, shown), None)
+    element[:] = [child for child in element if child is first or child not in shown]
+    if first is not None or not shown:
+        element.tag = _tag(element, "g")
+
+
+def _fits(element: Element) -> bool:
+    """Say whether nothing keeps a child of a switch from being drawn here."""
+    if name_of(element) == "foreignObject" or element.get("requiredExtensions"):
+        return False
+    languages = element.get("systemLanguage")
+    if languages is None:
+        return True
+    return any(one.strip().lower().split("-")[0] == _LANGUAGE for one in languages.split(","))
 
 
 def _check_uses(root: Element) -> None:
@@ -106,7 +134,7 @@ def _check_uses(root: Element) -> None:
 
 def _target(use: Element) -> str:
     """Return the id of what is used; nothing if it lies elsewhere."""
-    reference = next((use.get(key, "") for key in _HREF if use.get(key)), "")
+    reference = next((use.get(key, "") for key in HREF if use.get(key)), "")
     return reference[1:] if reference[:1] == "#" else ""
 
 
@@ -147,7 +175,7 @@ def _of_symbol(use: Element, symbol: dict[str, str], outer: _Size) -> Element:
     around = Element(_tag(use, "g"), dict(use.attrib))
     view = symbol | {key: use.attrib[key] for key in ("width", "height") if key in use.attrib}
     _group(around, view | {key: use.get(key, "0") for key in ("x", "y")}, outer)
-    references = {key: around.attrib.pop(key) for key in _HREF if key in around.attrib}
+    references = {key: around.attrib.pop(key) for key in HREF if key in around.attrib}
     around.append(Element(use.tag, references))
     return around
 

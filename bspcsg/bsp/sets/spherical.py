@@ -19,7 +19,7 @@ from ...errors import invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number, exact_point
 from ...geometry.polytope import Corner, Polytope, cut_polygon, height
-from ...parameters import shown
+from ...parameters import of_kind, shown
 from .objects import ObjectTree
 from .operators import SetOperators
 
@@ -51,7 +51,7 @@ class SphericalRegion(SetOperators):
     __slots__ = ("_cone",)
 
     def __init__(self, cone: ObjectTree) -> None:
-        rows = cone.nodes.coefficients
+        rows = of_kind(ObjectTree, cone, "cone").nodes.coefficients
         if cone.dimension not in (2, 3) or any(row[-1] for row in rows):
             raise invalid_parameter("All hyperplanes of a cone go through the origin.")
         self._cone = cone

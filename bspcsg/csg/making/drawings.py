@@ -10,7 +10,9 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
-from ...bsp.drawings.dxf_curves import MOST_IN_BLOCKS
+from ...bsp.drawings.dxf_curves import MOST_IN_BLOCKS, inserted
+from ...bsp.drawings.dxf_layouts import ANY_LAYER, WINDOW, drawn_layout
+from ...bsp.drawings.left_out import LeftOut
 from ...errors import format_errors
 from ..syntax.arguments import Arguments
 from .tessellation import Fineness
@@ -23,12 +25,13 @@ _JOINED = 2.0**-10
 
 
 def dxf_region(
-    path: Path, layer: str, origin: FloatArray, scale: float, arguments: Arguments
+    path: Path, layer: str, origin: FloatArray, scale: float, arguments: Arguments, lost: LeftOut
 ) -> Region:
     """Return what the outlines of a DXF file surround, by the even-odd rule.
 
     Lines, light polylines, circles, arcs, ellipses and inserted blocks count, as in OpenSCAD;
-    outlines that stay open are closed by a chord.
+    outlines that stay open are closed by a chord. With nothing in the model space, the paper space
+    is read.
 
     Parameters
     ----------
@@ -41,6 +44,8 @@ def dxf_region(
         Multiplied then.
     arguments : Arguments
         Those of the node, which say how fine arcs are.
+    lost : LeftOut
+        Gets what is left out.
 
     Raises
     ------
@@ -49,14 +54,23 @@ def dxf_region(
     """
     document = read_document(path)
     with format_errors(str(path), "DXF"):
-        entities = [e for e in document.modelspace() if not layer or e.dxf.layer == layer]
+        entities = _entities(document, layer, lost)
         chains = [
             (np.array(chain, dtype=np.float64) - origin) * scale
-            for chain in _limited(_flat(iter(entities)), arguments, abs(scale))
+            for chain in _limited(_flat(entities, lost), arguments, abs(scale), lost)
         ]
     proper = [chain for chain in chains if len(chain) > 1]
-    loops = [loop for loop in _joined(proper) if len(np.unique(loop, axis=0)) >= 3]
-    return Region(loops, winding="even-odd")
+    return Region(lost.surrounding(_joined(proper)), winding="even-odd")
+
+
+def _entities(document: Any, layer: str, lost: LeftOut) -> Iterator[Any]:
+    """Return the entities of the drawing on a layer; on all if that is empty."""
+
+    def is_wanted(name: str) -> bool:
+        return not layer or name == layer
+
+    entities = drawn_layout(document, is_wanted, lost)
+    return (one for one in entities if is_wanted(one.dxf.get("layer") or ANY_LAYER))
 
 
 class _Places:
@@ -113,29 +127,42 @@ def _walk(
     return np.concatenate(parts)
 
 
-def _flat(entities: Iterator[Any]) -> Iterator[Any]:
+def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
     """Yield entities, and those of inserted blocks in the place of these."""
-    waiting, left = [entities], MOST_IN_BLOCKS
+    waiting: list[Iterator[tuple[Any, bool]]] = [((entity, True) for entity in entities)]
+    left = MOST_IN_BLOCKS
     while waiting:
-        entity = next(waiting[-1], None)
+        entity, is_placed = next(waiting[-1], (None, False))
         left -= len(waiting) > 1
         if left < 0:
             raise ValueError("its blocks hold too much")
         if entity is None:
             waiting.pop()
-        elif entity.dxftype() != "INSERT":
+        elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _DEEPEST_BLOCK):
+            lost.add(entity.dxftype())
+        elif entity.dxftype() == "INSERT":
+            # OpenSCAD knows no rows of them.
+            lost.add("INSERT", entity.mcount - 1)
+            waiting.append(inserted(entity, rows=False))
+        else:
             yield entity
-        elif len(waiting) <= _DEEPEST_BLOCK:
-            waiting.append(iter(entity.virtual_entities()))
 
 
-def _limited(entities: Iterable[Any], arguments: Arguments, scale: float) -> Iterator[Any]:
+def _limited(
+    entities: Iterable[Any], arguments: Arguments, scale: float, lost: LeftOut
+) -> Iterator[Any]:
     """Yield the chains of all entities, as long as they are not too many corners together."""
     corners = 0
     for entity in entities:
+        if entity.dxftype() not in _CURVES and entity.dxftype() != WINDOW:
+            lost.add(entity.dxftype())
         for chain in _chains(entity, arguments, scale):
             corners = arguments.limited(corners + len(chain), "this drawing")
             yield chain
+
+
+#: Entities that OpenSCAD reads.
+_CURVES = frozenset(["LINE", "LWPOLYLINE", "CIRCLE", "ARC", "ELLIPSE"])
 
 
 def _chains(entity: Any, arguments: Arguments, scale: float) -> Iterator[Any]:

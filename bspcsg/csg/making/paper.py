@@ -12,8 +12,9 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
+from ...bsp.drawings.left_out import LeftOut
 from ...bsp.drawings.svg import outlines_of, shown_shapes
-from ...bsp.drawings.svg_tree import name_of
+from ...bsp.drawings.svg_tree import HREF, name_of
 from ...errors import format_errors
 from ...mesh.interop import optional
 from ...modelling.planar.offsetting import stroked
@@ -30,9 +31,6 @@ _ROUNDING = 1e-6
 #: Lines that say less of their width, in user units, are one wide.
 _THINNEST = 0.01
 
-#: Elements that OpenSCAD does not read: it knows attributes alone, and shapes where they stand.
-_UNREAD = frozenset({"style", "use"})
-
 #: Ends of a subpath that are closer than this, in user units, close it.
 _CLOSED = 0.1
 
@@ -46,7 +44,7 @@ class _Page:
     y: float
 
 
-def svg_region(path: Path, dpi: float, centered: bool) -> Region:
+def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
     """Return the shapes of an SVG file as OpenSCAD has them.
 
     What is closed is filled, whatever its fill says, and what is open becomes as wide as its
@@ -62,8 +60,10 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
         Pixels per inch, for lengths without a unit.
     centered : bool
         True if the middle of the drawing is at the origin, rather than a corner of the page.
+    lost : LeftOut
+        Gets what is left out.
     """
-    region = _drawn(path)
+    region = _drawn(path, lost)
     page = _page(path, dpi)
     placed = region.scale(page.scale).translate(page.x, page.y)
     bounds = placed.bounds
@@ -72,13 +72,14 @@ def svg_region(path: Path, dpi: float, centered: bool) -> Region:
     return placed
 
 
-def _drawn(path: Path) -> Region:
+def _drawn(path: Path, lost: LeftOut) -> Region:
     region = Region()
-    for shape in shown_shapes(path, _prepare):
+    for shape in shown_shapes(path, _prepare, lost):
         with format_errors(str(path), "SVG"):
             outlines = list(outlines_of(shape, _steps_of(shape)))
         closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
         loops = [corners for corners in closed if len(corners) >= 3]
+        lost.outlines += len(loops)
         region = region | Region(loops, winding="even-odd")
         for corners, is_closed in outlines:
             if not is_closed and not _meets(corners) and len(corners) >= 2:
@@ -89,7 +90,13 @@ def _drawn(path: Path) -> Region:
 def _prepare(root: ElementTree.Element) -> None:
     """Take away what does not count, and the view box, which is looked at apart."""
     for parent in list(root.iter()):
-        parent[:] = [child for child in parent if name_of(child) not in _UNREAD]
+        parent[:] = [child for child in parent if name_of(child) != "style"]
+        if name_of(parent) == "switch":
+            # All of its children are drawn.
+            parent.tag = parent.tag.removesuffix("switch") + "g"
+        if name_of(parent) == "use":
+            # It shows nothing then, and is told.
+            parent.attrib = {key: parent.attrib[key] for key in parent.attrib if key not in HREF}
     for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
         root.attrib.pop(name, None)
 

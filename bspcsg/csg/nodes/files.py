@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...bsp import Region
+from ...bsp.drawings.left_out import LeftOut
 from ...formats.files import read
 from ...formats.registry import FORMATS
 from ...modelling.making.heights import (
@@ -34,7 +35,7 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
     path = _path(arguments, run)
     suffix = path.suffix.lower()
     if suffix == ".dxf":
-        return _dxf(path, arguments, arguments.number("scale", 1.0))
+        return _dxf(path, owner, arguments, run, arguments.number("scale", 1.0))
     if suffix == ".svg":
         return _svg(path, owner, arguments, run)
     if suffix not in FORMATS:
@@ -47,10 +48,10 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
     return run.closed_solid(owner, raw.vertices, raw.faces)
 
 
-def drawing_of(arguments: Arguments, run: Evaluation) -> Region:
+def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
     """Return the DXF file that an extrusion names, as scripts of before 2013 have it."""
     # What an extrusion scales is its upper end.
-    return _dxf(_path(arguments, run), arguments, 1.0)
+    return _dxf(_path(arguments, run), owner, arguments, run, 1.0)
 
 
 def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Region:
@@ -61,13 +62,25 @@ def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Regi
     for name in ("id", "layer"):
         if arguments.value(name) not in (None, ""):
             run.warn(owner, f"all of the drawing is read: its {name} does not count")
-    return svg_region(path, dpi, arguments.flag("center"))
+    lost = LeftOut()
+    return _told(owner, run, lost, svg_region(path, dpi, arguments.flag("center"), lost))
 
 
-def _dxf(path: Path, arguments: Arguments, scale: float) -> Region:
+def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: float) -> Region:
     origin = arguments.vector("origin", 2, (0.0, 0.0))
     layer = arguments.text("layer", "")
-    return dxf_region(path, layer, np.array(origin), scale, arguments)
+    lost = LeftOut()
+    region = dxf_region(path, layer, np.array(origin), scale, arguments, lost)
+    return _told(owner, run, lost, region)
+
+
+def _told(owner: Node, run: Evaluation, lost: LeftOut, region: Region) -> Region:
+    """Return the region of a drawing; the caller is told what it lacks."""
+    words = lost.words(region)
+    if words:
+        name = run.arguments(owner, ("file",)).text("file")
+        run.warn(owner, f"{name}: {words}")
+    return region
 
 
 @node("surface")

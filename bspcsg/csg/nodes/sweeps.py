@@ -31,7 +31,7 @@ def _figure(
     arguments: Arguments, owner: Node, children: list[Geometry], run: Evaluation
 ) -> Region | None:
     if "file" in arguments and not owner.children:
-        return drawing_of(arguments, run)
+        return drawing_of(owner, arguments, run)
     figure = union_of(owner, run.figures(owner, children), run)
     return figure if isinstance(figure, Region) else None
 

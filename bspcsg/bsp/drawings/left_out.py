@@ -1,0 +1,77 @@
+"""What a drawing holds that its region does not: collected on the way, and told once at the end."""
+
+import os
+import warnings
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..._types import FloatArray
+from ..sets.region import Region
+
+#: Kinds that are named, and letters of each.
+_MOST_KINDS, _LONGEST = 12, 40
+
+
+class DrawingWarning(UserWarning):
+    """Something in a drawing is not in its region, or that region is empty."""
+
+
+@dataclass
+class LeftOut:
+    """What of one drawing is left out.
+
+    Parameters
+    ----------
+    counts : Counter
+        How often each kind was, by the names that the file has for them.
+    outlines : int
+        The number of outlines that were read.
+    """
+
+    counts: Counter[str] = field(default_factory=Counter)
+    outlines: int = 0
+
+    def add(self, kind: str, count: int = 1) -> None:
+        """Count things that are left out."""
+        if count:
+            self.counts[kind] += count
+
+    def surrounding(self, loops: list[FloatArray]) -> list[FloatArray]:
+        """Return the outlines that have three corners; the others are left out."""
+        found = [loop for loop in loops if len(np.unique(loop, axis=0)) >= 3]
+        self.add("line that surrounds nothing", len(loops) - len(found))
+        self.outlines += len(found)
+        return found
+
+    def words(self, region: Region) -> str:
+        """Return sentences on what the region of the drawing lacks; none if it has everything."""
+        kinds = self._kinds()
+        lacking = f"left out: {kinds}. " if kinds else ""
+        if not region.is_empty:
+            return lacking.rstrip()
+        reason = ""
+        if self.outlines:
+            reason = ": its outlines cancel each other out, or have no area"
+        elif not kinds:
+            reason = ": the drawing has nothing to fill"
+        return f"{lacking}{'The' if kinds else 'the'} region is empty{reason}."
+
+    def _kinds(self) -> str:
+        """Return the kinds with their counts; files may call theirs anything."""
+        names = sorted(self.counts)
+        kinds = [f"{_harmless(name)} ({self.counts[name]})" for name in names[:_MOST_KINDS]]
+        more = sum(self.counts[name] for name in names[_MOST_KINDS:])
+        return ", ".join([*kinds, *([f"others ({more})"] if more else [])])
+
+    def tell(self, path: str | os.PathLike[str], region: Region) -> None:
+        """Warn the caller of a function that has read a file, if there is something to tell."""
+        words = self.words(region)
+        if words:
+            warnings.warn(f"{os.fspath(path)}: {words}", DrawingWarning, stacklevel=3)
+
+
+def _harmless(name: str) -> str:
+    letters = (c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name[:_LONGEST])
+    return "".join(letters)
