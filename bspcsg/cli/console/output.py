@@ -1,7 +1,6 @@
 """The streams of the command line's words, and the exit codes of its failures."""
 
 import json
-import os
 import sys
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -143,11 +142,6 @@ def print_error(values: dict[str, Any], code: int) -> None:
 def error_values(error: BspcsgError) -> dict[str, Any]:
     """Return an error as JSON values."""
     return {"code": error.code, "message": error.message, "where": list(error.where)}
-
-
-def discard_output() -> None:
-    """Point standard output at nothing, so that what is left is not flushed where it failed."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:
