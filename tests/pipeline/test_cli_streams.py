@@ -367,3 +367,26 @@ def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
         assert finished("union", "a.off", "c.stl", "-o", "x.off", "-v", stderr=full)[0] == 0
         assert volume_of(Path("x.off").read_bytes(), "off") == 15
         assert finished("info", "none.off", stderr=full)[0] == 3
+
+
+# Found: the message named standard output.
+@POSIX
+@pytest.mark.parametrize("size", [0, 100, 1500])
+def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:
+    line = ["validate", "a.off", "c.stl", "--op", "union", "-j1", "--results", "r.jsonl"]
+    code, out, err = finished(*line, before=at_most(size))
+    assert (code, out) == (5, b"")
+    assert err == b"bspcsg: error: r.jsonl: cannot write: File too large.\n"
+
+
+def test_other_files_on_a_full_disk(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", "/tmp/some")
+
+    monkeypatch.setattr("tempfile.mkdtemp", full)
+    Path("cube.py").write_text("import bspcsg\nresult = bspcsg.box(1, 1, 1)\n")
+    code, out, err = ran(capsys, "run", "cube.py", "-o", "x.ply")
+    assert (code, out) == (5, "")
+    assert err == "bspcsg: error: /tmp/some: cannot write: No space left on device.\n"
