@@ -10,7 +10,7 @@ from importlib import import_module
 import click
 
 from .._core import __version__
-from ..errors import BspcsgError, FormatError, InternalError
+from ..errors import BspcsgError, FormatError, InternalError, harmless
 from .console import clock, output, standard, status, terminal
 
 _EPILOG = """\b
@@ -216,7 +216,7 @@ def _invoked(arguments: list[str]) -> int:
 
 def _usage_error(error: click.ClickException, as_json: bool) -> int:
     context = error.ctx if isinstance(error, click.UsageError) else None
-    message = error.format_message()
+    message = harmless(error.format_message())
     terminal.say_error(message)
     if as_json:
         values = {"code": "usage", "message": message, "where": []}

@@ -7,7 +7,14 @@ from typing import Any
 
 import click
 
-from ...errors import BspcsgError, Finding, FormatError, InternalError, MissingPartError
+from ...errors import (
+    BspcsgError,
+    Finding,
+    FormatError,
+    InternalError,
+    MissingPartError,
+    harmless,
+)
 from . import status, terminal
 
 #: Version of the JSON documents.
@@ -73,13 +80,13 @@ class Output:
                 click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
         elif line and not (self.taken and self.verbosity < 0):
             with status.hidden():
-                click.echo(terminal.harmless(line), err=self.taken)
+                click.echo(harmless(line), err=self.taken)
 
     def detail(self, line: str) -> None:
         """Say on standard error what only ``--verbose`` asks for."""
         if self.verbosity > 0:
             with status.hidden():
-                click.echo(terminal.harmless(line), err=True)
+                click.echo(harmless(line), err=True)
 
     @property
     def advises(self) -> bool:

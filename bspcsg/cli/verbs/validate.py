@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...errors import harmless
 from ...parameters import SET_OPS
 from ..console import output, status
 from ..console.output import Output, counted
@@ -333,7 +334,9 @@ class _Validation:
             def notice(record: "CaseRecord") -> None:
                 bar.advance(task)
                 if is_failure(record) or self._out.verbosity > 0:
-                    bar.console.print(_line(record), markup=False, emoji=False, highlight=False)
+                    bar.console.print(
+                        harmless(_line(record)), markup=False, emoji=False, highlight=False
+                    )
 
             yield notice
 
