@@ -18,13 +18,24 @@ if TYPE_CHECKING:
     from ._core import Finding as CoreFinding
 
 
+#: Characters that a terminal takes for commands; lines and columns may be broken.
+_CONTROLS = {*range(0x20), *range(0x7F, 0xA0)} - {ord("\t"), ord("\n")}
+
+_HARMLESS = dict.fromkeys(_CONTROLS, "\N{REPLACEMENT CHARACTER}")
+
+
+def harmless(text: str) -> str:
+    """Return a text in which names and words of files cannot steer a terminal."""
+    return text.translate(_HARMLESS)
+
+
 class BspcsgError(Exception):
     """Anything this package refuses or fails to do.
 
     Parameters
     ----------
     message : str
-        A sentence for people.
+        A sentence for people; control characters in what it quotes are replaced.
     code : str
         A stable name for programs, such as ``"not_closed"``.
     where : sequence of int
@@ -33,7 +44,7 @@ class BspcsgError(Exception):
 
     def __init__(self, message: str, code: str = "internal", where: Sequence[int] = ()) -> None:
         # All arguments go to the base class, so that pickling keeps them.
-        super().__init__(message, code, tuple(where))
+        super().__init__(harmless(message), code, tuple(where))
 
     @property
     def message(self) -> str:
@@ -241,6 +252,10 @@ class Finding:
     message: str
     where: tuple[int, ...]
     count: int
+
+    def __post_init__(self) -> None:
+        # The message may quote a file.
+        object.__setattr__(self, "message", harmless(self.message))
 
     @classmethod
     def from_core(cls, finding: "CoreFinding") -> "Finding":

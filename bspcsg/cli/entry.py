@@ -13,6 +13,7 @@ _BAD_MOMENTS = ("<frozen importlib._bootstrap>", "npy_ctypes_check")
 _AGAIN = 0.01
 
 try:
+    import atexit
     import contextlib
     import signal
     import sys
@@ -52,6 +53,14 @@ def _come_again() -> None:
     signal.setitimer(signal.ITIMER_REAL, _AGAIN)
 
 
+def _end_for_good() -> None:
+    """See to what is still to come while Python takes itself down, without handlers of signals."""
+    _replace(_end_quietly, signal.SIG_IGN)
+    if hasattr(signal, "setitimer") and any(signal.setitimer(signal.ITIMER_REAL, 0)):
+        # It would have come again.
+        _end_quietly()
+
+
 def _catch_lost(lost: "sys.UnraisableHookArgs") -> None:
     """Let an interrupt come again that a finaliser had swallowed; tell of all else as ever."""
     if isinstance(lost.exc_value, KeyboardInterrupt) and hasattr(signal, "setitimer"):
@@ -87,7 +96,16 @@ def _replace_in_main_thread(old: object, new: object) -> None:
 
 def main() -> None:
     """Run the command line and end the process with its exit code."""
+    try:
+        _run()
+    except KeyboardInterrupt:
+        _end_quietly()
+
+
+def _run() -> None:
     began = time.perf_counter()
+    # What is registered first is called last.
+    atexit.register(_end_for_good)
     _replace(signal.default_int_handler, _end_quietly)
     from . import main as command_line
 
@@ -96,7 +114,5 @@ def main() -> None:
         sys.unraisablehook = _catch_lost
         _replace(_end_quietly, _end_in_order)
         command_line.main(began=began)
-    except KeyboardInterrupt:
-        _end_quietly()
     finally:
         _replace(_end_in_order, _end_quietly)

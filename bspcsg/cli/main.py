@@ -6,13 +6,12 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from io import TextIOWrapper
 
 import click
 
 from .._core import __version__
-from ..errors import BspcsgError, FormatError, InternalError
-from .console import clock, output, status, terminal
+from ..errors import BspcsgError, FormatError, InternalError, harmless
+from .console import clock, output, standard, status, terminal
 
 _EPILOG = """\b
 Exit codes:
@@ -71,8 +70,8 @@ _VERBS = {
 #: Other names of verbs, which the help leaves out.
 _ALIASES = {"cut": "difference"}
 
-#: The errors of writing to a standard output that is full, broken or closed.
-_NO_OUTPUT = (errno.ENOSPC, errno.EIO, errno.EBADF)
+#: The errors of writing to a file or stream that is full, broken or closed.
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
 
 _COMPLETE = "_BSPCSG_COMPLETE"
 
@@ -125,9 +124,7 @@ def commands() -> None:
 def main(arguments: Sequence[str] | None = None, began: float | None = None) -> None:
     """Run the command line, which began at some moment, and end the process with its exit code."""
     _fill_closed_streams()
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors=_ERRORS)
+    standard.take_over(_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments, began))
 
 
@@ -148,13 +145,25 @@ def run(arguments: Sequence[str], began: float | None = None) -> int:
     """Run the command line and return its exit code; no exception leaves but with ``--debug``."""
     clock.start(began)
     try:
-        code = _invoked(list(arguments))
+        code = _answered(list(arguments))
         sys.stdout.flush()
         return code
     except BrokenPipeError:
-        output.discard_output()
+        standard.discard()
         return output.CLOSED_PIPE
-    except (KeyboardInterrupt, click.Abort):
+    except standard.FullOutputError as error:
+        return output.tell_error(_unwritable(error), as_json=False)
+    except KeyboardInterrupt:
+        return output.INTERRUPTED
+
+
+def _answered(arguments: list[str]) -> int:
+    """Run the command line; tell what fails but for standard output, which cannot be told to."""
+    try:
+        return _invoked(arguments)
+    except (BrokenPipeError, standard.FullOutputError):
+        raise
+    except click.Abort:
         return output.INTERRUPTED
     except click.exceptions.Exit as done:
         return done.exit_code
@@ -166,11 +175,13 @@ def run(arguments: Sequence[str], began: float | None = None) -> int:
     except Exception as error:
         if "--debug" in arguments:
             raise
-        if isinstance(error, OSError) and error.errno in _NO_OUTPUT:
-            output.discard_output()
-            message = f"standard output: cannot write: {error.strerror}."
-            return output.tell_error(FormatError(message, "unwritable"), as_json=False)
         return _failed(error, _asks_for_json(arguments))
+
+
+def _unwritable(error: OSError) -> FormatError:
+    """Return what says which file could not be written."""
+    name = "a file" if error.filename is None else os.fsdecode(error.filename)
+    return FormatError(f"{name}: cannot write: {error.strerror}.", "unwritable")
 
 
 def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
@@ -205,7 +216,7 @@ def _invoked(arguments: list[str]) -> int:
 
 def _usage_error(error: click.ClickException, as_json: bool) -> int:
     context = error.ctx if isinstance(error, click.UsageError) else None
-    message = error.format_message()
+    message = harmless(error.format_message())
     terminal.say_error(message)
     if as_json:
         values = {"code": "usage", "message": message, "where": []}
@@ -223,6 +234,8 @@ def _asks_for_json(arguments: Sequence[str]) -> bool:
 def _failed(error: Exception, as_json: bool) -> int:
     if isinstance(error, BspcsgError):
         return output.tell_error(error, as_json)
+    if isinstance(error, OSError) and error.errno in _NO_ROOM:
+        return output.tell_error(_unwritable(error), as_json)
     said = "out of memory" if isinstance(error, MemoryError) else f"{type(error).__name__}: {error}"
     message = f"{said}. This is a defect of bspcsg; run it again with --debug to see where."
     return output.tell_error(InternalError(message), as_json)

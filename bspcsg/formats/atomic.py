@@ -1,9 +1,17 @@
-"""Files that are either complete or not there."""
+"""Files that are either complete or not there.
+
+A file is written under another name, which a process that is killed leaves behind. The next one
+that writes into the folder takes it away: the writer's lock on it ends with the writer.
+"""
 
 import contextlib
 import io
 import os
+import platform
+import re
+import stat
 import sys
+import zlib
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import BinaryIO, TypeAlias, cast
@@ -11,9 +19,19 @@ from typing import BinaryIO, TypeAlias, cast
 from ..errors import FormatError
 from ..parameters import file_path
 
+if sys.platform != "win32":
+    import fcntl
+
 #: Letters of a file's name that the unfinished file has, too: names end at 255 bytes, and a letter
 #: has four at most.
-_KEPT = 60
+_KEPT = 57
+
+#: The names of unfinished files, but for their first letters: they tell the machine, as locks may
+#: not reach others that write into the same folder.
+_PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part\Z")
+
+#: The folders from which this process has taken what others had left.
+_swept: set[Path] = set()
 
 #: Takes the file that was written, and raises an error if it is not what it should be.
 Proof: TypeAlias = Callable[[BinaryIO], None]
@@ -48,8 +66,11 @@ def write_file(
     target = Path(os.path.realpath(name))
     with _writing(name):
         _check_target(name)
-        part = target.with_name(f".{target.name[:_KEPT]}.{os.urandom(4).hex()}.part")
-        _write_new(part, target, chunks, prove)
+        _sweep(target.parent)
+        while True:
+            with contextlib.suppress(_TakenAwayError):
+                _write_new(target, chunks, prove)
+                return
 
 
 def refuse_target(path: str | os.PathLike[str]) -> None:
@@ -93,23 +114,81 @@ def _check_target(name: str) -> None:
 _PIECE = 1 << 18
 
 
-def _write_new(part: Path, target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
+def _sweep(folder: Path) -> None:
+    """Take away what processes of this machine left that were killed while they wrote here."""
+    if sys.platform == "win32" or folder in _swept:
+        return
+    _swept.add(folder)
+    with contextlib.suppress(OSError), os.scandir(folder) as found:
+        for entry in found:
+            named = _PART.search(entry.name)
+            if named and named[0].startswith(f".{_machine()}-") and entry.name[0] == ".":
+                _take_away(entry.path)
+
+
+def _take_away(part: str) -> None:
+    """Remove an unfinished file unless its writer lives."""
+    if sys.platform == "win32":
+        return
+    with contextlib.suppress(OSError):
+        # What is no file, though it is called like one, is neither followed nor waited for.
+        handle = os.open(part, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        try:
+            if stat.S_ISREG(os.fstat(handle).st_mode):
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                os.unlink(part)
+        finally:
+            os.close(handle)
+
+
+def _machine() -> str:
+    return f"{zlib.crc32(platform.node().encode('utf-8', 'replace')):08x}"
+
+
+class _TakenAwayError(Exception):
+    """Another process took the unfinished file in the moment before it was locked."""
+
+
+@contextlib.contextmanager
+def _locked(handle: int, part: Path) -> Iterator[None]:
+    """Hold the lock on an unfinished file that tells others that its writer lives."""
+    if sys.platform == "win32":
+        yield
+        return
+    # The file may be closed before it gets its name.
+    lock = os.dup(handle)
+    try:
+        # Where the system of files has no locks nobody takes anything away.
+        with contextlib.suppress(OSError):
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        if not part.exists():
+            raise _TakenAwayError
+        yield
+    finally:
+        os.close(lock)
+
+
+def _write_new(target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
+    name = f".{target.name[:_KEPT]}.{_machine()}-{os.urandom(4).hex()}.part"
+    part = target.with_name(name)
     # Opened like any new file, so that the user's mask decides about its mode.
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
-        with open(handle, "wb", buffering=_PIECE) as stream:
-            if prove is None:
-                stream.writelines(chunks)
-            else:
-                _write_and_prove(part, stream, chunks, prove)
-            stream.flush()
-            is_as_proved = _flushed(stream.fileno())
-        if prove is not None and not is_as_proved:
-            with part.open("rb") as written:
-                prove(written)
-        if target.exists():
-            part.chmod(target.stat().st_mode & 0o7777)
-        os.replace(part, target)
+        with contextlib.ExitStack() as until_named:
+            with open(handle, "wb", buffering=_PIECE) as stream:
+                until_named.enter_context(_locked(handle, part))
+                if prove is None:
+                    stream.writelines(chunks)
+                else:
+                    _write_and_prove(part, stream, chunks, prove)
+                stream.flush()
+                is_as_proved = _flushed(stream.fileno())
+            if prove is not None and not is_as_proved:
+                with part.open("rb") as written:
+                    prove(written)
+            if target.exists():
+                part.chmod(target.stat().st_mode & 0o7777)
+            os.replace(part, target)
     except BaseException:
         with contextlib.suppress(OSError):
             part.unlink()

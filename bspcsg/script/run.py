@@ -40,8 +40,9 @@ _HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
 #: The program of the child: Ctrl-C, which reaches it too, ends it without a word; its parent tells.
 #: It starts with Ctrl-C held back, for Python itself would tell of it while it still starts.
 _SERVE = (
-    f"import os, signal; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
+    f"import os, signal, sys; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
     f" {_HOLDS_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
+    " from bspcsg.machine import end_with_parent; end_with_parent(*map(int, sys.argv[1:]));"
     " from bspcsg.script.run import serve; serve()"
 )
 
@@ -122,6 +123,20 @@ def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
         raise invalid_parameter(message) from error
 
 
+@contextlib.contextmanager
+def _watched() -> Iterator[tuple[int, ...]]:
+    """Yield what tells a child of the end of this process, where a child can be told."""
+    if os.name != "posix":
+        yield ()
+        return
+    reader, writer = os.pipe()
+    try:
+        yield (reader,)
+    finally:
+        os.close(reader)
+        os.close(writer)
+
+
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     # -P keeps modules in the current folder from shadowing this package and what it needs.
     command = [sys.executable, "-P", "-c", _SERVE]
@@ -130,9 +145,16 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     environment = {**os.environ, "PYTHONPATH": search}
     with contextlib.ExitStack() as start:
         start.enter_context(_interrupts_held())
-        with subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=_standard_error(), env=environment
-        ) as child:
+        with (
+            _watched() as read_by_child,
+            subprocess.Popen(
+                [*command, *map(str, read_by_child)],
+                stdin=subprocess.PIPE,
+                stdout=_standard_error(),
+                env=environment,
+                pass_fds=read_by_child,
+            ) as child,
+        ):
             try:
                 start.close()
                 child.communicate(task, timeout)

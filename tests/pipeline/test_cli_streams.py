@@ -1,6 +1,7 @@
 """Streams, names that are no text, full disks, interrupts, completion, and how fast it starts."""
 
 import errno
+import io
 import os
 import resource
 import signal
@@ -12,7 +13,9 @@ from typing import Any
 import pytest
 
 import bspcsg as b
+from bspcsg.cli.console import standard
 from support.cli import Capture, Piped, finished, process, put, ran
+from support.results import disagreeing, header, write_results
 from support.shapes import icosphere, moved
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
@@ -279,3 +282,111 @@ def test_folders_that_are_forbidden(
     for arguments in (["convert", "a.off"], ["eval", "a.off"], ["split", "a.off"]):
         code, out, err = ran(capsys, *arguments, "-o", "x.ply")
         assert (code, out) == (5, "") and "no folder . that can be written to" in err
+
+
+#: Whether Python's own streams hold bytes back.
+UNBUFFERED = [{"PYTHONUNBUFFERED": "1"}, {"PYTHONUNBUFFERED": ""}]
+
+#: Commands whose answers go to standard output by each way there is.
+ANSWERS = [
+    ["convert", "s.ply", "-o-", "--to", "stl"],
+    ["render", "s.ply", "-o-", "--to", "svg", "-q"],
+    ["report", "results.jsonl", "-o-", "--format", "html"],
+    ["tree", "long.csg"],
+    ["info", *["a.off"] * 20, "--json"],
+    ["--help"],
+]
+
+
+def at_most(size: int) -> Any:
+    """Return what lets no file of a process grow beyond a size."""
+
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+    return limit
+
+
+# Found: unbuffered, an answer was cut off where the disk was full, with exit code 0.
+@POSIX
+@pytest.mark.sampled(4)
+@pytest.mark.parametrize("more", UNBUFFERED)
+@pytest.mark.parametrize("arguments", ANSWERS)
+def test_standard_output_takes_all_or_fails(
+    folder: Path, arguments: list[str], more: dict[str, str]
+) -> None:
+    put("s.ply", icosphere(4))
+    write_results(Path("results.jsonl"), [header(), disagreeing()])
+    Path("long.csg").write_text("cube(1);" * 1000)
+    with open("cut", "wb") as cut:
+        code, _, err = finished(*arguments, stdout=cut, before=at_most(1000), more=more)
+    assert (code, os.path.getsize("cut")) == (5, 1000)
+    assert err.endswith(b"bspcsg: error: standard output: cannot write: File too large.\n")
+    reader, writer = os.pipe()
+    running = process(*arguments, stdout=writer, stderr=subprocess.PIPE, more=more)
+    os.close(writer)
+    assert len(os.read(reader, 1000)) == 1000
+    os.close(reader)
+    _, err = running.communicate(timeout=60)
+    # What fits into a pipe at once was written before the reader stopped.
+    assert running.returncode == 141 or (running.returncode == 0 and arguments[0] != "convert")
+
+
+def test_systems_that_take_a_part_at_a_time() -> None:
+    """As Linux takes 2 GiB at most."""
+    taken = bytearray()
+
+    class Sparing(io.RawIOBase):
+        def write(self, data: Any) -> int:
+            taken.extend(data[:7])
+            return min(len(data), 7)
+
+    data = bytes(range(256)) * 10
+    whole = standard._Whole(Sparing(), None, standard._refuse)
+    assert whole.write(data) == len(data) and bytes(taken) == data
+
+
+@POSIX
+def test_readers_that_are_not_waited_for(folder: Path) -> None:
+    """Whoever shares a pipe may have set it so that it takes nothing while it is full."""
+    put("s.ply", icosphere(4))
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    running = process("convert", "s.ply", "-o-", "--to", "stl", "-q", stdout=writer)
+    os.close(writer)
+    time.sleep(1)
+    with open(reader, "rb") as stream:
+        data = stream.read()
+    assert running.wait(timeout=60) == 0 and len(data) == 84 + 50 * 5120
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no /dev/full")
+def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
+    with open("/dev/full", "wb") as full:
+        assert finished("union", "a.off", "c.stl", "-o", "x.off", "-v", stderr=full)[0] == 0
+        assert volume_of(Path("x.off").read_bytes(), "off") == 15
+        assert finished("info", "none.off", stderr=full)[0] == 3
+
+
+# Found: the message named standard output.
+@POSIX
+@pytest.mark.parametrize("size", [0, 100, 1500])
+def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:
+    line = ["validate", "a.off", "c.stl", "--op", "union", "-j1", "--results", "r.jsonl"]
+    code, out, err = finished(*line, before=at_most(size))
+    assert (code, out) == (5, b"")
+    assert err == b"bspcsg: error: r.jsonl: cannot write: File too large.\n"
+
+
+def test_other_files_on_a_full_disk(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any, **__: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", "/tmp/some")
+
+    monkeypatch.setattr("tempfile.mkdtemp", full)
+    Path("cube.py").write_text("import bspcsg\nresult = bspcsg.box(1, 1, 1)\n")
+    code, out, err = ran(capsys, "run", "cube.py", "-o", "x.ply")
+    assert (code, out) == (5, "")
+    assert err == "bspcsg: error: /tmp/some: cannot write: No space left on device.\n"

@@ -156,6 +156,22 @@ def test_resume_asks_only_what_is_open(folder: Path, capsys: Capture) -> None:
     assert len(lines()) == 6 + 1 + 4
 
 
+# Found: a crash was for ever, though another machine or more memory answers the case.
+def test_what_crashed_is_asked_again_if_wished(folder: Path, capsys: Capture) -> None:
+    given = ["validate", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
+    ran(capsys, *given, "--op", "union", "--op", "xor")
+    head, union, xor = lines()
+    crashed = {**union, "verdict": "crash", "reason": "the process was ended by SIGKILL"}
+    Path("r.jsonl").write_text("".join(json.dumps(one) + "\n" for one in (head, crashed, xor)))
+    code, _, err = ran(capsys, *given, "--op", "union", "--op", "xor", "--resume")
+    assert code == 1 and "note: 2 cases of 2 known from r.jsonl" in err
+    more = ["--op", "union", "--op", "xor", "--resume", "--retry-crashed"]
+    code, out, err = ran(capsys, *given, *more)
+    assert code == 0 and "None of 2 cases failed." in out
+    assert "note: 1 case of 2 known from r.jsonl" in err
+    assert read_results(["r.jsonl"]).cases[union["key"]]["verdict"] == "agree"
+
+
 def test_shards_are_the_whole(folder: Path, capsys: Capture) -> None:
     many(3)
     for shard in ("1/3", "2/3", "3/3"):
@@ -192,6 +208,7 @@ def test_fail_fast_stops_at_the_first_failure(folder: Path, capsys: Capture) -> 
         (["a.off"], 2, "nothing to validate"),
         (["a.off", "c.stl", "--only", "zzz"], 2, "no case is called zzz"),
         (["a.off", "c.stl", "--resume"], 2, "--results r.jsonl"),
+        (["a.off", "c.stl", "--results", "r.jsonl", "--retry-crashed"], 2, "for --resume"),
         (["a.off", "c.stl", "--shard", "3/2"], 2, "as in 2/8"),
         (["a.off", "c.stl", "--memory", "much"], 2, "as in 4G"),
         (["a.off", "c.stl", "--pose", "upside"], 2, "random:17"),

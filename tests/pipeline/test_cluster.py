@@ -1,6 +1,7 @@
 """A campaign on the workers of Dask distributed."""
 
 import json
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -56,3 +57,24 @@ def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.Mon
     given = ["validate", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
     code, _, err = ran(capsys, *given)
     assert code == 6 and 'pip install "bspcsg[cluster]"' in err
+
+
+# Found: validate waited for ever, without a word.
+def test_a_cluster_without_workers_is_told(
+    folder: Path, capsys: Capture, scheduler: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster, "_PATIENCE", 2)
+    scheduler.scale(0)
+    given = ["validate", "a.off", "c.stl", "--results", "r.jsonl"]
+    code, _, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)
+    assert code == 6 and "the scheduler there has no workers" in err and "--resume" in err
+
+
+def test_workers_may_come_late(folder: Path, capsys: Capture, scheduler: Any) -> None:
+    scheduler.scale(0)
+    late = threading.Timer(1, lambda: scheduler.scale(1))
+    late.start()
+    given = ["validate", "a.off", "c.stl", "--op", "union", "--json"]
+    code, out, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)
+    late.join()
+    assert code == 0 and json.loads(out)["verdicts"] == {"agree": 1}, err

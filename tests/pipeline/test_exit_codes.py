@@ -1,6 +1,7 @@
 """Every exit code, from every verb that can end in it; what fails writes nothing."""
 
 import errno
+import io
 import json
 import os
 import resource
@@ -11,11 +12,11 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 import bspcsg as b
+from bspcsg.cli.console import standard
 from bspcsg.cli.main import _VERBS, run
 from bspcsg.errors import missing_part
 from bspcsg.operations.setops import OPERATIONS
@@ -377,12 +378,19 @@ def test_code_3_of_devices_that_never_end(place: Path, capsys: Capture) -> None:
 def test_code_5_when_standard_output_is_full(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture, number: int
 ) -> None:
-    def full(*_: Any, **__: Any) -> None:
-        raise OSError(number, "no more")
+    class Full(io.RawIOBase):
+        def writable(self) -> bool:
+            return True
 
-    monkeypatch.setattr("bspcsg.cli.console.output.click.echo", full)
-    monkeypatch.setattr("bspcsg.cli.console.output.discard_output", monkeypatch.undo)
-    assert run(["info", "a.off"]) == 5
+        def write(self, _: object) -> int:
+            raise OSError(number, "no more")
+
+    with monkeypatch.context() as place_of_output:
+        place_of_output.setattr("bspcsg.cli.console.standard.discard", lambda *_: None)
+        raw = standard._Whole(Full(), None, standard._refuse)
+        place_of_output.setattr(sys, "stdout", io.TextIOWrapper(io.BufferedWriter(raw)))
+        assert run(["info", "a.off"]) == 5
+        raw.write = len  # type: ignore[method-assign]
     assert "standard output: cannot write: no more." in capsys.readouterr().err
 
 

@@ -218,3 +218,53 @@ def test_interrupts_at_the_first_arrays_are_no_defect(tmp_path: Path) -> None:
         check=False,
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "interrupted\n", "")
+
+
+#: Interrupts itself while a module is imported, and is done before the interrupt comes again.
+AT_THE_END = """
+import signal, sys
+from bspcsg.cli import entry, main
+class Finder:
+    @staticmethod
+    def find_spec(name, path, target=None):
+        if name == "interrupting":
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Finder)
+class Late:
+    def __del__(self, raise_signal=signal.raise_signal, interrupt=signal.SIGINT):
+        raise_signal(interrupt)
+def done(began):
+    if sys.argv[1] == "import":
+        try:
+            import interrupting
+        except ModuleNotFoundError:
+            pass
+    elif sys.argv[1] == "finally":
+        signal.getsignal = interrupted
+    else:
+        sys.late = Late()
+    sys.exit(0)
+def interrupted(number, getsignal=signal.getsignal):
+    signal.getsignal = getsignal
+    signal.raise_signal(signal.SIGINT)
+    return getsignal(number)
+main.main = done
+entry.main()
+"""
+
+
+# Found: one that was to come again came when Python had no handlers any more, and killed by another
+# signal; others came while the handlers changed, or after them.
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize(("moment", "code"), [("import", 130), ("finally", 130), ("after", 0)])
+def test_interrupts_at_the_end_are_quiet(moment: str, code: int) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", AT_THE_END, moment],
+        env={**os.environ, "PYTHONPATH": str(Path(b.__file__).parent.parent)},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        preexec_fn=heed_interrupts,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (code, "", "")

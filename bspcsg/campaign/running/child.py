@@ -22,6 +22,9 @@ _START = 300.0
 _LAST_WORDS = 5.0
 
 
+_BOOT = Path(__file__).with_name("boot.py")
+
+
 class TimedOutError(Exception):
     """The child did not answer in time, and was killed."""
 
@@ -105,7 +108,7 @@ class Child:
         self._said.seek(0)
         self._said.truncate()
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "bspcsg.campaign.running.worker"],
+            [sys.executable, "-P", os.fspath(_BOOT)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._said,

@@ -6,6 +6,7 @@ a request to a child process and waits, as `bspcsg.campaign.pool` does on one ma
 
 import json
 import threading
+import time
 from collections.abc import Generator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -15,8 +16,11 @@ from ...errors import MissingPartError, missing_part
 from .child import Child
 from .pool import answer_of
 
-#: Seconds to wait for a scheduler.
+#: Seconds to wait for a scheduler, and for a worker where there is none.
 _PATIENCE = 30
+
+#: Seconds between two looks for answers.
+_PAUSE = 0.05
 
 _children: dict[tuple[int, str], Child] = {}
 _lock = threading.Lock()
@@ -71,7 +75,8 @@ class Cluster:
         Raises
         ------
         MissingPartError
-            If the scheduler cannot be reached; code "no_scheduler".
+            If the scheduler cannot be reached; code "no_scheduler". If it has had no worker for
+            a while; code "no_workers".
         """
         import distributed
 
@@ -83,12 +88,29 @@ class Cluster:
             for number, request in enumerate(requests):
                 place = (answer_on_worker, request, self._greeting, seconds)
                 numbers[client.submit(*place, pure=False)] = number
-            for future in as_completed(list(numbers), loop=client.loop):
+            completed = as_completed(list(numbers), loop=client.loop)
+            while not completed.is_empty():
+                self._await_one(completed, client)
+                future = next(completed)
                 yield numbers[future], _result_of(future)
         finally:
             client.cancel(list(numbers), force=True)
             client.run(stop_children)
             client.close()
+
+    def _await_one(self, completed: Any, client: Any) -> None:
+        """Wait until an answer is there, as long as somebody works on it."""
+        seen = looked = time.monotonic()
+        while not completed.has_ready():
+            time.sleep(_PAUSE)
+            now = time.monotonic()
+            if now - looked >= _PATIENCE / 10:
+                looked = now
+                seen = now if client.nthreads() else seen
+            if now - seen >= _PATIENCE:
+                message = f"{self._scheduler}: the scheduler there has no workers (any more)."
+                advice = "Start some, and go on with --results FILE --resume."
+                raise MissingPartError(f"{message} {advice}", "no_workers")
 
     def _client(self) -> Any:
         import distributed

@@ -1,6 +1,6 @@
 """The process that evaluates cases: a JSON line in, a JSON line out.
 
-Started by `bspcsg.campaign.child`. When its input ends, because the runner has finished or was
+Started by `boot`. When its input ends, because the runner has finished or was
 killed, it ends at once with everything it has started.
 """
 
@@ -71,7 +71,3 @@ def _surveyed(file: str) -> dict[str, Any]:
         return {"file": file, "triangles": len(solid.to_mesh().faces), "refused": None}
     except BspcsgError as error:
         return {"file": file, "triangles": 0, "refused": error.message}
-
-
-if __name__ == "__main__":
-    main()

@@ -1,14 +1,20 @@
 """The streams of the command line's words, and the exit codes of its failures."""
 
 import json
-import os
 import sys
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import click
 
-from ...errors import BspcsgError, Finding, FormatError, InternalError, MissingPartError
+from ...errors import (
+    BspcsgError,
+    Finding,
+    FormatError,
+    InternalError,
+    MissingPartError,
+    harmless,
+)
 from . import status, terminal
 
 #: Version of the JSON documents.
@@ -74,13 +80,13 @@ class Output:
                 click.echo(json.dumps({"schema": SCHEMA, **document}, allow_nan=False))
         elif line and not (self.taken and self.verbosity < 0):
             with status.hidden():
-                click.echo(terminal.harmless(line), err=self.taken)
+                click.echo(harmless(line), err=self.taken)
 
     def detail(self, line: str) -> None:
         """Say on standard error what only ``--verbose`` asks for."""
         if self.verbosity > 0:
             with status.hidden():
-                click.echo(terminal.harmless(line), err=True)
+                click.echo(harmless(line), err=True)
 
     @property
     def advises(self) -> bool:
@@ -143,11 +149,6 @@ def print_error(values: dict[str, Any], code: int) -> None:
 def error_values(error: BspcsgError) -> dict[str, Any]:
     """Return an error as JSON values."""
     return {"code": error.code, "message": error.message, "where": list(error.where)}
-
-
-def discard_output() -> None:
-    """Point standard output at nothing, so that what is left is not flushed where it failed."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:

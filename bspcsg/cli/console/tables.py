@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+from ...errors import harmless
 from . import terminal
 
 #: The characters that rule a table on a terminal, and in a pipe or a file.
@@ -28,7 +29,7 @@ def table_text(
     """
     from rich.cells import cell_len
 
-    columns, *listed = [[terminal.harmless(entry) for entry in row] for row in (columns, *rows)]
+    columns, *listed = [[harmless(entry) for entry in row] for row in (columns, *rows)]
     entries = list(zip(columns, *listed, strict=True))
     width = terminal.width()
     # A table in a pipe or a log must not lose letters.

@@ -1,20 +1,17 @@
 """The look of the terminal: colours and widths by the conventions of the command line."""
 
 import os
-import re
 import shutil
 import sys
 from typing import TextIO
 
 import click
 
+from ...errors import harmless
 from . import status
 
 #: Colours of what a line begins with.
 _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
-
-#: Characters that a terminal takes for commands; lines and columns may be broken.
-_CONTROLS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 #: The least width that a table is fitted to.
 _NARROWEST = 40
@@ -28,11 +25,6 @@ def wants_colour(stream: TextIO) -> bool:
     if forced:
         return forced != "0"
     return os.environ.get("TERM") != "dumb" and stream.isatty()
-
-
-def harmless(text: str) -> str:
-    """Return a text in which names of files cannot steer the terminal."""
-    return _CONTROLS.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
 def labelled(label: str, line: str) -> str:

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 import click
 
 from ...errors import Finding, FormatError, InvalidMeshError
-from ..console.output import Output, counted, discard_output
+from ..console import standard
+from ..console.output import Output, counted
 from .lengths import MILLIMETRES
 from .objects import ObjectNames
 from .scripts import STREAMED, SUFFIXES, made_by
@@ -349,15 +350,7 @@ def put(
     if prove is not None:
         chunks = [b"".join(chunks)]
         prove(io.BytesIO(chunks[0]))
-    try:
-        sys.stdout.buffer.writelines(chunks)
-        sys.stdout.buffer.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        discard_output()
-        message = f"standard output: cannot write: {error.strerror}."
-        raise FormatError(message, "unwritable") from error
+    standard.put(chunks)
 
 
 def stream_text() -> str:

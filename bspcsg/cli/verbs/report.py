@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ...errors import FormatError
-from ..console import clock, output, status
+from ..console import clock, output, standard, status
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
 from ..options.patterns import files_argument
@@ -159,8 +159,7 @@ class _Reporting:
         from ...formats.atomic import write_file
 
         if self._is_stream:
-            sys.stdout.buffer.write(data)
-            sys.stdout.buffer.flush()
+            standard.put([data])
         else:
             write_file(self._target, [data])
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ...errors import FormatError
-from ..console import output, terminal
+from ...errors import FormatError, harmless
+from ..console import output
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
 from ..options.patterns import file_argument
@@ -124,7 +124,7 @@ class _Showing:
             put(self._target, [text.encode()], self._settings["overwrite"])
         elif not self._out.as_json:
             # In pipes click would leave out what is a colour to a terminal.
-            said = terminal.harmless(text) if sys.stdout.isatty() else text
+            said = harmless(text) if sys.stdout.isatty() else text
             click.echo(said, nl=False, color=True)
 
     def _tell(self, kinds: "Counter[str]") -> None:

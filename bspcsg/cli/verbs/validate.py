@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...errors import harmless
 from ...parameters import SET_OPS
 from ..console import output, status
 from ..console.output import Output, counted
@@ -124,6 +125,12 @@ _FILE = click.Path(path_type=Path, readable=False)
 @click.option("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
 @click.option("--resume", is_flag=True, help="Leave out what the results file has already.")
 @click.option(
+    "--retry-crashed",
+    "retry",
+    is_flag=True,
+    help="With --resume, run again what crashed, as where a worker was lost for want of memory.",
+)
+@click.option(
     "--fail-fast/--keep-going", default=False, help="Stop at the first failure, or go on (default)."
 )
 @click.option(
@@ -167,6 +174,8 @@ class _Validation:
         self._out = Output.of(settings)
         if settings["resume"] and settings["results"] is None:
             raise click.UsageError("--resume needs the file to go on with: --results r.jsonl.")
+        if settings["retry"] and not settings["resume"]:
+            raise click.UsageError("--retry-crashed is for --resume.")
         if settings["poses"] and any(number is not None for _, number in settings["pose"]):
             raise click.UsageError("--poses draws many; --pose NAME:NUMBER is one draw.")
 
@@ -291,6 +300,8 @@ class _Validation:
 
         results, resume = self._settings["results"], self._settings["resume"]
         known = read_results([results]).cases if resume and results.exists() else {}
+        if self._settings["retry"]:
+            known = {key: case for key, case in known.items() if case["verdict"] != "crash"}
         plan = CampaignPlan(
             cases,
             known,
@@ -333,7 +344,9 @@ class _Validation:
             def notice(record: "CaseRecord") -> None:
                 bar.advance(task)
                 if is_failure(record) or self._out.verbosity > 0:
-                    bar.console.print(_line(record), markup=False, emoji=False, highlight=False)
+                    bar.console.print(
+                        harmless(_line(record)), markup=False, emoji=False, highlight=False
+                    )
 
             yield notice
 

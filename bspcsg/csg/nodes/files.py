@@ -116,7 +116,7 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
 
 
 def _is_allowed(path: Path, run: Evaluation) -> bool:
-    """Say whether a file lies where the script may read, wherever links lead."""
+    """Say whether a file, links followed, lies where the script may read."""
     try:
         target = path.resolve()
         return any(target.is_relative_to(one) for one in (run.folder.resolve(), *run.allowed))

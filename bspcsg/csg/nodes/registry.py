@@ -10,7 +10,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
-from ...errors import InvalidMeshError
+from ...errors import InvalidMeshError, harmless
 from ...formats.raw import RawMesh
 from ...repair.repair import repair
 from ...solid.solid import Solid
@@ -112,7 +112,7 @@ class Evaluation:
         if message in self.told:
             return
         self.told.add(message)
-        warnings.warn(self.explained(message), CsgWarning, stacklevel=2)
+        warnings.warn(harmless(self.explained(message)), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
         """Return the solid of a mesh from outside, whichever way round it is oriented.

@@ -115,7 +115,8 @@ def read_header(source: Source) -> Header:
         elif key not in ("comment", "obj_info"):
             raise source.error(f"expected a header line, found {quoted(line)}.", line=number)
     if form is None or form not in _FORMS:
-        raise source.error(f"the header names no known form, but “{form}”.", line=number)
+        named = quoted((form or "").encode("latin-1"))
+        raise source.error(f"the header names no known form, but {named}.", line=number)
     return Header(_FORMS[form], elements, end, number, tuple(pictures))
 
 

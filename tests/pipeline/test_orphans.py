@@ -1,0 +1,88 @@
+"""Processes that the command line has started end with it, however it ends."""
+
+import os
+import subprocess
+import time
+from pathlib import Path
+
+import psutil
+import pytest
+
+import bspcsg as b
+from support.cli import process
+
+pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+
+QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+
+#: Seconds in which a process ends that is to end at once, on a machine that is much too busy.
+PATIENCE = 10
+
+#: Never ends.
+ENDLESS = "import time\nopen('started', 'w')\nwhile True:\n    sum(range(10**9))\n"
+
+
+def alive(found: "list[psutil.Process]") -> "list[psutil.Process]":
+    return [one for one in found if one.is_running() and one.status() != psutil.STATUS_ZOMBIE]
+
+
+def killed(running: "subprocess.Popen[bytes]") -> "list[psutil.Process]":
+    """Kill a process; return what it had started, and what of that lives on."""
+    started: list[psutil.Process] = psutil.Process(running.pid).children(recursive=True)
+    running.kill()
+    running.wait()
+    until = time.monotonic() + PATIENCE
+    while alive(started) and time.monotonic() < until:
+        time.sleep(0.01)
+    left = alive(started)
+    for one in left:
+        one.kill()
+    assert left == []
+    return started
+
+
+# Found: workers lived on in one kill of three, while they began or held Python's lock.
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("delay", [0.2, 0.5, 1.0, 2.0])
+def test_workers_end_with_their_runner(folder: Path, delay: float) -> None:
+    for k in range(3):
+        b.sphere(10 + k, segments=150).save(f"s{k}.off")
+    names = [f"s{k}.off" for k in range(3)]
+    line = ["validate", *names, "-j", "2", "--results", "r.jsonl", "-q"]
+    running = process(*line, **QUIET)
+    while delay > 0.2 and not psutil.Process(running.pid).children():
+        time.sleep(0.01)
+    time.sleep(delay)
+    killed(running)
+
+
+def test_workers_end_though_they_hold_the_lock_of_python(folder: Path) -> None:
+    """As in libraries that do not give it back."""
+    Path("sitecustomize.py").write_text(
+        "import sys\n"
+        "class Finder:\n"
+        "    @staticmethod\n"
+        "    def find_spec(name, path, target=None):\n"
+        "        if name == 'bspcsg.campaign.running.worker':\n"
+        "            import ctypes\n"
+        "            open('started', 'w').close()\n"
+        "            ctypes.PyDLL(None).sleep(60)\n"
+        "sys.meta_path.insert(0, Finder)\n"
+    )
+    home = str(Path(b.__file__).parents[1])
+    more = {"PYTHONPATH": f"{folder}{os.pathsep}{home}"}
+    line = ["validate", "a.off", "c.stl", "-j", "1", "-q"]
+    running = process(*line, more=more, **QUIET)
+    while not Path("started").exists():
+        time.sleep(0.01)
+    assert killed(running)
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize("begins", [True, False])
+def test_scripts_end_with_the_command_that_runs_them(folder: Path, begins: bool) -> None:
+    Path("endless.py").write_text(ENDLESS)
+    running = process("run", "endless.py", "-o", "x.ply", **QUIET)
+    while not psutil.Process(running.pid).children() or not (begins or Path("started").exists()):
+        time.sleep(0.01)
+    assert killed(running)
