@@ -229,6 +229,8 @@ class _Claims:
         times = self._times(node)
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", TRIANGLES)
+            if _is_nowhere(primitive):
+                continue
             if "material" in primitive:
                 self._entry("materials", primitive["material"])
             for accessor in primitive["attributes"].values():
@@ -259,6 +261,11 @@ def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
     """Return the accessors of the places at which a node shows its mesh, None if at its own."""
     told = node.get("extensions", {}).get(_INSTANCES)
     return None if told is None else dict(told["attributes"])
+
+
+def _is_nowhere(primitive: dict[str, Any]) -> bool:
+    """Say whether a primitive has no positions; glTF 2.0, 3.7.2.1: readers should skip it."""
+    return "POSITION" not in primitive["attributes"]
 
 
 def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
@@ -295,9 +302,13 @@ def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
 
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
-    modes = [primitive.get("mode", TRIANGLES) for primitive in _primitives(tree)]
-    count = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
-    if not count:
-        return ()
-    message = f"{count} groups of points or lines were ignored."
-    return (Finding("ignored", "warning", message, (), count),)
+    primitives = _primitives(tree)
+    nowhere = [primitive for primitive in primitives if _is_nowhere(primitive)]
+    modes = [one.get("mode", TRIANGLES) for one in primitives if not _is_nowhere(one)]
+    lines = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
+    told = ((lines, "groups of points or lines"), (len(nowhere), "primitives without positions"))
+    return tuple(
+        Finding("ignored", "warning", f"{count} {what} were ignored.", (), count)
+        for count, what in told
+        if count
+    )
