@@ -89,9 +89,8 @@ class Objects:
         """
         if (path, item) not in self._meshes:
             known = self._package.part(path).objects[item]
-            made = (
-                self._written(path, known) if known.shape is None else self._evaluated(path, item)
-            )
+            make = self._written if known.shape is None else self._evaluated
+            made = make(path, item)
             self._meshes[path, item] = replace(made, name=known.name)
         return self._meshes[path, item]
 
@@ -112,10 +111,15 @@ class Objects:
         message = "the objects contain each other too often."
         return self._package.source.error(message, "too_large")
 
-    def _written(self, path: str, known: Object) -> RawMesh:
-        vertices, faces = known.arrays()
+    def _written(self, path: str, item: str) -> RawMesh:
         part = self._package.part(path)
-        said = properties_of(part, known, faces, self._package.picture)
+        known = part.objects[item]
+        vertices, faces = known.arrays()
+        try:
+            said = properties_of(part, known, faces, self._package.picture)
+        except IndexError as error:
+            message = f"object {item} in {path}: {error}."
+            raise self._package.source.error(message, "index_out_of_range") from error
         return RawMesh(vertices, faces, attributes=said)
 
     def _evaluated(self, path: str, item: str) -> RawMesh:

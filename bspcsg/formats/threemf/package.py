@@ -82,7 +82,7 @@ class Package:
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False
-        with self._archive.open(entry) as stream:
+        with _damage_told(self.source), self._archive.open(entry) as stream:
             return stream.read(len(NOTHING) + 1) == NOTHING
 
     def part(self, name: str) -> ModelPart:
@@ -111,7 +111,7 @@ class Package:
 
     def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
         """Yield the bytes of a part, which may be others than the directory promises."""
-        with self._archive.open(entry) as stream:
+        with _damage_told(self.source), self._archive.open(entry) as stream:
             while chunk := stream.read(_CHUNK):
                 self._left -= len(chunk)
                 if self._left < 0:
@@ -128,7 +128,7 @@ class Package:
 
 @contextmanager
 def opened(source: Source) -> Iterator[Package]:
-    """Open a package, and tell of damage that shows while it is read.
+    """Open a package; damage is told where it shows, as its parts are read.
 
     Raises
     ------
@@ -138,9 +138,17 @@ def opened(source: Source) -> Iterator[Package]:
     if source.data.count(_ENTRY) > _MOST_PARTS:
         message = f"the archive has more than {_MOST_PARTS:,} parts."
         raise source.error(message, "too_large")
+    with _damage_told(source):
+        archive = zipfile.ZipFile(io.BytesIO(source.data))
+    with archive:
+        yield Package(source, archive)
+
+
+@contextmanager
+def _damage_told(source: Source) -> Iterator[None]:
+    """Tell of an archive that cannot be unpacked; what is said in it is no matter of this."""
     try:
-        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
-            yield Package(source, archive)
+        yield
     except BspcsgError:
         raise
     except _DAMAGES as error:

@@ -166,7 +166,8 @@ def parse_xml(
         try:
             start(element, named)
         except (KeyError, ValueError, OverflowError) as error:
-            message = f"the element {quoted(element.encode())} is not valid: {error}."
+            reason = f"“{error.args[0]}” is missing" if isinstance(error, KeyError) else error
+            message = f"the element {quoted(element.encode())} is not valid: {reason}."
             raise source.error(message, line=parser.CurrentLineNumber) from None
 
     def refuse(*_: object) -> None:
@@ -186,6 +187,8 @@ def parse_xml(
     except expat.ExpatError as error:
         message = f"the XML is not well-formed: {expat.ErrorString(error.code)}."
         raise source.error(message, line=error.lineno) from None
+    except FormatError:
+        raise
     except (LookupError, ValueError) as error:  # of the encoding: `begin` lets out none of its own
         raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
 
