@@ -2,6 +2,7 @@
 
 import errno
 import os
+import re
 import stat
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -26,6 +27,10 @@ _LARGEST_TEXT = 1 << 28
 #: Letters of a whole number: twice as many as 64 bits need, so that errors can name what is a bit
 #: too large.
 _MOST_DIGITS = 40
+
+#: The beginning of what Git has in place of a large file, and most bytes of one.
+_POINTER = re.compile(rb"version https://(git-lfs|hawser)\.github\.com/spec/v\d")
+_LARGEST_POINTER = 1024
 
 
 @dataclass(frozen=True)
@@ -134,9 +139,10 @@ def _uncommented(
 def _limited(path: Path) -> bytes | None:
     """Return the bytes of a file, or None if it is not there or too large."""
     try:
-        return content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
+        data = content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
     except (OSError, ValueError):
         return None
+    return None if data is None or _is_pointer(data) else data
 
 
 def content_of(path: Path) -> bytes:
@@ -153,14 +159,14 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
     Raises
     ------
     FormatError
-        If it cannot be read or is larger than 256 MiB.
+        If it cannot be read, is larger than 256 MiB, or is a pointer of Git LFS.
     """
     name = file_path(path)
     with _readable(name):
         data = content_of(Path(name)) if Path(name).stat().st_size <= _LARGEST_TEXT else None
     if data is None or len(data) > _LARGEST_TEXT:
         raise FormatError(f"{name}: the file is larger than {_LARGEST_TEXT:,} bytes.", "too_large")
-    return data
+    return present(name, data)
 
 
 def whole_content(path: str | os.PathLike[str]) -> bytes:
@@ -169,11 +175,30 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
     Raises
     ------
     FormatError
-        If it cannot be read.
+        If it cannot be read or is a pointer of Git LFS.
     """
     name = file_path(path)
     with _readable(name):
-        return content_of(Path(name))
+        data = content_of(Path(name))
+    return present(name, data)
+
+
+def present(name: str, data: bytes) -> bytes:
+    """Return the bytes of a file, whatever its format, unless they stand for those of another.
+
+    Raises
+    ------
+    FormatError
+        If they are a pointer of Git LFS; code ``"unreadable"``.
+    """
+    if _is_pointer(data):
+        message = f"{name}: this is a pointer of Git LFS, and the file itself is not here yet."
+        raise FormatError(f"{message} Try: git lfs pull", "unreadable")
+    return data
+
+
+def _is_pointer(data: bytes) -> bool:
+    return len(data) <= _LARGEST_POINTER and _POINTER.match(data) is not None
 
 
 @contextmanager
