@@ -96,8 +96,9 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 
     Several objects in one file become one mesh, in the order of the file. Polygons become
     triangles. STL corners are joined where their coordinates are equal, exactly; nothing else is
-    joined, dropped or repaired. A file that `write` made of no triangles, byte for byte, is the
-    empty set, with the finding "empty".
+    joined, dropped or repaired, but where a file places meshes so that rounding would open them:
+    findings tell what was left out there. A file that `write` made of no triangles, byte for byte,
+    is the empty set, with the finding "empty".
 
     Parameters
     ----------
