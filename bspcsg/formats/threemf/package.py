@@ -6,6 +6,7 @@ cannot grow without bound.
 
 import io
 import posixpath
+import re
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -13,7 +14,7 @@ from contextlib import contextmanager
 
 from ...errors import BspcsgError, FormatError
 from ..source import Source
-from .part import ModelPart, PartReader, parse_xml
+from .part import ModelPart, PartReader, Start, parse_xml
 from .write import NOTHING
 
 #: Parts in an archive: some 16 MB of its directory. The largest projects of slicers have hundreds.
@@ -74,7 +75,7 @@ class Package:
                 targets.append(_part_name(attributes.get("Target", "")))
 
         if "_rels/.rels" in self._archive.namelist():
-            parse_xml(*self._opened("_rels/.rels"), start)
+            self.parse("_rels/.rels", start)
         return targets[0] if targets else "3D/3dmodel.model"
 
     def is_empty_set(self, root: str) -> bool:
@@ -84,6 +85,14 @@ class Package:
             return False
         with _damage_told(self.source), self._archive.open(entry) as stream:
             return stream.read(len(NOTHING) + 1) == NOTHING
+
+    def named(self, pattern: re.Pattern[str]) -> list[str]:
+        """Return the parts whose names, in small letters, fit a pattern as a whole."""
+        return [name for name in self._entries if pattern.fullmatch(name)]
+
+    def parse(self, name: str, start: Start) -> None:
+        """Call `start` with the elements of a part."""
+        parse_xml(*self._opened(name), start)
 
     def part(self, name: str) -> ModelPart:
         """Return a part, parsed once."""
