@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from .._types import FloatArray
+from ..attributes.attributes import Values
 from ..errors import Finding
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
@@ -64,21 +65,45 @@ def _read_binary(source: Source) -> RawMesh:
         message = f"the header promises 0 triangles, but data for {held} follow."
         raise source.error(message, offset=_HEADER)
     records = np.frombuffer(data, _RECORD, count, _HEADER)
+    extra = len(data) - _HEADER - count * _RECORD.itemsize
+    starts = _starts_by_lengths(data, records["attribute"]) if extra else None
+    if starts is not None:
+        rows = b"".join(data[start : start + _RECORD.itemsize] for start in starts)
+        records, extra = np.frombuffer(rows, _RECORD), 0
     with np.errstate(invalid="ignore"):  # NaN, which the next line refuses
         corners = records["corners"].reshape(-1, 3).astype(np.float64)
-    _check_finite(source, corners)
-    extra = len(data) - _HEADER - count * _RECORD.itemsize
+    _check_finite(source, corners, starts)
     title, mark, _ = data[: _HEADER - 4].partition(_COLOR)
     name = title.split(b"\0")[0].strip().decode("latin-1")
-    coloured = ("colours",) if mark or records["attribute"].any() else ()
-    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=coloured)
+    is_coloured = bool(mark) or (starts is None and bool(records["attribute"].any()))
+    dropped = ("colours",) * is_coloured + ("attribute bytes",) * (starts is not None)
+    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=dropped)
 
 
-def _check_finite(source: Source, corners: FloatArray) -> None:
+def _starts_by_lengths(data: bytes, attributes: Values) -> list[int] | None:
+    """Return where triangles begin if so many attribute bytes follow each as it says.
+
+    So the format wants it. Most programs write a colour there instead, and no bytes: it is taken
+    for a length if the triangles use up the file by it, exactly.
+    """
+    named = np.flatnonzero(attributes)
+    if not len(named):
+        return None
+    # Up to the first that names bytes, both readings are the same.
+    starts = [_HEADER + _RECORD.itemsize * k for k in range(int(named[0]))]
+    at = _HEADER + _RECORD.itemsize * len(starts)
+    while len(starts) < len(attributes) and at + _RECORD.itemsize <= len(data):
+        starts.append(at)
+        at += _RECORD.itemsize
+        at += int.from_bytes(data[at - 2 : at], "little")
+    return starts if len(starts) == len(attributes) and at == len(data) else None
+
+
+def _check_finite(source: Source, corners: FloatArray, starts: list[int] | None) -> None:
     finite = np.isfinite(corners)
     if not finite.all():
         triangle = int(np.flatnonzero(~finite)[0]) // 9
-        offset = _HEADER + triangle * _RECORD.itemsize
+        offset = _HEADER + triangle * _RECORD.itemsize if starts is None else starts[triangle]
         message = f"triangle {triangle} has a coordinate that is not a finite number."
         raise source.error(message, "non_finite", offset=offset)
 
