@@ -68,6 +68,7 @@ def read(source: Source) -> RawMesh:
     FormatError
         If a line is no valid statement, or names a vertex that does not exist; names the line.
     """
+    source = source.without_mark()
     found = _collected(source)
     if not found.rows:
         raise source.error("this is no OBJ mesh: it has no vertex.")

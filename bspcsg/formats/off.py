@@ -14,7 +14,8 @@ from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
 from .said import as_bytes, chosen, is_color, said_of
 from .source import Source, quoted, whole
 
-_KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
+#: The keyword; the number of vertices may follow it without a blank.
+_KEYWORD = re.compile(rb"((?:ST)?C?N?(4?)(n?)(?i:OFF))(\d*)")
 
 _Line = tuple[int, list[bytes]]
 
@@ -28,6 +29,7 @@ def read(source: Source) -> RawMesh:
         If it is cut off, names a vertex that does not exist, or is not of this family; names the
         line.
     """
+    source = source.without_mark()
     keyword, lines = _body(source)
     vertex_count, face_count, rest = _counts(source, lines)
     try:
@@ -136,7 +138,8 @@ def _body(source: Source) -> tuple[bytes, list[_Line]]:
     """Return the keyword, which may be absent, and the lines after it."""
     lines = list(_lines(source))
     first = next(source.text_lines(b"#"), (1, [b""]))[1][0]
-    return first.upper(), lines
+    keyword = _KEYWORD.fullmatch(first)
+    return (first if keyword is None else keyword[1]).upper(), lines
 
 
 def _lines(source: Source) -> Iterator[_Line]:
@@ -150,6 +153,8 @@ def _lines(source: Source) -> Iterator[_Line]:
         yield number, words
     elif keyword[2] or keyword[3]:
         raise source.error("only OFF in three dimensions can be read.", line=number)
+    elif keyword[4]:
+        yield number, [keyword[4], *words[1:]]
     elif len(words) > 1 and words[1].upper() == b"BINARY":
         raise source.error("binary OFF cannot be read; save it as text, or as PLY.", line=number)
     elif len(words) > 1:

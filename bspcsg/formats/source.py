@@ -1,11 +1,12 @@
 """A file's bytes with the name and the places that errors about it carry."""
 
+import codecs
 import errno
 import os
 import re
 import stat
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,6 +18,14 @@ from ..parameters import file_path
 
 #: The mark that some editors put before a text.
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+
+#: The marks of texts of two and of four bytes a letter, the longer ones first.
+_WIDE_MARKS = {
+    codecs.BOM_UTF32_LE: "utf-32",
+    codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+}
 
 #: Most characters of an offending word that an error quotes.
 _QUOTED = 24
@@ -52,7 +61,11 @@ class Source:
     files: Mapping[str, bytes] | None = None
 
     def without_mark(self) -> "Source":
-        """Return the file without a byte order mark before it."""
+        """Return the file without a byte order mark before it; a wide text becomes UTF-8."""
+        for mark, name in _WIDE_MARKS.items():
+            if self.data.startswith(mark):
+                with suppress(UnicodeError):
+                    return replace(self, data=self.data.decode(name).encode())
         return replace(self, data=self.data.removeprefix(BYTE_ORDER_MARK))
 
     def beside(self, name: str) -> bytes | None:

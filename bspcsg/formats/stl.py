@@ -4,20 +4,22 @@ The binary form holds single precision. Whether a file is binary follows from it
 its first word: binary files begin with "solid" often enough.
 """
 
+import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 from .._types import FloatArray
 from ..attributes.attributes import Values
-from ..errors import Finding
+from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
 from . import single
 from .blocks import blocks
 from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
-from .source import BYTE_ORDER_MARK, Source, as_text, quoted
+from .source import Source, as_text, quoted
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -29,6 +31,11 @@ _COLOR = b"COLOR="
 _FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
 
 
+#: The words that end something, which some programs write as two, and all that begin a line.
+_ENDS = re.compile(rb"(?i)(?<!\S)end[ _](solid|loop|facet)(?!\S)")
+_STATEMENTS = re.compile(rb"(?i) (?=(?:(?:end)?(?:solid|facet)|outer|vertex|endloop)(?: |$))")
+
+
 def read(source: Source) -> RawMesh:
     """Read either form.
 
@@ -37,15 +44,27 @@ def read(source: Source) -> RawMesh:
     FormatError
         If the file is cut off, is no STL, or has coordinates that are not finite.
     """
-    return _read_binary(source) if _is_binary(source.data) else _read_text(source)
-
-
-def _is_binary(data: bytes) -> bool:
+    data = source.data
     if len(data) >= _HEADER and len(data) == _HEADER + _RECORD.itemsize * _promised(data):
-        return True
-    return (
-        data.removeprefix(BYTE_ORDER_MARK).lstrip()[:5].lower() != b"solid" or b"\0" in data[:1024]
-    )
+        return _read_binary(source)
+    text = source.without_mark()
+    if text.data.lstrip()[:5].lower() != b"solid" or b"\0" in text.data[:1024]:
+        return _read_binary(source)
+    try:
+        return _read_text(text)
+    except FormatError as error:
+        if error.code not in ("syntax", "truncated"):
+            raise
+        # Errors name lines as they are in the file.
+        with suppress(FormatError):
+            return _read_text(_in_lines(text))
+        raise
+
+
+def _in_lines(source: Source) -> Source:
+    """Return a text with its statements on a line each, and without blanks in words of the end."""
+    words = _ENDS.sub(rb"end\1", b" ".join(source.data.split()))
+    return replace(source, data=_STATEMENTS.sub(b"\n", words))
 
 
 def _promised(data: bytes) -> int:

@@ -1,0 +1,128 @@
+"""Forms of text in which other programs write meshes: each is the cube, or refused with a line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bspcsg as b
+from bspcsg.io import RawMesh, read, write
+from support.io import cube_mesh, read_text, refusal
+
+CUBE = cube_mesh()
+
+POINTS = "".join("{:g} {:g} {:g}\n".format(*point) for point in CUBE.vertices.tolist())
+FACES = "".join("3 {} {} {}\n".format(*face) for face in CUBE.faces.tolist())
+OFF = f"8 12 0\n{POINTS}{FACES}"
+OBJ = "".join(f"v {line}\n" for line in POINTS.splitlines()) + "".join(
+    "f {} {} {}\n".format(*face) for face in (CUBE.faces + 1).tolist()
+)
+
+
+def stl(
+    first: str = "solid a",
+    last: str = "endsolid a",
+    loop: str = "endloop",
+    facet: str = "endfacet",
+    between: str = "\n",
+) -> str:
+    lines = [first]
+    for corners in CUBE.vertices[CUBE.faces].tolist():
+        lines += ["facet normal 0 0 0", "outer loop"]
+        lines += ["vertex {:g} {:g} {:g}".format(*corner) for corner in corners]
+        lines += [loop, facet]
+    return between.join([*lines, last])
+
+
+def is_cube(mesh: RawMesh) -> bool:
+    return np.array_equal(mesh.vertices[mesh.faces], CUBE.vertices[CUBE.faces])
+
+
+# Found: each of these was refused, although other readers take it.
+@pytest.mark.parametrize(
+    "text",
+    [
+        stl(last="end solid a"),
+        stl(last="end solid"),
+        stl(loop="end loop"),
+        stl(facet="end facet"),
+        stl(loop="end_loop", facet="end_facet"),
+        stl(last="END SOLID", loop="End Loop", facet="END FACET"),
+        stl(between=" "),
+        stl(between="\n\n\t"),
+        stl(between=" ", first="solid", last="endsolid"),
+        stl().replace("0 0 0\nouter", "0 0 0 outer"),
+        stl().replace("\nvertex", " vertex"),
+        stl().replace("vertex ", "vertex\n"),
+        stl().replace("facet normal", "facet\nnormal").replace("outer loop", "outer\nloop"),
+    ],
+)
+def test_stl_as_text(tmp_path: Path, text: str) -> None:
+    raw = read_text(tmp_path / "x.stl", text)
+    assert is_cube(raw)
+
+
+def test_solids_on_one_line_are_apart(tmp_path: Path) -> None:
+    two = f"{stl(between=' ')} {stl('solid b c', 'end solid b c', between=' ')}"
+    assert read_text(tmp_path / "x.stl", two).objects == (("a", 12), ("b c", 12))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("endloop", "end lop", 7),
+        ("vertex", "vertx", 4),
+        ("outer loop", "", 4),
+        ("\nendloop\n", " ", 7),
+    ],
+)
+def test_other_words_are_refused_where_they_are(
+    tmp_path: Path, old: str, new: str, line: int
+) -> None:
+    path = tmp_path / "x.stl"
+    message = refusal(path, stl().replace(old, new, 1), "syntax")
+    assert message.startswith(f"{path}:{line}: ")
+
+
+@pytest.mark.parametrize(
+    "head", ["OFF8 12 0", "off8 12 0", "Off\n8 12 0", "OFF 8 12", "# a\nOFF8 12 0", "OFF8\t12 0"]
+)
+def test_off_with_its_numbers_beside_the_keyword(tmp_path: Path, head: str) -> None:
+    raw = read_text(tmp_path / "x.off", f"{head}\n{POINTS}{FACES}")
+    assert is_cube(raw) and raw.findings == ()
+
+
+def test_colours_of_off_with_its_numbers_beside_the_keyword(tmp_path: Path) -> None:
+    points = POINTS.replace("\n", " 255 0 0 255\n")
+    raw = read_text(tmp_path / "x.off", f"COFF8 12 0\n{points}{FACES}")
+    assert raw.attributes is not None and raw.attributes.names == ("color",)
+    refusal(tmp_path / "x.off", f"4OFF8 12 0\n{points}{FACES}", "syntax")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be", "utf-32", "utf-32-be", "utf-8-sig"])
+@pytest.mark.parametrize("suffix", ["stl", "off", "obj", "ply"])
+def test_texts_with_a_mark(tmp_path: Path, suffix: str, encoding: str) -> None:
+    write(CUBE, tmp_path / "x.ply", text=True)
+    ply = (tmp_path / "x.ply").read_text()
+    text = {"stl": stl("solid größe"), "off": OFF, "obj": f"o größe\n{OBJ}", "ply": ply}[suffix]
+    mark = "\N{BYTE ORDER MARK}" if encoding.endswith("be") else ""
+    for ending in ("\n", "\r\n"):
+        data = (mark + text.replace("\n", ending)).encode(encoding)
+        raw = read_text(tmp_path / f"y.{suffix}", data)
+        assert is_cube(raw) and b.load(tmp_path / f"y.{suffix}").volume == 1
+        assert raw.name == ("größe" if suffix in ("stl", "obj") else "y")
+
+
+def test_materials_with_a_mark(tmp_path: Path) -> None:
+    (tmp_path / "x.mtl").write_bytes("newmtl a\nKd 1 0 0\n".encode("utf-16"))
+    (tmp_path / "x.obj").write_bytes(f"mtllib x.mtl\nusemtl a\n{OBJ}".encode("utf-16"))
+    said = read(tmp_path / "x.obj").attributes
+    assert said is not None and said.materials["a"].color == (1, 0, 0, 1)
+
+
+def test_a_mark_before_what_is_no_text(tmp_path: Path) -> None:
+    write(CUBE, tmp_path / "x.stl")
+    data = b"\xff\xfe\x00\xd8" + (tmp_path / "x.stl").read_bytes()[4:]
+    assert is_cube(read_text(tmp_path / "x.stl", data))
+    refusal(tmp_path / "x.stl", data[:-10], "truncated")
+    refusal(tmp_path / "x.obj", data, "syntax")
