@@ -283,6 +283,22 @@ def test_strips_and_fans_of_two_vertices_have_no_triangle(tmp_path: Path, mode: 
     assert len(read(path).faces) == 12
 
 
+# Found: the refusal of packed data did not say how to unpack it, which the manual does.
+@pytest.mark.parametrize("name", ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "X_y"])
+def test_packed_data_are_refused_with_the_way_out(tmp_path: Path, name: str) -> None:
+    def required(tree: dict[str, Any]) -> None:
+        tree["extensionsUsed"] = tree["extensionsRequired"] = [name]
+
+    def used(tree: dict[str, Any]) -> None:
+        tree["extensionsUsed"] = [name]
+        del tree["accessors"][1]["bufferView"]
+
+    path = tmp_path / "x.glb"
+    for edit in (required, used):
+        message = refusal(path, edited(path, edit), "unsupported")
+        assert message.endswith("Try: gltf-transform copy in.glb out.glb") == (name != "X_y")
+
+
 # Found: one primitive without positions made the whole file "not valid".
 @pytest.mark.parametrize(
     "bare",

@@ -28,6 +28,10 @@ _INSTANCES = "EXT_mesh_gpu_instancing"
 _READ = (_INSTANCES, "KHR_mesh_quantization")
 _LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")
 
+#: Extensions that pack data, and how to unpack them.
+_PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+_UNPACK = " Unpack it first. Try: gltf-transform copy in.glb out.glb"
+
 #: Attributes of vertices that are not read, by the beginnings of their names.
 _ATTRIBUTES = {
     "TANGENT": "tangents",
@@ -135,7 +139,7 @@ class _Claims:
         for extension in self._tree.get("extensionsRequired", []):
             if extension not in _READ and not extension.startswith(_LOOKS):
                 message = f"the file needs the extension {extension}, which cannot be read here."
-                raise self._source.error(message, "unsupported")
+                raise self._source.error(message + _way_out(extension), "unsupported")
         for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
                 is_text = str(buffer["uri"]).startswith("data:")
@@ -194,8 +198,10 @@ class _Claims:
             return accessor
         if "sparse" not in accessor:
             # Extensions that compress leave it so, too.
+            used = self._tree.get("extensionsUsed", [])
+            packing = next((one for one in used if one in _PACKINGS), "")
             message = f"accessor {number} has no data that can be read here."
-            raise self._source.error(message, "unsupported")
+            raise self._source.error(message + _way_out(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
         if not 0 <= zeros <= self._held:
             # Nothing else bounds them.
@@ -250,6 +256,11 @@ class _Claims:
         if len(counts) != 1:
             raise ValueError("the instances of a mesh have not one place each")
         return int(counts.pop())
+
+
+def _way_out(extension: str) -> str:
+    """Return how to make one that can be read of a file that needs an extension, if known."""
+    return _UNPACK if extension in _PACKINGS else ""
 
 
 def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
