@@ -126,3 +126,100 @@ def test_a_mark_before_what_is_no_text(tmp_path: Path) -> None:
     assert is_cube(read_text(tmp_path / "x.stl", data))
     refusal(tmp_path / "x.stl", data[:-10], "truncated")
     refusal(tmp_path / "x.obj", data, "syntax")
+
+
+XYZ = "property float x\nproperty float y\nproperty float z\n"
+LIST = "property list uchar int vertex_indices\n"
+
+
+def ply(head: str = "", vertex: str = "", face: str = f"element face 12\n{LIST}") -> str:
+    return f"ply\nformat ascii 1.0\n{head}element vertex 8\n{XYZ}{vertex}{face}end_header\n"
+
+
+#: Strips of the cube: of each square one, which -1 parts in one list.
+SQUARES = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+STRIPS = [[first, second, fourth, third] for first, second, third, fourth in SQUARES]
+CORNERS = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n"
+TOGETHER = [k for strip in STRIPS for k in [*strip, -1]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ply() + POINTS + FACES.replace("\n", ".0\n").replace(" ", ".0 "),
+        ply(vertex="property uchar red\n") + POINTS.replace("\n", " 255.0\n") + FACES,
+        ply() + POINTS.replace("\n", " ", 3) + FACES,
+        ply() + (POINTS + FACES).replace("\n", " "),
+        ply() + (POINTS + FACES).replace(" ", "\n"),
+        ply(vertex="property uchar red\n") + POINTS.replace("\n", "\n9\n") + FACES,
+        ply("comment a\nobj_info b\n") + POINTS + FACES,
+    ],
+)
+def test_ply_as_text(tmp_path: Path, text: str) -> None:
+    raw = read_text(tmp_path / "x.ply", text)
+    assert is_cube(raw) and raw.findings == ()
+
+
+@pytest.mark.parametrize("line", ["Created by a program", "12 34", "TextureFile a.png", "# note"])
+def test_lines_of_a_header_that_are_no_statements_are_told(tmp_path: Path, line: str) -> None:
+    raw = read_text(tmp_path / "x.ply", ply(f"{line}\n") + POINTS + FACES)
+    assert is_cube(raw)
+    assert raw.passed_by == ("1 lines of the header are no statements, and were ignored.",)
+    assert raw.findings[0].where == (3,)
+
+
+@pytest.mark.parametrize("line", ["propery float u", "elment face 3", "Element edge 3", "formt x"])
+def test_misspelt_lines_of_a_header_are_refused(tmp_path: Path, line: str) -> None:
+    message = refusal(tmp_path / "x.ply", ply(f"{line}\n") + POINTS + FACES, "syntax")
+    assert ":3: expected a header line" in message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ply() + POINTS + FACES.replace("3 0", "3 0.5", 1),
+        ply() + POINTS.replace("\n", " 7\n") + FACES,
+        ply(vertex="property uchar red\n") + POINTS.replace("\n", " 0.5\n") + FACES,
+        ply() + POINTS.replace("\n", " 0\n", 1).replace("\n", " ", 2) + FACES,
+    ],
+)
+def test_numbers_that_are_none_of_the_header(tmp_path: Path, text: str) -> None:
+    refusal(tmp_path / "x.ply", text, "syntax")
+
+
+def strips_ply(form: str, rows: list[list[int]], faces: str = "") -> bytes:
+    element = f"element tristrips {len(rows)}\nproperty list int int vertex_indices\n"
+    head = ply(face=faces + element).replace("ascii", form).encode()
+    if form == "ascii":
+        lines = (" ".join(map(str, [len(row), *row])) for row in rows)
+        return head + (CORNERS + "\n".join(lines)).encode()
+    order = "<" if "little" in form else ">"
+    points = np.array(CORNERS.split(), dtype=float).astype(f"{order}f4").tobytes()
+    return (
+        head + points + b"".join(np.array([len(row), *row], f"{order}i4").tobytes() for row in rows)
+    )
+
+
+@pytest.mark.parametrize("form", ["ascii", "binary_little_endian", "binary_big_endian"])
+@pytest.mark.parametrize("rows", [STRIPS, [TOGETHER], [TOGETHER[:-1]], [[-1, *TOGETHER], [0, 1]]])
+def test_strips(tmp_path: Path, form: str, rows: list[list[int]]) -> None:
+    raw = read_text(tmp_path / "x.ply", strips_ply(form, rows))
+    assert len(raw.faces) == 12 and raw.dropped == ()
+    assert b.load(tmp_path / "x.ply").volume == 1
+    empty = f"element face 0\n{LIST}"
+    assert b.io.decoded("x", strips_ply(form, rows, empty), ".ply").faces.tolist() == (
+        raw.faces.tolist()
+    )
+
+
+def test_long_strips_turn_every_other_triangle(tmp_path: Path) -> None:
+    raw = read_text(tmp_path / "x.ply", strips_ply("ascii", [[0, 1, 2, 3, 4, 4, 5]]))
+    assert raw.faces.tolist() == [[0, 1, 2], [3, 2, 1], [2, 3, 4], [4, 4, 3], [4, 4, 5]]
+
+
+def test_bad_corners_of_strips_name_their_line(tmp_path: Path) -> None:
+    for bad in (-2, 8):
+        rows = [*STRIPS, [0, 1, bad]]
+        path = tmp_path / "x.ply"
+        message = refusal(path, strips_ply("ascii", rows), "index_out_of_range")
+        assert f"vertex {bad} " in message and f":{9 + 8 + 7}: " in message
