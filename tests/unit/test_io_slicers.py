@@ -195,6 +195,41 @@ def test_what_cannot_be_taken_away_is_told(tmp_path: Path) -> None:
             assert told.startswith("negative volumes of a slicer were ignored") and "closed" in told
 
 
+def test_what_there_is_nothing_to_take_away_from_is_told(tmp_path: Path) -> None:
+    inner = "".join(
+        f'<object id="{k}">{mesh_xml(mesh)}</object>' for k, mesh in ((1, BODY), (3, INSIDE))
+    )
+    group = '<object id="2"><components><component objectid="1"/></components></object>'
+    whole = '<components><component objectid="2"/><component objectid="3"/></components>'
+    path = packed(
+        tmp_path / "x.3mf",
+        f'{inner}{group}<object id="9">{whole}</object>',
+        '<item objectid="9"/>',
+        bambu='<config><object id="9"><part id="3" subtype="negative_part"/></object></config>',
+    )
+    assert b.load(path).volume == 64
+    (told,) = read(path).findings
+    assert told.code == "ignored" and told.message.endswith("object 2 is no mesh.")
+    for make, kind in ((prusa, "NegativeVolume"), (bambu, "negative_part")):
+        with pytest.raises(b.InvalidMeshError, match=r"negative volumes .* there is nothing"):
+            b.load(make(tmp_path / "x.3mf", [(BODY, kind)]))
+
+
+def test_other_places_of_an_object(tmp_path: Path) -> None:
+    """PrusaSlicer writes further instances as objects of one component."""
+    parts = [(BODY, "ModelPart"), (INSIDE, "NegativeVolume")]
+    again = '<object id="2"><components><component objectid="1"/></components></object>'
+    moved = '<item objectid="2" transform="-1 0 0 0 1 0 0 0 1 50 0 0"/>'
+    path = packed(
+        tmp_path / "x.3mf",
+        f'<object id="1" name="p">{mesh_xml(BODY, INSIDE)}</object>{again}',
+        f'<item objectid="1"/>{moved}',
+        prusa=volumes(parts),
+    )
+    assert b.load(path).volume == 126
+    assert [name for name, _ in read(path).objects] == ["p", "p"]
+
+
 def test_a_body_that_is_taken_away_as_a_whole_is_nothing(tmp_path: Path) -> None:
     path = prusa(tmp_path / "x.3mf", [(INSIDE, "ModelPart"), (BODY, "NegativeVolume")])
     assert b.load(path).is_empty

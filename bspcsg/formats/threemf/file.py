@@ -15,7 +15,7 @@ from ..source import Source
 from .objects import Objects
 from .package import Package, opened
 from .part import MILLIMETRES, ModelPart
-from .slicers import NEGATIVE, settled
+from .slicers import NEGATIVE, Slicing, settled
 
 #: Most triangles that a build may have.
 _MOST_TRIANGLES = 1 << 27
@@ -64,7 +64,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
     findings += _ignored(beams, "beams")
     for kind, count in skipped.items():
         findings += _ignored(count, f"objects of the type “{kind}”")
-    findings += [*slicing.findings, *_left_out(slicing.counts, objects.unmade)]
+    findings += [*slicing.findings, *_left_out(slicing, objects.unmade)]
     findings += _ignored(hollow, "objects without triangles")
     reached = {(path, item) for path, item, _ in built} | objects.used() | slicing.inner
     findings += _ignored(len(_bodies(package) - reached), "objects outside the build")
@@ -137,16 +137,18 @@ def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
     return (Finding("unit", "warning", message, (), len(others)),)
 
 
-def _left_out(counts: Counter[str], unmade: list[str]) -> list[Finding]:
+def _left_out(slicing: Slicing, unmade: list[str]) -> list[Finding]:
     """Return what is to be told of the parts of objects that slicers call no material."""
     found: list[Finding] = []
-    for kind, count in counts.items():
+    for kind, count in slicing.counts.items():
         if kind != NEGATIVE:
             found += _ignored(count, f"{kind} of a slicer, which are no material,")
-        elif not unmade:
+        elif slicing.shapes > len(unmade):
             message = f"{count} {kind} of a slicer were taken away from the parts of their objects."
             found.append(Finding("negative_volumes", "note", message, (), count))
-    for reason in unmade:
+        elif not unmade and not slicing.unmade:
+            unmade = ["there is nothing to take them away from."]
+    for reason in (*slicing.unmade, *unmade):
         message = f"{NEGATIVE} of a slicer were ignored, as they could not be taken away: {reason}"
         found.append(Finding("ignored", "warning", message, (), 1))
     return found

@@ -43,11 +43,17 @@ class Slicing:
         Part and number of objects that are no bodies by themselves.
     findings : list of Finding
         The trouble with what slicers say.
+    shapes : int
+        The number of meshes from which others are to be taken away.
+    unmade : list of str
+        Why others are not.
     """
 
     counts: Counter[str] = field(default_factory=Counter)
     inner: set[tuple[str, str]] = field(default_factory=set)
     findings: list[Finding] = field(default_factory=list)
+    shapes: int = 0
+    unmade: list[str] = field(default_factory=list)
 
 
 @dataclass
@@ -137,6 +143,7 @@ def _divide(
         base = _added(slicing, root, part, item, body)
         operands = [_added(slicing, root, part, item, one) for one in negatives]
         shape = BooleanShape("difference", base, operands, is_optional=True)
+        slicing.shapes += 1
         part.objects[item] = replace(body, vertices=[], triangles=[], properties={}, shape=shape)
 
 
@@ -167,9 +174,9 @@ def _lessened(
     """Return a component from which others are taken away."""
     known = package.part(one.path or root).objects.get(one.item)
     if known is None or not known.is_body:
-        message = f"{NEGATIVE} of a slicer were not taken away from object {one.item}, no mesh."
-        slicing.findings.append(Finding("ignored", "warning", message, (), 1))
+        slicing.unmade.append(f"object {one.item} is no mesh.")
         return one
+    slicing.shapes += 1
     shape = BooleanShape("difference", one, negatives, is_optional=True)
     made = Object(known.kind, name=known.name, shape=shape)
     return _added(slicing, root, package.part(root), item, made)
