@@ -205,8 +205,8 @@ def present(name: str, data: bytes) -> bytes:
         If they are a pointer of Git LFS; code ``"unreadable"``.
     """
     if _is_pointer(data):
-        message = f"{name}: this is a pointer of Git LFS, and the file itself is not here yet."
-        raise FormatError(f"{message} Try: git lfs pull", "unreadable")
+        message = f"{name}: this is a pointer of Git LFS; “git lfs pull” fetches the file itself."
+        raise FormatError(message, "unreadable")
     return data
 
 

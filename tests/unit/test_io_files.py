@@ -58,7 +58,7 @@ def refused_pointer(call: Callable[[], object], name: object) -> None:
         call()
     assert caught.value.code == "unreadable"
     assert caught.value.message.startswith(f"{name}: this is a pointer of Git LFS")
-    assert caught.value.message.endswith("Try: git lfs pull")
+    assert "git lfs pull" in caught.value.message
 
 
 # Found: a pointer of Git LFS was told as a mesh cut off, or as an OBJ without vertices.

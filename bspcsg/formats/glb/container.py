@@ -30,7 +30,7 @@ _LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_
 
 #: Extensions that pack data, and how to unpack them.
 _PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
-_UNPACK = " Unpack it first. Try: gltf-transform copy in.glb out.glb"
+_UNPACK = " “gltf-transform copy in.glb out.glb” unpacks it."
 
 #: Attributes of vertices that are not read, by the beginnings of their names.
 _ATTRIBUTES = {
