@@ -33,6 +33,9 @@ _QUOTED = 24
 #: Bytes of a script or drawing: parsed, each becomes ten or more, so that this fills 3 GB.
 _LARGEST_TEXT = 1 << 28
 
+#: Whole numbers up to this are exact as floats.
+_MOST_EXACT = 2.0**53
+
 #: Letters of a whole number: twice as many as 64 bits need, so that errors can name what is a bit
 #: too large.
 _MOST_DIGITS = 40
@@ -245,6 +248,17 @@ def whole(word: bytes) -> int:
     if b"_" in word or len(word) > _MOST_DIGITS:
         raise ValueError(word)
     return int(word)
+
+
+def integral(word: bytes) -> int:
+    """Return a whole number; some programs write ``1.0`` for all that they hold as floats."""
+    try:
+        return whole(word)
+    except ValueError:
+        number = float(word)
+        if b"_" in word or not number.is_integer() or abs(number) > _MOST_EXACT:
+            raise
+        return int(number)
 
 
 def _is_point(words: Sequence[bytes]) -> bool:

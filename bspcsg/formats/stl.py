@@ -31,8 +31,9 @@ _COLOR = b"COLOR="
 _FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
 
 
-#: The words that end something, which some programs write as two, and all that begin a line.
-_ENDS = re.compile(rb"(?i)(?<!\S)end[ _](solid|loop|facet)(?!\S)")
+#: The words that end something, which some programs write as two, and all that begin a line: a
+#: text may have several on one, or one on several.
+_ENDS = re.compile(rb"(?i)(?<!\S)end(?:_|\s+)(solid|loop|facet)(?!\S)")
 _STATEMENTS = re.compile(rb"(?i) (?=(?:(?:end)?(?:solid|facet)|outer|vertex|endloop)(?: |$))")
 
 
@@ -56,15 +57,11 @@ def read(source: Source) -> RawMesh:
         if error.code not in ("syntax", "truncated"):
             raise
         # Errors name lines as they are in the file.
-        with suppress(FormatError):
-            return _read_text(_in_lines(text))
+        joined = _ENDS.sub(rb"end\1", text.data)
+        for data in (joined, _STATEMENTS.sub(b"\n", b" ".join(joined.split()))):
+            with suppress(FormatError):
+                return _read_text(replace(text, data=data))
         raise
-
-
-def _in_lines(source: Source) -> Source:
-    """Return a text with its statements on a line each, and without blanks in words of the end."""
-    words = _ENDS.sub(rb"end\1", b" ".join(source.data.split()))
-    return replace(source, data=_STATEMENTS.sub(b"\n", words))
 
 
 def _promised(data: bytes) -> int:

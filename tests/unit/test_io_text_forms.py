@@ -48,6 +48,8 @@ def is_cube(mesh: RawMesh) -> bool:
         stl(facet="end facet"),
         stl(loop="end_loop", facet="end_facet"),
         stl(last="END SOLID", loop="End Loop", facet="END FACET"),
+        stl(first="solid a facet of it", last="end solid", loop="end loop"),
+        stl(loop="end\nloop"),
         stl(between=" "),
         stl(between="\n\n\t"),
         stl(between=" ", first="solid", last="endsolid"),
@@ -90,6 +92,15 @@ def test_other_words_are_refused_where_they_are(
 def test_off_with_its_numbers_beside_the_keyword(tmp_path: Path, head: str) -> None:
     raw = read_text(tmp_path / "x.off", f"{head}\n{POINTS}{FACES}")
     assert is_cube(raw) and raw.findings == ()
+
+
+@pytest.mark.parametrize(("old", "new"), [("\n", ".0\n"), ("3 ", "3.0 "), (" 0 ", " -0.0 ")])
+def test_off_whose_numbers_of_vertices_are_floats(tmp_path: Path, old: str, new: str) -> None:
+    assert is_cube(read_text(tmp_path / "x.off", f"OFF\n8 12 0\n{POINTS}{FACES.replace(old, new)}"))
+    message = refusal(
+        tmp_path / "x.off", f"OFF\n8 12 0\n{POINTS}{FACES.replace(' 0 ', ' 0.5 ')}", "syntax"
+    )
+    assert "whole numbers" in message
 
 
 def test_colours_of_off_with_its_numbers_beside_the_keyword(tmp_path: Path) -> None:
@@ -148,6 +159,7 @@ TOGETHER = [k for strip in STRIPS for k in [*strip, -1]]
     [
         ply() + POINTS + FACES.replace("\n", ".0\n").replace(" ", ".0 "),
         ply(vertex="property uchar red\n") + POINTS.replace("\n", " 255.0\n") + FACES,
+        ply().replace("ply", "PLY", 1) + POINTS + FACES,
         ply() + POINTS.replace("\n", " ", 3) + FACES,
         ply() + (POINTS + FACES).replace("\n", " "),
         ply() + (POINTS + FACES).replace(" ", "\n"),

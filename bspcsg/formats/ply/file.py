@@ -14,7 +14,7 @@ from ...mesh.mesh import Mesh
 from ..blocks import OF_FILE, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
-from ..source import Source, quoted, whole
+from ..source import Source, integral, quoted
 from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of, names_in
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
@@ -24,9 +24,6 @@ _FACE_LISTS = ("vertex_indices", "vertex_index")
 
 #: The elements that list corners: polygons, or strips of triangles.
 _FACES, _STRIPS = "face", "tristrips"
-
-#: Whole numbers up to this are exact as floats.
-_MOST_EXACT = 2.0**53
 
 _Line: TypeAlias = tuple[int, list[bytes]]
 
@@ -180,7 +177,7 @@ def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
             start = at
             try:
                 for prop in element.properties:
-                    at += 1 if prop.count is None else 1 + max(_whole(words[at][1]), 0)
+                    at += 1 if prop.count is None else 1 + max(integral(words[at][1]), 0)
             except (ValueError, IndexError):
                 return None
             row = words[start:at]
@@ -280,7 +277,7 @@ def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
     """Return the words of each property of a line that was checked."""
     at, found = 0, []
     for prop in element.properties:
-        length = 1 if prop.count is None else _whole(words[at])
+        length = 1 if prop.count is None else integral(words[at])
         at += prop.count is not None
         found.append(words[at : at + length])
         at += length
@@ -294,7 +291,7 @@ def _text_numbers(
     kind: "np.dtype[np.generic]",
 ) -> Values:
     try:
-        numbers = [float(word) if kind.kind == "f" else _whole(word) for word in words]
+        numbers = [float(word) if kind.kind == "f" else integral(word) for word in words]
         return np.array(numbers, dtype=kind)
     except (ValueError, OverflowError):
         message = f"the properties of these lines are no numbers of type {kind}."
@@ -308,7 +305,7 @@ def _text_list(
     at, wanted = 0, []
     try:
         for position, prop in enumerate(element.properties):
-            length = _whole(words[at]) if prop.count is not None else 1
+            length = integral(words[at]) if prop.count is not None else 1
             at += prop.count is not None
             if length < 0 or at + length > len(words):
                 raise ValueError
@@ -323,19 +320,8 @@ def _text_list(
     return wanted
 
 
-def _whole(word: bytes) -> int:
-    """Return a whole number; some programs write ``1.0`` for all that they hold as floats."""
-    try:
-        return whole(word)
-    except ValueError:
-        number = float(word)
-        if b"_" in word or not number.is_integer() or abs(number) > _MOST_EXACT:
-            raise
-        return int(number)
-
-
 def _index(word: bytes) -> int:
-    index = _whole(word)
+    index = integral(word)
     if not -(2**63) <= index < 2**63:
         raise ValueError
     return index

@@ -110,7 +110,7 @@ def read_header(source: Source) -> Header:
         words = line.decode("latin-1").split()
         key = words[0] if words else "comment"
         if number == 1:
-            if key != "ply":
+            if key.lower() != "ply":
                 raise source.error(f"this is no PLY: it begins with {quoted(line)}.", line=1)
         elif key == "end_header":
             break
