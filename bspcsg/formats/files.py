@@ -19,7 +19,7 @@ from .proof import prove, prove_with_attributes
 from .raw import RawMesh, empty_set, says_empty_set
 from .registry import FORMATS, Form, Format
 from .said import left_out, said_of, saying
-from .source import Source, whole_content
+from .source import Source, present, whole_content
 
 _BREP = (
     "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
@@ -96,8 +96,9 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 
     Several objects in one file become one mesh, in the order of the file. Polygons become
     triangles. STL corners are joined where their coordinates are equal, exactly; nothing else is
-    joined, dropped or repaired. A file that `write` made of no triangles, byte for byte, is the
-    empty set, with the finding "empty".
+    joined, dropped or repaired, but where a file places meshes so that rounding would open them:
+    findings tell what was left out there. A file that `write` made of no triangles, byte for byte,
+    is the empty set, with the finding "empty".
 
     Parameters
     ----------
@@ -149,6 +150,7 @@ def decoded(
         raise invalid_parameter(f"files must be a dictionary of bytes, not {shown(files)}.")
     if not data:
         raise FormatError(f"{name}: the file is empty.", "empty_file")
+    present(name, data)
     chosen = format_of(f"data{text_value(suffix, 'suffix')}")
     if any(form is not None and data == _nothing(form) for form in (chosen.text, chosen.binary)):
         return replace(empty_set(), name=Path(name).stem, unit=chosen.unit)

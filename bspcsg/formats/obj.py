@@ -28,12 +28,14 @@ _DROPPED = {
 #: Statements that would add surface which is not in the polygons.
 _SURFACES = frozenset({b"surf", b"curv", b"cstype", b"bmat"})
 
-#: Statements after which names follow.
-_NAMING = frozenset({b"o", b"g", b"usemtl", b"mtllib"})
+#: Statements after which names follow, which may end in a backslash, as paths do.
+_NAMING = frozenset(
+    {b"o", b"g", b"usemtl", b"mtllib", b"usemap", b"maplib", b"shadow_obj", b"trace_obj"}
+)
 
-#: Statements of one name, and those that follow them: a name may end in a backslash, as paths do.
-_NAMED = frozenset({b"o", b"usemtl", b"mtllib"})
-_FOLLOWING = frozenset({*_NAMING, b"v", b"vt", b"vn", b"f", b"s"})
+#: Statements of numbers, and all those that follow names.
+_NUMBERS = frozenset({b"v", b"vt", b"vn", b"f", b"l", b"p"})
+_FOLLOWING = frozenset({*_NAMING, *_NUMBERS, b"s"})
 
 
 @dataclass
@@ -66,6 +68,7 @@ def read(source: Source) -> RawMesh:
     FormatError
         If a line is no valid statement, or names a vertex that does not exist; names the line.
     """
+    source = source.without_mark()
     found = _collected(source)
     if not found.rows:
         raise source.error("this is no OBJ mesh: it has no vertex.")
@@ -214,12 +217,15 @@ def _objects(
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
-    """Yield number and words of each line; a line that ends in a backslash goes on."""
+    """Yield number and words of each line; a line that ends in a backslash goes on.
+
+    One of names does so only where no statement follows it: that backslash is part of a name.
+    """
     held: list[bytes] = []
     start, is_in_word = 0, False
     for number, words in source.text_lines(b"#", _NAMING):
-        if len(held) > 1 and held[0] in _NAMED and is_in_word and words[0] in _FOLLOWING:
-            yield start, [*held[:-1], held[-1] + b"\\"]
+        if held and held[0] in _NAMING and _is_statement(words, is_in_word):
+            yield start, _ended(held, is_in_word)
             held = []
         start = start if held else number
         if words[-1].endswith(b"\\"):
@@ -228,8 +234,22 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
             continue
         yield start, held + words
         held = []
-    if held:
+    if held and held[0] not in _NAMING:
         raise source.error("the file ends in a line that must go on.", "truncated", line=start)
+    if held:
+        yield start, _ended(held, is_in_word)
+
+
+def _is_statement(words: list[bytes], is_after_word: bool) -> bool:
+    """Say whether words after a line of names begin anew; after a lone mark, only if numbers do."""
+    if is_after_word:
+        return words[0] in _FOLLOWING
+    return words[0] in _NUMBERS and len(words) > 2
+
+
+def _ended(names: list[bytes], is_in_word: bool) -> list[bytes]:
+    """Return a line of names that ended in a backslash, which belongs to the last of them."""
+    return [*names[:-1], names[-1] + b"\\"] if is_in_word else [*names, b"\\"]
 
 
 def _references(source: Source, number: int, words: list[bytes], known: int) -> list[int]:

@@ -12,9 +12,10 @@ from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
 from .said import as_bytes, chosen, is_color, said_of
-from .source import Source, quoted, whole
+from .source import Source, integral, quoted, whole
 
-_KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")
+#: The keyword; the number of vertices may follow it without a blank.
+_KEYWORD = re.compile(rb"((?:ST)?C?N?(4?)(n?)(?i:OFF))(\d*)")
 
 _Line = tuple[int, list[bytes]]
 
@@ -28,6 +29,7 @@ def read(source: Source) -> RawMesh:
         If it is cut off, names a vertex that does not exist, or is not of this family; names the
         line.
     """
+    source = source.without_mark()
     keyword, lines = _body(source)
     vertex_count, face_count, rest = _counts(source, lines)
     try:
@@ -55,7 +57,7 @@ def _spread(vertex_count: int, face_count: int, lines: list[_Line]) -> list[_Lin
     at = 0
     while len(found) < vertex_count + face_count:
         try:
-            length = 3 if len(found) < vertex_count else 1 + whole(words[at][1])
+            length = 3 if len(found) < vertex_count else 1 + integral(words[at][1])
         except (ValueError, IndexError):
             return None
         row = words[at : at + length]
@@ -85,7 +87,7 @@ def _mesh(
     faces = flat.corners[positions]
     extra = _extra_lines(lines[vertex_count + face_count :])
     of_points = _colors([words[3:] for _, words in points]) if keyword == b"COFF" else None
-    of_faces = _colors([words[whole(words[0]) + 1 :] for _, words in polygons])
+    of_faces = _colors([words[integral(words[0]) + 1 :] for _, words in polygons])
     vertex = {} if of_points is None else {"color": of_points}
     face = {} if of_faces is None or vertex else {"color": of_faces[flat.owners(positions)]}
     said = Attributes(faces, vertex, {}, face) if vertex or face else None
@@ -103,7 +105,7 @@ def _more_than_a_shape(
     found = []
     if not vertex and any(len(words) > 3 for _, words in points):
         found.append("data of vertices")
-    if not face and any(len(words) > whole(words[0]) + 1 for _, words in polygons):
+    if not face and any(len(words) > integral(words[0]) + 1 for _, words in polygons):
         found.append("colours of faces")
     return tuple(found)
 
@@ -136,7 +138,8 @@ def _body(source: Source) -> tuple[bytes, list[_Line]]:
     """Return the keyword, which may be absent, and the lines after it."""
     lines = list(_lines(source))
     first = next(source.text_lines(b"#"), (1, [b""]))[1][0]
-    return first.upper(), lines
+    keyword = _KEYWORD.fullmatch(first)
+    return (first if keyword is None else keyword[1]).upper(), lines
 
 
 def _lines(source: Source) -> Iterator[_Line]:
@@ -150,6 +153,8 @@ def _lines(source: Source) -> Iterator[_Line]:
         yield number, words
     elif keyword[2] or keyword[3]:
         raise source.error("only OFF in three dimensions can be read.", line=number)
+    elif keyword[4]:
+        yield number, [keyword[4], *words[1:]]
     elif len(words) > 1 and words[1].upper() == b"BINARY":
         raise source.error("binary OFF cannot be read; save it as text, or as PLY.", line=number)
     elif len(words) > 1:
@@ -173,8 +178,8 @@ def _counts(source: Source, lines: list[_Line]) -> tuple[int, int, list[_Line]]:
 def _corners(source: Source, number: int, words: list[bytes]) -> list[int]:
     """Return the vertex indices of a face; a colour may follow them."""
     try:
-        count = whole(words[0])
-        indices = [whole(word) for word in words[1 : count + 1]]
+        count = integral(words[0])
+        indices = [integral(word) for word in words[1 : count + 1]]
     except ValueError:
         message = f"expected a face of whole numbers, found {quoted(b' '.join(words))}."
         raise source.error(message, line=number) from None

@@ -86,8 +86,9 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
     """Return meshes in their places as one, each an object of its name.
 
     Where placing made surfaces cross that did not before, they are mended by changes of the width
-    of the rounding: within a mesh, and among those that one map placed. A finding names what could
-    not be mended. What rounding could open is closed by index before.
+    of the rounding: within a mesh, and among those that one map placed. What rounding could open is
+    closed by index before. Findings tell what could not be mended, and how many triangles were left
+    out.
     """
     meshes = [piece.in_place() for piece in pieces]
     whole = joined(meshes)
@@ -100,20 +101,22 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
         if not piece.keeps:
             together.setdefault(piece.map, []).append(number)
     crossing: dict[int, list[int]] = {}
+    flat = 0
     for members in together.values():
         own = joined([pieces[number].mesh for number in members])
         found = _mended(own, pieces[members[0]].image, pitch)
         if found is not None:
             _take(found, members, meshes, crossing)
+            flat += _left_out(own, found)
             whole = replace(whole, is_mended=True)
-    return _told(joined(meshes), meshes, crossing) if whole.is_mended else whole
+    return _told(joined(meshes), meshes, crossing, flat) if whole.is_mended else whole
 
 
 def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
     """Return a mesh with its coordinates in another unit; its objects stay apart.
 
-    Where rounding made surfaces cross that did not before, they are mended, and a finding names
-    what could not be.
+    Where rounding made surfaces cross that did not before, they are mended; findings tell what
+    could not be, and how many triangles were left out.
 
     Parameters
     ----------
@@ -146,7 +149,11 @@ def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
         faces=found.mesh.faces,
         attributes=found.mesh.attributes,
         objects=tuple(zip(names, counts, strict=True)),
-        findings=(*raw.findings, *_crossing(found.left.tolist())),
+        findings=(
+            *raw.findings,
+            *_crossing(found.left.tolist()),
+            *_flat(_left_out(raw, found)),
+        ),
         is_mended=True,
     )
 
@@ -204,10 +211,28 @@ def _take(
         meshes[number] = replace(meshes[number], vertices=vertices, faces=faces, attributes=said)
 
 
-def _told(whole: RawMesh, meshes: list[RawMesh], crossing: dict[int, list[int]]) -> RawMesh:
+def _told(
+    whole: RawMesh, meshes: list[RawMesh], crossing: dict[int, list[int]], flat: int
+) -> RawMesh:
     starts = np.cumsum([0] + [len(mesh.faces) for mesh in meshes]).tolist()
     places = sorted(starts[number] + row for number, rows in crossing.items() for row in rows)
-    return replace(whole, is_mended=True, findings=_crossing(places))
+    return replace(whole, is_mended=True, findings=(*_crossing(places), *_flat(flat)))
+
+
+def _left_out(raw: RawMesh, found: Mended) -> int:
+    """Return how many triangles a mended mesh has no part of."""
+    return len(raw.faces) - len(np.unique(found.kept))
+
+
+def _flat(count: int) -> tuple[Finding, ...]:
+    """Return what is to be told of triangles that were left out."""
+    if not count:
+        return ()
+    message = (
+        f"{count} triangles without area, or on others that face them, were left out: rounding to"
+        " where meshes are placed would open them there."
+    )
+    return (Finding("zero_area", "note", message, (), count),)
 
 
 def _crossing(places: list[int]) -> tuple[Finding, ...]:

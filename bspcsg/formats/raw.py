@@ -163,6 +163,22 @@ class IndexPolygons:
         flat = [corner for polygon in polygons for corner in polygon]
         return cls(np.array(flat, dtype=np.int64), counts)
 
+    def of_strips(self) -> "tuple[IndexPolygons, IndexArray]":
+        """Return the triangles of these as strips, and the strip of each; -1 begins anew."""
+        corners, strips = self.corners, np.repeat(np.arange(len(self.counts)), self.counts)
+        is_gap = corners == -1
+        is_first = np.zeros(len(corners), dtype=bool)
+        is_first[:1] = True
+        is_first[1:] |= (strips[1:] != strips[:-1]) | is_gap[:-1]
+        runs = np.cumsum(is_first) - 1
+        starts = np.flatnonzero(is_first)[runs]
+        at = np.arange(max(len(corners) - 2, 0))
+        at = at[(runs[at] == runs[at + 2]) & ~is_gap[at + 2]]
+        rows = corners[at[:, None] + np.arange(3)]
+        is_turned = (at - starts[at]) % 2 == 1
+        rows[is_turned] = rows[is_turned][:, ::-1]
+        return IndexPolygons.from_rows(rows), strips[at]
+
     @property
     def dropped(self) -> tuple[str, ...]:
         """The things that triangles do not keep of these polygons, as `RawMesh.dropped` says it."""

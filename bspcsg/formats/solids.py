@@ -23,5 +23,7 @@ def solid_of(
         solid = solid_with(raw.vertices, raw.faces, said, **options)
         return solid.normalized() if raw.is_mended else solid
     except BspcsgError as error:
-        message = f"{os.fspath(path)}: {error.message}"
+        # A file of nothing but what is passed by: that is why nothing is left.
+        reasons = raw.passed_by if len(raw.faces) == 0 else ()
+        message = " ".join([f"{os.fspath(path)}: {error.message}", *reasons])
         raise type(error)(message, error.code, error.where) from error

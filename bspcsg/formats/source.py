@@ -1,10 +1,12 @@
 """A file's bytes with the name and the places that errors about it carry."""
 
+import codecs
 import errno
 import os
+import re
 import stat
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -17,15 +19,30 @@ from ..parameters import file_path
 #: The mark that some editors put before a text.
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 
+#: The marks of texts of two and of four bytes a letter, the longer ones first.
+_WIDE_MARKS = {
+    codecs.BOM_UTF32_LE: "utf-32",
+    codecs.BOM_UTF32_BE: "utf-32",
+    codecs.BOM_UTF16_LE: "utf-16",
+    codecs.BOM_UTF16_BE: "utf-16",
+}
+
 #: Most characters of an offending word that an error quotes.
 _QUOTED = 24
 
 #: Bytes of a script or drawing: parsed, each becomes ten or more, so that this fills 3 GB.
 _LARGEST_TEXT = 1 << 28
 
+#: Whole numbers up to this are exact as floats.
+_MOST_EXACT = 2.0**53
+
 #: Letters of a whole number: twice as many as 64 bits need, so that errors can name what is a bit
 #: too large.
 _MOST_DIGITS = 40
+
+#: The beginning of what Git has in place of a large file, and most bytes of one.
+_POINTER = re.compile(rb"version https://(git-lfs|hawser)\.github\.com/spec/v\d")
+_LARGEST_POINTER = 1024
 
 
 @dataclass(frozen=True)
@@ -47,7 +64,11 @@ class Source:
     files: Mapping[str, bytes] | None = None
 
     def without_mark(self) -> "Source":
-        """Return the file without a byte order mark before it."""
+        """Return the file without a byte order mark before it; a wide text becomes UTF-8."""
+        for mark, name in _WIDE_MARKS.items():
+            if self.data.startswith(mark):
+                with suppress(UnicodeError):
+                    return replace(self, data=self.data.decode(name).encode())
         return replace(self, data=self.data.removeprefix(BYTE_ORDER_MARK))
 
     def beside(self, name: str) -> bytes | None:
@@ -134,9 +155,10 @@ def _uncommented(
 def _limited(path: Path) -> bytes | None:
     """Return the bytes of a file, or None if it is not there or too large."""
     try:
-        return content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
+        data = content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
     except (OSError, ValueError):
         return None
+    return None if data is None or _is_pointer(data) else data
 
 
 def content_of(path: Path) -> bytes:
@@ -153,14 +175,14 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
     Raises
     ------
     FormatError
-        If it cannot be read or is larger than 256 MiB.
+        If it cannot be read, is larger than 256 MiB, or is a pointer of Git LFS.
     """
     name = file_path(path)
     with _readable(name):
         data = content_of(Path(name)) if Path(name).stat().st_size <= _LARGEST_TEXT else None
     if data is None or len(data) > _LARGEST_TEXT:
         raise FormatError(f"{name}: the file is larger than {_LARGEST_TEXT:,} bytes.", "too_large")
-    return data
+    return present(name, data)
 
 
 def whole_content(path: str | os.PathLike[str]) -> bytes:
@@ -169,11 +191,30 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
     Raises
     ------
     FormatError
-        If it cannot be read.
+        If it cannot be read or is a pointer of Git LFS.
     """
     name = file_path(path)
     with _readable(name):
-        return content_of(Path(name))
+        data = content_of(Path(name))
+    return present(name, data)
+
+
+def present(name: str, data: bytes) -> bytes:
+    """Return the bytes of a file, whatever its format, unless they stand for those of another.
+
+    Raises
+    ------
+    FormatError
+        If they are a pointer of Git LFS; code ``"unreadable"``.
+    """
+    if _is_pointer(data):
+        message = f"{name}: this is a pointer of Git LFS; “git lfs pull” fetches the file itself."
+        raise FormatError(message, "unreadable")
+    return data
+
+
+def _is_pointer(data: bytes) -> bool:
+    return len(data) <= _LARGEST_POINTER and _POINTER.match(data) is not None
 
 
 @contextmanager
@@ -207,6 +248,17 @@ def whole(word: bytes) -> int:
     if b"_" in word or len(word) > _MOST_DIGITS:
         raise ValueError(word)
     return int(word)
+
+
+def integral(word: bytes) -> int:
+    """Return a whole number; some programs write ``1.0`` for all that they hold as floats."""
+    try:
+        return whole(word)
+    except ValueError:
+        number = float(word)
+        if b"_" in word or not number.is_integer() or abs(number) > _MOST_EXACT:
+            raise
+        return int(number)
 
 
 def _is_point(words: Sequence[bytes]) -> bool:

@@ -4,19 +4,22 @@ The binary form holds single precision. Whether a file is binary follows from it
 its first word: binary files begin with "solid" often enough.
 """
 
+import re
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import Finding
+from ..attributes.attributes import Values
+from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from ..mesh.weld import welded
 from . import single
 from .blocks import blocks
 from .raw import EMPTY_SET, RawMesh, on_one_line, parts_of, says_empty_set
-from .source import BYTE_ORDER_MARK, Source, as_text, quoted
+from .source import Source, as_text, quoted
 
 _HEADER = 84
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -28,6 +31,12 @@ _COLOR = b"COLOR="
 _FACET = (b"facet", b"outer", b"vertex", b"vertex", b"vertex", b"endloop", b"endfacet")
 
 
+#: The words that end something, which some programs write as two, and all that begin a line: a
+#: text may have several on one, or one on several.
+_ENDS = re.compile(rb"(?i)(?<!\S)end(?:_|\s+)(solid|loop|facet)(?!\S)")
+_STATEMENTS = re.compile(rb"(?i) (?=(?:(?:end)?(?:solid|facet)|outer|vertex|endloop)(?: |$))")
+
+
 def read(source: Source) -> RawMesh:
     """Read either form.
 
@@ -36,15 +45,23 @@ def read(source: Source) -> RawMesh:
     FormatError
         If the file is cut off, is no STL, or has coordinates that are not finite.
     """
-    return _read_binary(source) if _is_binary(source.data) else _read_text(source)
-
-
-def _is_binary(data: bytes) -> bool:
+    data = source.data
     if len(data) >= _HEADER and len(data) == _HEADER + _RECORD.itemsize * _promised(data):
-        return True
-    return (
-        data.removeprefix(BYTE_ORDER_MARK).lstrip()[:5].lower() != b"solid" or b"\0" in data[:1024]
-    )
+        return _read_binary(source)
+    text = source.without_mark()
+    if text.data.lstrip()[:5].lower() != b"solid" or b"\0" in text.data[:1024]:
+        return _read_binary(source)
+    try:
+        return _read_text(text)
+    except FormatError as error:
+        if error.code not in ("syntax", "truncated"):
+            raise
+        # Errors name lines as they are in the file.
+        joined = _ENDS.sub(rb"end\1", text.data)
+        for data in (joined, _STATEMENTS.sub(b"\n", b" ".join(joined.split()))):
+            with suppress(FormatError):
+                return _read_text(replace(text, data=data))
+        raise
 
 
 def _promised(data: bytes) -> int:
@@ -64,21 +81,45 @@ def _read_binary(source: Source) -> RawMesh:
         message = f"the header promises 0 triangles, but data for {held} follow."
         raise source.error(message, offset=_HEADER)
     records = np.frombuffer(data, _RECORD, count, _HEADER)
+    extra = len(data) - _HEADER - count * _RECORD.itemsize
+    starts = _starts_by_lengths(data, records["attribute"]) if extra else None
+    if starts is not None:
+        rows = b"".join(data[start : start + _RECORD.itemsize] for start in starts)
+        records, extra = np.frombuffer(rows, _RECORD), 0
     with np.errstate(invalid="ignore"):  # NaN, which the next line refuses
         corners = records["corners"].reshape(-1, 3).astype(np.float64)
-    _check_finite(source, corners)
-    extra = len(data) - _HEADER - count * _RECORD.itemsize
+    _check_finite(source, corners, starts)
     title, mark, _ = data[: _HEADER - 4].partition(_COLOR)
     name = title.split(b"\0")[0].strip().decode("latin-1")
-    coloured = ("colours",) if mark or records["attribute"].any() else ()
-    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=coloured)
+    is_coloured = bool(mark) or (starts is None and bool(records["attribute"].any()))
+    dropped = ("colours",) * is_coloured + ("attribute bytes",) * (starts is not None)
+    return replace(_joined(corners, name, _extra_bytes(extra)), dropped=dropped)
 
 
-def _check_finite(source: Source, corners: FloatArray) -> None:
+def _starts_by_lengths(data: bytes, attributes: Values) -> list[int] | None:
+    """Return where triangles begin if so many attribute bytes follow each as it says.
+
+    So the format wants it. Most programs write a colour there instead, and no bytes: it is taken
+    for a length if the triangles use up the file by it, exactly.
+    """
+    named = np.flatnonzero(attributes)
+    if not len(named):
+        return None
+    # Up to the first that names bytes, both readings are the same.
+    starts = [_HEADER + _RECORD.itemsize * k for k in range(int(named[0]))]
+    at = _HEADER + _RECORD.itemsize * len(starts)
+    while len(starts) < len(attributes) and at + _RECORD.itemsize <= len(data):
+        starts.append(at)
+        at += _RECORD.itemsize
+        at += int.from_bytes(data[at - 2 : at], "little")
+    return starts if len(starts) == len(attributes) and at == len(data) else None
+
+
+def _check_finite(source: Source, corners: FloatArray, starts: list[int] | None) -> None:
     finite = np.isfinite(corners)
     if not finite.all():
         triangle = int(np.flatnonzero(~finite)[0]) // 9
-        offset = _HEADER + triangle * _RECORD.itemsize
+        offset = _HEADER + triangle * _RECORD.itemsize if starts is None else starts[triangle]
         message = f"triangle {triangle} has a coordinate that is not a finite number."
         raise source.error(message, "non_finite", offset=offset)
 

@@ -116,6 +116,64 @@ def test_refused_models(tmp_path: Path, old: str, new: str, code: str) -> None:
     refusal(path, path.read_bytes(), code)
 
 
+MATERIALS = 'xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02"'
+
+
+# Found: what was wrong with an element was told twice, at line 1 and as a fault of its encoding.
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("<vertices>", "<vertices><vertex x='0' y='0'/>", "“z” is missing"),
+        ("<vertices>", "<vertices><vertex x='0' y='0' z='a'/>", "“vertex” is not valid"),
+        ("<triangles>", "<triangles><triangle v1='0' v2='1'/>", "“v3” is missing"),
+        ("<object id", "<m:colorgroup id='9'><m:color/></m:colorgroup><object id", "“color” is"),
+        ("<object id", "<m:colorgroup/><object id", "“id” is missing"),
+        ("<object id", "<m:texture2dgroup id='9'/><object id", "“texid” is missing"),
+        ("<object id", "<m:tex2coord u='0' v='0'/><object id", "“tex2coord” is not valid"),
+        ("<object id", "<object/><object id", "“id” is missing"),
+        ("<item ", "<item/><item ", "“objectid” is missing"),
+        ("<item ", "<<item ", "not well-formed"),
+    ],
+)
+def test_faults_of_elements_keep_their_line(tmp_path: Path, old: str, new: str, told: str) -> None:
+    xml = model(CUBE, ITEM, MATERIALS)
+    head, tail = xml.split(old, 1)
+    head = head.replace("><", ">\n<")
+    path = package(tmp_path / "x.3mf", head + new.removesuffix(old) + old + tail)
+    message = refusal(path, path.read_bytes(), "syntax")
+    assert message.startswith(f"{path}/3D/3dmodel.model:{head.count(chr(10)) + 1}: ")
+    assert message.count("3dmodel.model") == 1 and told in message
+
+
+@pytest.mark.parametrize("document", ["<!DOCTYPE model>", "<?xml version='1.0' encoding='x'?>"])
+def test_documents_that_are_refused_keep_their_line(tmp_path: Path, document: str) -> None:
+    path = package(tmp_path / "x.3mf", document + model(CUBE, ITEM))
+    message = refusal(path, path.read_bytes(), "syntax")
+    assert message.startswith(f"{path}/3D/3dmodel.model:1: ")
+    assert message.count("3dmodel.model") == 1
+
+
+# Found: a colour that does not exist was told as damage of the archive.
+@pytest.mark.parametrize(
+    "group",
+    [
+        '<m:colorgroup id="5"><m:color color="#FF0000"/></m:colorgroup>',
+        '<basematerials id="5"><base name="a" displaycolor="#FF0000"/></basematerials>',
+        '<m:texture2d id="6" path="/a.png" contenttype="image/png"/>'
+        '<m:texture2dgroup id="5" texid="6"><m:tex2coord u="0" v="0"/></m:texture2dgroup>',
+        '<m:texture2dgroup id="5" texid="7"><m:tex2coord u="0" v="0"/></m:texture2dgroup>',
+    ],
+)
+@pytest.mark.parametrize("place", ["triangle", "object"])
+def test_properties_that_do_not_exist(tmp_path: Path, group: str, place: str) -> None:
+    cube = CUBE.replace("<object ", '<object pid="5" pindex="1" ')
+    if place == "triangle":
+        cube = CUBE.replace("<triangle ", '<triangle pid="5" p1="1" ', 1)
+    path = package(tmp_path / "x.3mf", model(group + cube, ITEM, MATERIALS))
+    message = refusal(path, path.read_bytes(), "index_out_of_range")
+    assert "object 1 in 3D/3dmodel.model: " in message and "damaged" not in message
+
+
 def test_objects_that_contain_each_other(tmp_path: Path) -> None:
     loop = '<object id="1"><components><component objectid="1"/></components></object>'
     path = package(tmp_path / "loop.3mf", model(loop, ITEM))

@@ -4,17 +4,19 @@ import csv
 import dataclasses
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 import pytest
 
+import bspcsg as b
+from bspcsg import bsp
 from bspcsg.errors import FormatError
 from bspcsg.formats.atomic import write_file
 from bspcsg.formats.registry import MAKERS
-from bspcsg.io import FORMATS, RawMesh, read, write
+from bspcsg.io import FORMATS, RawMesh, decoded, read, write
 from bspcsg.mesh.weld import welded
 from support import DEEP, draw
 from support.io import cube_mesh
@@ -46,6 +48,65 @@ def test_empty_and_missing_files(tmp_path: Path, suffix: str) -> None:
     with pytest.raises(FormatError) as caught:
         read(path)
     assert caught.value.code == "empty_file"
+
+
+POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:%s\nsize 4213\n" % (b"0f" * 32)
+
+
+def refused_pointer(call: Callable[[], object], name: object) -> None:
+    with pytest.raises(FormatError) as caught:
+        call()
+    assert caught.value.code == "unreadable"
+    assert caught.value.message.startswith(f"{name}: this is a pointer of Git LFS")
+    assert "git lfs pull" in caught.value.message
+
+
+# Found: a pointer of Git LFS was told as a mesh cut off, or as an OBJ without vertices.
+@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.parametrize(
+    "data", [POINTER, POINTER.replace(b"\n", b"\r\n"), POINTER.replace(b"git-lfs", b"hawser")]
+)
+def test_pointers_of_git_lfs_are_named(tmp_path: Path, suffix: str, data: bytes) -> None:
+    path = tmp_path / f"x{suffix}"
+    path.write_bytes(data)
+    refused_pointer(lambda: read(path), path)
+    refused_pointer(lambda: decoded("-", data, suffix), "-")
+
+
+@pytest.mark.parametrize(
+    ("name", "load"),
+    [
+        ("x.csg", b.load),
+        ("x.svg", bsp.load_svg),
+        ("x.dxf", bsp.load_dxf),
+        ("x.json", bsp.PartitionTree.load),
+        ("x.3mf", b.Assembly.load),
+        ("x.glb", b.Assembly.load),
+        ("x.obj", b.Assembly.load),
+    ],
+)
+def test_pointers_in_place_of_scripts_and_drawings(
+    tmp_path: Path, name: str, load: Callable[[Path], object]
+) -> None:
+    path = tmp_path / name
+    path.write_bytes(POINTER)
+    refused_pointer(lambda: load(path), path)
+
+
+def test_materials_that_are_pointers_are_told(tmp_path: Path) -> None:
+    text = "mtllib x.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"
+    (tmp_path / "x.obj").write_text(text)
+    (tmp_path / "x.mtl").write_bytes(POINTER)
+    (told,) = read(tmp_path / "x.obj").passed_by
+    assert "x.mtl" in told
+
+
+def test_what_begins_as_a_pointer_does_may_be_a_mesh(tmp_path: Path) -> None:
+    write(cube_mesh(), tmp_path / "x.stl")
+    data = (tmp_path / "x.stl").read_bytes()
+    head = POINTER[: len(POINTER) // 2].ljust(80)[:80]
+    data = head + data[80:84] + data[84:] + bytes(1000)
+    assert len(decoded("x.stl", data, ".stl").faces) == 12
 
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply", "off", "3mf"])

@@ -12,7 +12,7 @@ import trimesh
 import bspcsg as b
 from bspcsg.errors import FormatError
 from bspcsg.io import RawMesh, read, write
-from support.io import cube_mesh, refusal, same_mesh
+from support.io import cube_mesh, read_text, refusal, same_mesh
 from support.shapes import cube, icosphere, joined, moved
 
 Edit = Callable[[dict[str, Any]], Any]
@@ -281,6 +281,49 @@ def test_strips_and_fans_of_two_vertices_have_no_triangle(tmp_path: Path, mode: 
     tree["meshes"][0]["primitives"].append(primitive | {"indices": 2, "mode": mode})
     path.write_bytes(closed(tree, rest))
     assert len(read(path).faces) == 12
+
+
+# Found: the refusal of packed data did not say how to unpack it, which the manual does.
+@pytest.mark.parametrize("name", ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "X_y"])
+def test_packed_data_are_refused_with_the_way_out(tmp_path: Path, name: str) -> None:
+    def required(tree: dict[str, Any]) -> None:
+        tree["extensionsUsed"] = tree["extensionsRequired"] = [name]
+
+    def used(tree: dict[str, Any]) -> None:
+        tree["extensionsUsed"] = [name]
+        del tree["accessors"][1]["bufferView"]
+
+    path = tmp_path / "x.glb"
+    for edit in (required, used):
+        message = refusal(path, edited(path, edit), "unsupported")
+        assert message.endswith("“gltf-transform copy in.glb out.glb” unpacks it.") == (
+            name != "X_y"
+        )
+
+
+# Found: one primitive without positions made the whole file "not valid".
+@pytest.mark.parametrize(
+    "bare",
+    [
+        {"attributes": {}},
+        {"attributes": {"NORMAL": 0}},
+        {"attributes": {"NORMAL": 0}, "indices": 1},
+        {"attributes": {}, "mode": 0},
+        {"attributes": {}, "indices": 99, "material": 9},
+        {"attributes": {"COLOR_0": 0}, "extensions": {"KHR_draco_mesh_compression": {}}},
+    ],
+)
+@pytest.mark.parametrize("at", [0, 1])
+def test_primitives_without_positions_are_told(
+    tmp_path: Path, bare: dict[str, Any], at: int
+) -> None:
+    def edit(tree: dict[str, Any]) -> None:
+        tree["meshes"][0]["primitives"].insert(at, bare)
+
+    path = tmp_path / "x.glb"
+    raw = read_text(path, edited(path, edit))
+    assert len(raw.faces) == 12
+    assert raw.passed_by == ("1 primitives without positions were ignored.",)
 
 
 # Found: GLB lost objects that share a name.

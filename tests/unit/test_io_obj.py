@@ -51,6 +51,27 @@ def test_names_may_end_in_a_backslash(tmp_path: Path, line: str, name: str) -> N
     assert (raw.name, len(raw.vertices)) == (name, 4)
 
 
+# Found: groups whose names end so took a vertex, a face or a material with them.
+@pytest.mark.parametrize("word", ["g", "o", "usemtl", "mtllib", "usemap", "shadow_obj"])
+@pytest.mark.parametrize("name", ["part\\", "one two\\", "part \\", "part\\\n# a comment"])
+@pytest.mark.parametrize("second", ["v 9 9 9", "f 1 2 3", "vn 0 0 1", "l 1 2"])
+def test_names_that_end_in_a_backslash_take_no_statement(
+    tmp_path: Path, word: str, name: str, second: str
+) -> None:
+    text = f"{SQUARE}{{}}{second}\nf -4 -3 -2\n"
+    wanted = read_text(tmp_path / "x.obj", text.format(""))
+    raw = read_text(tmp_path / "x.obj", text.format(f"{word} {name}\n"))
+    same_mesh(raw, wanted)
+    assert raw.dropped == wanted.dropped
+
+
+def test_groups_that_go_on_and_names_at_the_end(tmp_path: Path) -> None:
+    text = f"g a \\\nb\\\nc\n{SQUARE}f 1 2 3\ng last\\"
+    raw = read_text(tmp_path / "x.obj", text)
+    assert (raw.vertices.shape, raw.faces.tolist()) == ((4, 3), [[0, 1, 2]])
+    refusal(tmp_path / "x.obj", f"{SQUARE}f 1 2 3\\", "truncated")
+
+
 def test_negative_references_count_from_where_they_stand(tmp_path: Path) -> None:
     triangle = "v {0} 0 0\nv {0} 1 0\nv {0} 0 1\nf -3 -2 -1\n"
     raw = read_text(tmp_path / "x.obj", triangle.format(0) + triangle.format(1))

@@ -131,8 +131,8 @@ def test_truncated_text(tmp_path: Path) -> None:
         ("property list uchar int", "property list float int", "syntax"),
         ("property list uchar int", "property list uchar float", "syntax"),
         ("vertex_index", "corners", "syntax"),
-        ("element face", "element tristrips", "syntax"),
-        ("comment by hand", "remark by hand", "syntax"),
+        ("element face", "element polygons", "syntax"),
+        ("comment by hand", "coment by hand", "syntax"),
         ("ply\n", "plx\n", "syntax"),
     ],
 )

@@ -175,3 +175,59 @@ def test_names_of_solids_that_are_no_utf_8_stay_apart(tmp_path: Path) -> None:
     two = b"".join(one.replace(b"cube", name) for name in (b"\xe4", b"\xf6"))
     raw = read_text(tmp_path / "y.stl", two)
     assert raw.objects == (("ä", 12), ("ö", 12))
+
+
+def with_bytes(sizes: list[int], said: list[int] | None = None) -> bytes:
+    """Return a binary cube with attribute bytes behind its triangles, and what is said of them."""
+    plain = binary_stl(cube_corners())
+    rows = [plain[84 + 50 * k : 132 + 50 * k] for k in range(12)]
+    counts = sizes if said is None else said
+    told = [struct.pack("<H", count) for count in counts]
+    parts = (row + count + b"x" * size for row, count, size in zip(rows, told, sizes, strict=True))
+    return plain[:84] + b"".join(parts)
+
+
+# Found: triangles that attribute bytes follow, as the format has it, were read at wrong places.
+@pytest.mark.parametrize(
+    "sizes",
+    [
+        [2] * 12,
+        [7] * 12,
+        [50] * 12,
+        [10] + [0] * 11,
+        [0] * 11 + [10],
+        [0] * 5 + [50] + [0] * 6,
+        [*range(12)],
+        [*range(12, 0, -1)],
+        [65535] + [0] * 11,
+        [0, 1] * 6,
+    ],
+)
+def test_attribute_bytes(tmp_path: Path, sizes: list[int]) -> None:
+    raw = read_text(tmp_path / "cube.stl", with_bytes(sizes))
+    same_mesh(raw, cube_mesh())
+    assert (raw.findings, raw.dropped) == ((), ("attribute bytes",))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "said"),
+    [
+        ([0] * 11 + [7], [31] * 12),
+        ([0] * 11 + [7], [0] * 11 + [6]),
+        ([0] * 11 + [7], [0] * 11 + [8]),
+        ([0] * 12, [31] * 12),
+    ],
+)
+def test_colours_are_no_lengths(tmp_path: Path, sizes: list[int], said: list[int]) -> None:
+    raw = read_text(tmp_path / "cube.stl", with_bytes(sizes, said))
+    same_mesh(raw, cube_mesh())
+    assert raw.dropped == ("colours",)
+    assert [found.count for found in raw.findings] == [7] * any(sizes)
+
+
+def test_bad_numbers_behind_attribute_bytes_are_told_where_they_are(tmp_path: Path) -> None:
+    data = bytearray(with_bytes([3] * 12))
+    start = 84 + 53 * 7
+    data[start + 12 : start + 16] = struct.pack("<f", np.nan)
+    message = refusal(tmp_path / "cube.stl", bytes(data), "non_finite")
+    assert f"at byte {start}: triangle 7" in message

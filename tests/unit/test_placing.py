@@ -19,6 +19,7 @@ from bspcsg.formats.scene import SceneNode
 from bspcsg.formats.solids import solid_of
 from bspcsg.formats.threemf import scene as threemf
 from bspcsg.geometry import transform
+from support.shapes import cube
 
 SCENES = {".glb": glb.encode, ".3mf": threemf.encode}
 
@@ -241,3 +242,35 @@ def test_what_a_map_lays_on_each_other_is_told_at_once() -> None:
 def test_maps_that_round_nothing(linear: np.ndarray, shift: tuple[float, ...], exact: bool) -> None:
     points = np.random.default_rng(8).normal(size=(50, 3)).astype(np.float32).astype(np.float64)
     assert is_exact(points, linear, np.array(shift, dtype=np.float64)) == exact
+
+
+def with_flat(flat: list[tuple[int, int, int]]) -> RawMesh:
+    """Return a cube with a vertex within its first edge, and triangles without area."""
+    vertices, faces = cube()
+    start, end = vertices[faces[0, 0]], vertices[faces[0, 1]]
+    middle = (start + end) / 2
+    more = np.array([[faces[0, 0] if one == 0 else faces[0, 1] for one in row] for row in flat])
+    more[np.array(flat) == 2] = len(vertices)
+    return RawMesh(np.vstack([vertices, middle]), np.vstack([faces, more]))
+
+
+# Found: where a file's unit or place rounds, triangles without area were gone in silence.
+@pytest.mark.parametrize("flat", [[(0, 0, 1)], [(0, 2, 1)], [(0, 0, 0), (0, 2, 1), (1, 1, 0)]])
+@pytest.mark.parametrize("place", ["unit", "turned", "kept", "rescaled"])
+def test_triangles_without_area_are_kept_or_told(
+    flat: list[tuple[int, int, int]], place: str
+) -> None:
+    raw = with_flat(flat)
+    turned = np.array([[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]])
+    linear = {"unit": np.eye(3) * 25.4, "kept": np.eye(3) * 2}.get(place, turned)
+
+    def image(points: np.ndarray) -> np.ndarray:
+        return points @ linear.T
+
+    keeps = is_exact(raw.vertices, linear, np.zeros(3))
+    pieces = [PlacedMesh(raw, image, keeps, b"a"), PlacedMesh(raw, image, keeps, b"b")]
+    found = rescaled(raw, 25.4) if place == "rescaled" else placed(pieces)
+    told = sum(one.count for one in found.findings if one.code == "zero_area")
+    count = len(raw.faces) * (1 if place == "rescaled" else 2)
+    assert len(found.faces) + told == count
+    assert (told == 0) == (place == "kept")

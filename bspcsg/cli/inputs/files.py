@@ -359,9 +359,11 @@ def stream_text() -> str:
     Raises
     ------
     FormatError
-        If it is not UTF-8.
+        If it is not UTF-8, or a pointer of Git LFS.
     """
-    return _decoded(sys.stdin.buffer.read(), STREAM)
+    from ...formats.source import present
+
+    return _decoded(present(STREAM, sys.stdin.buffer.read()), STREAM)
 
 
 def _text_of(path: Path) -> str:

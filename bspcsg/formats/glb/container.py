@@ -28,6 +28,10 @@ _INSTANCES = "EXT_mesh_gpu_instancing"
 _READ = (_INSTANCES, "KHR_mesh_quantization")
 _LOOKS = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "KHR_lights_", "EXT_lights_")
 
+#: Extensions that pack data, and how to unpack them.
+_PACKINGS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
+_UNPACK = " “gltf-transform copy in.glb out.glb” unpacks it."
+
 #: Attributes of vertices that are not read, by the beginnings of their names.
 _ATTRIBUTES = {
     "TANGENT": "tangents",
@@ -135,7 +139,7 @@ class _Claims:
         for extension in self._tree.get("extensionsRequired", []):
             if extension not in _READ and not extension.startswith(_LOOKS):
                 message = f"the file needs the extension {extension}, which cannot be read here."
-                raise self._source.error(message, "unsupported")
+                raise self._source.error(message + _way_out(extension), "unsupported")
         for number, buffer in enumerate(self._tree.get("buffers", [])):
             if "uri" in buffer:
                 is_text = str(buffer["uri"]).startswith("data:")
@@ -194,8 +198,10 @@ class _Claims:
             return accessor
         if "sparse" not in accessor:
             # Extensions that compress leave it so, too.
+            used = self._tree.get("extensionsUsed", [])
+            packing = next((one for one in used if one in _PACKINGS), "")
             message = f"accessor {number} has no data that can be read here."
-            raise self._source.error(message, "unsupported")
+            raise self._source.error(message + _way_out(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
         if not 0 <= zeros <= self._held:
             # Nothing else bounds them.
@@ -229,6 +235,8 @@ class _Claims:
         times = self._times(node)
         for primitive in self._entry("meshes", node["mesh"])["primitives"]:
             mode = primitive.get("mode", TRIANGLES)
+            if _is_nowhere(primitive):
+                continue
             if "material" in primitive:
                 self._entry("materials", primitive["material"])
             for accessor in primitive["attributes"].values():
@@ -250,6 +258,11 @@ class _Claims:
         return int(counts.pop())
 
 
+def _way_out(extension: str) -> str:
+    """Return how to make one that can be read of a file that needs an extension, if known."""
+    return _UNPACK if extension in _PACKINGS else ""
+
+
 def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
     """Return the bytes of one element."""
     return np.dtype(COMPONENTS[told["componentType"]]).itemsize * ELEMENTS[shape or told["type"]]
@@ -259,6 +272,11 @@ def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
     """Return the accessors of the places at which a node shows its mesh, None if at its own."""
     told = node.get("extensions", {}).get(_INSTANCES)
     return None if told is None else dict(told["attributes"])
+
+
+def _is_nowhere(primitive: dict[str, Any]) -> bool:
+    """Say whether a primitive has no positions; glTF 2.0, 3.7.2.1: readers should skip it."""
+    return "POSITION" not in primitive["attributes"]
 
 
 def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
@@ -295,9 +313,13 @@ def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
 
 
 def _passed_by(tree: dict[str, Any]) -> tuple[Finding, ...]:
-    modes = [primitive.get("mode", TRIANGLES) for primitive in _primitives(tree)]
-    count = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
-    if not count:
-        return ()
-    message = f"{count} groups of points or lines were ignored."
-    return (Finding("ignored", "warning", message, (), count),)
+    primitives = _primitives(tree)
+    nowhere = [primitive for primitive in primitives if _is_nowhere(primitive)]
+    modes = [one.get("mode", TRIANGLES) for one in primitives if not _is_nowhere(one)]
+    lines = sum(mode not in (TRIANGLES, STRIP, FAN) for mode in modes)
+    told = ((lines, "groups of points or lines"), (len(nowhere), "primitives without positions"))
+    return tuple(
+        Finding("ignored", "warning", f"{count} {what} were ignored.", (), count)
+        for count, what in told
+        if count
+    )

@@ -14,13 +14,18 @@ from ...mesh.mesh import Mesh
 from ..blocks import OF_FILE, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
-from ..source import Source, quoted, whole
+from ..source import Source, integral, quoted
 from .columns import TYPES, attributes_of, columns_of, corners_of, lists_of, names_in
 from .header import Element, Header, Order, read_header
 from .lists import read_mixed, read_uniform
 
 #: Both names of the list are in use.
 _FACE_LISTS = ("vertex_indices", "vertex_index")
+
+#: The elements that list corners: polygons, or strips of triangles.
+_FACES, _STRIPS = "face", "tristrips"
+
+_Line: TypeAlias = tuple[int, list[bytes]]
 
 _LISTS_OF_VERTICES = "vertices with list properties cannot be read."
 
@@ -32,8 +37,26 @@ class _Found:
     vertices: FloatArray | None = None
     polygons: IndexPolygons | None = None
     polygon_error: Callable[[int, str, str], FormatError] | None = None
+    element: str = ""
     vertex_columns: dict[str, Values] = field(default_factory=dict)
     face_columns: dict[str, Values] = field(default_factory=dict)
+
+    def take(
+        self,
+        name: str,
+        polygons: IndexPolygons,
+        error_at: Callable[[int, str, str], FormatError],
+        columns: dict[str, Values],
+    ) -> None:
+        """Take in the lists of an element: strips become triangles, unless there are faces."""
+        has_faces = self.polygons is not None and len(self.polygons.counts) > 0
+        if name == _STRIPS and not has_faces:
+            triangles, owners = polygons.of_strips()
+            self.element, self.polygons, self.face_columns = name, triangles, {}
+            self.polygon_error = lambda k, text, code: error_at(int(owners[k]), text, code)
+        elif name == _FACES and (len(polygons.counts) or self.polygons is None):
+            self.element, self.polygons, self.face_columns = name, polygons, columns
+            self.polygon_error = error_at
 
 
 def read(source: Source) -> RawMesh:
@@ -55,12 +78,18 @@ def read(source: Source) -> RawMesh:
     if found.vertices is None:
         raise source.error("this PLY has no vertices with x, y and z.", line=header.lines)
     if found.polygons is None or found.polygon_error is None:
-        strips = any(element.name == "tristrips" for element in header.elements)
-        hint = " Its triangle strips cannot be read; save it with faces." if strips else ""
-        raise source.error(f"this PLY has no face lists.{hint}", line=header.lines)
+        raise source.error("this PLY has no face lists.", line=header.lines)
     faces, said = _said(found, found.polygons, found.vertices, found.polygon_error)
-    dropped = (*_more_than_a_shape(header, said), *found.polygons.dropped)
-    return RawMesh(found.vertices, faces, "", rest, dropped=dropped, attributes=said)
+    dropped = (*_more_than_a_shape(header, said, found.element), *found.polygons.dropped)
+    told = (*_no_statements(header), *rest)
+    return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=said)
+
+
+def _no_statements(header: Header) -> tuple[Finding, ...]:
+    if not header.unknown:
+        return ()
+    message = f"{len(header.unknown)} lines of the header are no statements, and were ignored."
+    return (Finding("ignored", "warning", message, header.unknown[:1], len(header.unknown)),)
 
 
 def _said(
@@ -93,12 +122,12 @@ def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
         taken.update(kind)
 
 
-def _more_than_a_shape(header: Header, said: Attributes | None) -> tuple[str, ...]:
+def _more_than_a_shape(header: Header, said: Attributes | None, faces: str) -> tuple[str, ...]:
     """Return which elements and properties say something besides the shape, and are not kept."""
     columns = names_in(said)
     told = [f"the picture “{name}”" for name in header.pictures]
     for element in header.elements:
-        shape = {"vertex": ("x", "y", "z"), "face": _FACE_LISTS}.get(element.name)
+        shape = {"vertex": ("x", "y", "z"), faces: _FACE_LISTS}.get(element.name)
         kept = (*(shape or ()), *columns.get(element.name, ()))
         names = [prop.name for prop in element.properties if shape and prop.name not in kept]
         if shape is None and element.number:
@@ -115,7 +144,8 @@ def _axes(element: Element) -> tuple[int, int, int] | None:
 
 def _face_column(source: Source, header: Header, element: Element) -> int | None:
     """Return which property lists the corners of a face, if this element has one."""
-    column = element.index(*_FACE_LISTS) if element.name == "face" else None
+    is_listing = element.name in (_FACES, _STRIPS)
+    column = element.index(*_FACE_LISTS) if is_listing else None
     if column is None or element.properties[column].count is None:
         return None
     if element.properties[column].item.kind == "f":
@@ -125,6 +155,41 @@ def _face_column(source: Source, header: Header, element: Element) -> int | None
 
 def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, ...]:
     lines = [line for line in source.text_lines() if line[0] > header.lines]
+    try:
+        return _read_lines(source, header, lines, found)
+    except FormatError:
+        spread = _spread(header, lines)
+        if spread is None:
+            raise
+        return _read_lines(source, header, spread, found)
+
+
+def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
+    """Return a line for each record if the file has their numbers, but on other lines."""
+    # Where there are as many lines as there should be, one of them is wrong.
+    if sum(element.number for element in header.elements) == len(lines):
+        return None
+    words = [(number, word) for number, line in lines for word in line]
+    found: list[_Line] = []
+    at = 0
+    for element in header.elements:
+        for _ in range(element.number):
+            start = at
+            try:
+                for prop in element.properties:
+                    at += 1 if prop.count is None else 1 + max(integral(words[at][1]), 0)
+            except (ValueError, IndexError):
+                return None
+            row = words[start:at]
+            if not row or at > len(words):
+                return None
+            found.append((row[0][0], [word for _, word in row]))
+    return found if at == len(words) else None
+
+
+def _read_lines(
+    source: Source, header: Header, lines: list[_Line], found: _Found
+) -> tuple[Finding, ...]:
     start = 0
     for element in header.elements:
         block = lines[start : start + element.number]
@@ -146,7 +211,7 @@ def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, 
 
 def _text_vertices(
     source: Source,
-    block: list[tuple[int, list[bytes]]],
+    block: list[_Line],
     element: Element,
     axes: tuple[int, int, int],
 ) -> FloatArray:
@@ -164,20 +229,23 @@ def _text_vertices(
 
 def _text_faces(
     source: Source,
-    block: list[tuple[int, list[bytes]]],
+    block: list[_Line],
     element: Element,
     column: int,
     found: _Found,
 ) -> None:
     lists = [_text_list(source, number, words, element, column) for number, words in block]
-    found.polygons = IndexPolygons.from_lists(lists)
-    found.face_columns = _text_face_columns(source, block, element, column)
-    found.polygon_error = lambda k, message, code: source.error(message, code, line=block[k][0])
+    found.take(
+        element.name,
+        IndexPolygons.from_lists(lists),
+        lambda k, message, code: source.error(message, code, line=block[k][0]),
+        _text_face_columns(source, block, element, column),
+    )
 
 
 def _text_columns(
     source: Source,
-    block: list[tuple[int, list[bytes]]],
+    block: list[_Line],
     element: Element,
     known: tuple[int, ...],
 ) -> dict[str, Values]:
@@ -190,7 +258,7 @@ def _text_columns(
 
 
 def _text_face_columns(
-    source: Source, block: list[tuple[int, list[bytes]]], element: Element, column: int
+    source: Source, block: list[_Line], element: Element, column: int
 ) -> dict[str, Values]:
     """Return the other columns of faces, if every list is as long as in the first line."""
     rows = [_split(words, element) for _, words in block]
@@ -209,7 +277,7 @@ def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
     """Return the words of each property of a line that was checked."""
     at, found = 0, []
     for prop in element.properties:
-        length = 1 if prop.count is None else whole(words[at])
+        length = 1 if prop.count is None else integral(words[at])
         at += prop.count is not None
         found.append(words[at : at + length])
         at += length
@@ -218,12 +286,12 @@ def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
 
 def _text_numbers(
     source: Source,
-    block: list[tuple[int, list[bytes]]],
+    block: list[_Line],
     words: list[bytes],
     kind: "np.dtype[np.generic]",
 ) -> Values:
     try:
-        numbers = [float(word) if kind.kind == "f" else whole(word) for word in words]
+        numbers = [float(word) if kind.kind == "f" else integral(word) for word in words]
         return np.array(numbers, dtype=kind)
     except (ValueError, OverflowError):
         message = f"the properties of these lines are no numbers of type {kind}."
@@ -237,7 +305,7 @@ def _text_list(
     at, wanted = 0, []
     try:
         for position, prop in enumerate(element.properties):
-            length = whole(words[at]) if prop.count is not None else 1
+            length = integral(words[at]) if prop.count is not None else 1
             at += prop.count is not None
             if length < 0 or at + length > len(words):
                 raise ValueError
@@ -253,7 +321,7 @@ def _text_list(
 
 
 def _index(word: bytes) -> int:
-    index = whole(word)
+    index = integral(word)
     if not -(2**63) <= index < 2**63:
         raise ValueError
     return index
@@ -276,8 +344,7 @@ def _read_binary(
             block = read_mixed(source, order, element, start, column)
         offset = block.end
         if block.polygons is not None:
-            found.polygons, found.polygon_error = block.polygons, block.error_at
-            found.face_columns = block.columns
+            found.take(element.name, block.polygons, block.error_at, block.columns)
     extra = len(source.data) - offset
     # A final line break is the habit of a text editor, not data.
     return () if source.data[offset:].isspace() or not extra else _extra(extra, "bytes", (offset,))

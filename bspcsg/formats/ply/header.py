@@ -1,6 +1,7 @@
 """The header of a PLY file: which elements follow, how many, and with which properties."""
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -27,6 +28,11 @@ _FORMS: dict[str, Order | None] = {
     "binary_little_endian": "<",
     "binary_big_endian": ">",
 }
+
+
+#: The words that begin a line; a misspelt one says more of the data than a comment does.
+_KEYS = ("ply", "format", "element", "property", "end_header", "comment", "obj_info")
+_ALIKE = 0.7
 
 
 @dataclass(frozen=True)
@@ -73,6 +79,8 @@ class Header:
         Lines before the data.
     pictures : tuple of str
         The files of pictures that programs name in comments.
+    unknown : tuple of int
+        Lines that are no statements, which are taken for comments.
     """
 
     order: Order | None
@@ -80,6 +88,7 @@ class Header:
     end: int
     lines: int
     pictures: tuple[str, ...] = ()
+    unknown: tuple[int, ...] = ()
 
 
 def read_header(source: Source) -> Header:
@@ -93,6 +102,7 @@ def read_header(source: Source) -> Header:
     form: str | None = None
     elements: list[Element] = []
     pictures: list[str] = []
+    unknown: list[int] = []
     end = number = 0
     while True:
         line, end = _line(source, end, number)
@@ -100,7 +110,7 @@ def read_header(source: Source) -> Header:
         words = line.decode("latin-1").split()
         key = words[0] if words else "comment"
         if number == 1:
-            if key != "ply":
+            if key.lower() != "ply":
                 raise source.error(f"this is no PLY: it begins with {quoted(line)}.", line=1)
         elif key == "end_header":
             break
@@ -112,12 +122,16 @@ def read_header(source: Source) -> Header:
             elements[-1].properties.append(_property(source, number, words))
         elif words[1:2] == ["TextureFile"]:
             pictures.append(" ".join(words[2:]))
-        elif key not in ("comment", "obj_info"):
+        elif key in ("comment", "obj_info"):
+            continue
+        elif get_close_matches(key.lower(), _KEYS, cutoff=_ALIKE):
             raise source.error(f"expected a header line, found {quoted(line)}.", line=number)
+        else:
+            unknown.append(number)
     if form is None or form not in _FORMS:
         named = quoted((form or "").encode("latin-1"))
         raise source.error(f"the header names no known form, but {named}.", line=number)
-    return Header(_FORMS[form], elements, end, number, tuple(pictures))
+    return Header(_FORMS[form], elements, end, number, tuple(pictures), tuple(unknown))
 
 
 def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:

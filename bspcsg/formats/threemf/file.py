@@ -1,5 +1,6 @@
 """3MF, reading: build items with their components and transforms, in millimetres."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -14,6 +15,7 @@ from ..source import Source
 from .objects import Objects
 from .package import Package, opened
 from .part import MILLIMETRES, ModelPart
+from .slicers import NEGATIVE, Slicing, settled
 
 #: Most triangles that a build may have.
 _MOST_TRIANGLES = 1 << 27
@@ -38,9 +40,11 @@ def read(source: Source) -> RawMesh:
 def _assembled(package: Package, root: str) -> RawMesh:
     """Return the mesh of all build items."""
     part, objects = package.part(root), Objects(package)
+    slicing = settled(package, root)
     pieces, findings = [], list(_unit_finding(part))
     unit = np.eye(4, 3) * MILLIMETRES[part.unit]
-    beams = skipped = hollow = triangles = 0
+    beams = hollow = triangles = 0
+    skipped: Counter[str] = Counter()
     built = objects.placed(root, part.items)
     for path, item, transforms in built:
         known = package.part(path).objects[item]
@@ -49,7 +53,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
             hollow += 1
             continue
         if known.kind != "model":
-            skipped += 1
+            skipped[known.kind] += 1
             continue
         mesh = objects.mesh(path, item)
         triangles += len(mesh.faces)
@@ -58,9 +62,11 @@ def _assembled(package: Package, root: str) -> RawMesh:
         pieces.append(_moved(mesh, (*transforms, unit)))
     findings += _other_units(package, part.unit)
     findings += _ignored(beams, "beams")
-    findings += _ignored(skipped, "objects that are support or surface")
+    for kind, count in skipped.items():
+        findings += _ignored(count, f"objects of the type “{kind}”")
+    findings += [*slicing.findings, *_left_out(slicing, objects.unmade)]
     findings += _ignored(hollow, "objects without triangles")
-    reached = {(path, item) for path, item, _ in built} | objects.used()
+    reached = {(path, item) for path, item, _ in built} | objects.used() | slicing.inner
     findings += _ignored(len(_bodies(package) - reached), "objects outside the build")
     mesh = placed(pieces) if triangles or not objects.used() else empty_set()
     dropped = sorted(set().union(*(part.dropped for part in package.parts.values())))
@@ -129,6 +135,23 @@ def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
     told = ", ".join(f"{path} ({package.parts[path].unit})" for path in others)
     message = f"the unit of the model, {unit}, was taken for parts in other units: {told}."
     return (Finding("unit", "warning", message, (), len(others)),)
+
+
+def _left_out(slicing: Slicing, unmade: list[str]) -> list[Finding]:
+    """Return what is to be told of the parts of objects that slicers call no material."""
+    found: list[Finding] = []
+    for kind, count in slicing.counts.items():
+        if kind != NEGATIVE:
+            found += _ignored(count, f"{kind} of a slicer, which are no material,")
+        elif slicing.shapes > len(unmade):
+            message = f"{count} {kind} of a slicer were taken away from the parts of their objects."
+            found.append(Finding("negative_volumes", "note", message, (), count))
+        elif not unmade and not slicing.unmade:
+            unmade = ["there is nothing to take them away from."]
+    for reason in (*slicing.unmade, *unmade):
+        message = f"{NEGATIVE} of a slicer were ignored, as they could not be taken away: {reason}"
+        found.append(Finding("ignored", "warning", message, (), 1))
+    return found
 
 
 def _ignored(count: int, what: str) -> tuple[Finding, ...]:

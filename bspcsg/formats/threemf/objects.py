@@ -37,12 +37,19 @@ class Objects:
     Parameters
     ----------
     package : Package
+
+    Attributes
+    ----------
+    unmade : list of str
+        Why optional shapes could not be made.
     """
 
     def __init__(self, package: Package) -> None:
         self._package = package
         self._meshes: dict[tuple[str, str], RawMesh] = {}
         self._solids: dict[tuple[str, str], tuple[Solid, int]] = {}
+        self._bases: set[tuple[str, str]] = set()
+        self.unmade: list[str] = []
 
     def placed(
         self, root: str, items: list[PlacedObject]
@@ -89,15 +96,16 @@ class Objects:
         """
         if (path, item) not in self._meshes:
             known = self._package.part(path).objects[item]
-            made = (
-                self._written(path, known) if known.shape is None else self._evaluated(path, item)
-            )
+            make = self._written if known.shape is None else self._evaluated
+            if known.shape is not None and known.shape.is_optional:
+                make = self._attempted
+            made = make(path, item)
             self._meshes[path, item] = replace(made, name=known.name)
         return self._meshes[path, item]
 
     def used(self) -> set[tuple[str, str]]:
         """Return part and number of the objects that boolean shapes were made of."""
-        return set(self._solids)
+        return {*self._solids, *self._bases}
 
     def _named(self, here: str, placed: PlacedObject) -> tuple[str, Object]:
         """Return an object that a part names, and the part that holds it."""
@@ -112,11 +120,27 @@ class Objects:
         message = "the objects contain each other too often."
         return self._package.source.error(message, "too_large")
 
-    def _written(self, path: str, known: Object) -> RawMesh:
-        vertices, faces = known.arrays()
+    def _written(self, path: str, item: str) -> RawMesh:
         part = self._package.part(path)
-        said = properties_of(part, known, faces, self._package.picture)
+        known = part.objects[item]
+        vertices, faces = known.arrays()
+        try:
+            said = properties_of(part, known, faces, self._package.picture)
+        except IndexError as error:
+            message = f"object {item} in {path}: {error}."
+            raise self._package.source.error(message, "index_out_of_range") from error
         return RawMesh(vertices, faces, attributes=said)
+
+    def _attempted(self, path: str, item: str) -> RawMesh:
+        """Return the mesh of a shape, or that of its base where it cannot be made."""
+        shape = held(self._package.part(path).objects[item].shape, "the shape")
+        try:
+            return self._evaluated(path, item)
+        except FormatError as error:
+            self.unmade.append(error.message)
+            base = shape.base.path or path
+            self._bases.add((base, shape.base.item))
+            return _moved(self.mesh(base, shape.base.item), shape.base.transform)
 
     def _evaluated(self, path: str, item: str) -> RawMesh:
         here = PlacedObject("", item, np.eye(4, 3))
@@ -173,3 +197,12 @@ class Objects:
             is_flat = isinstance(error, InvalidParameterError)
             code = "unsupported" if is_flat else error.code
             raise self._package.source.error(message, code) from error
+
+
+def _moved(mesh: RawMesh, matrix: FloatArray) -> RawMesh:
+    """Return a mesh under a transform, its outside still outside."""
+    faces, said = mesh.faces, mesh.attributes
+    if np.linalg.det(matrix[:3]) < 0:
+        faces, said = faces[:, ::-1], said and said.reordered([2, 1, 0])
+    vertices = mesh.vertices @ matrix[:3] + matrix[3]
+    return replace(mesh, vertices=vertices, faces=faces, attributes=said)

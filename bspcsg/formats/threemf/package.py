@@ -6,6 +6,7 @@ cannot grow without bound.
 
 import io
 import posixpath
+import re
 import zipfile
 import zlib
 from collections.abc import Iterator
@@ -13,7 +14,7 @@ from contextlib import contextmanager
 
 from ...errors import BspcsgError, FormatError
 from ..source import Source
-from .part import ModelPart, PartReader, parse_xml
+from .part import ModelPart, PartReader, Start, parse_xml
 from .write import NOTHING
 
 #: Parts in an archive: some 16 MB of its directory. The largest projects of slicers have hundreds.
@@ -74,7 +75,7 @@ class Package:
                 targets.append(_part_name(attributes.get("Target", "")))
 
         if "_rels/.rels" in self._archive.namelist():
-            parse_xml(*self._opened("_rels/.rels"), start)
+            self.parse("_rels/.rels", start)
         return targets[0] if targets else "3D/3dmodel.model"
 
     def is_empty_set(self, root: str) -> bool:
@@ -82,8 +83,16 @@ class Package:
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False
-        with self._archive.open(entry) as stream:
+        with _damage_told(self.source), self._archive.open(entry) as stream:
             return stream.read(len(NOTHING) + 1) == NOTHING
+
+    def named(self, pattern: re.Pattern[str]) -> list[str]:
+        """Return the parts whose names, in small letters, fit a pattern as a whole."""
+        return [name for name in self._entries if pattern.fullmatch(name)]
+
+    def parse(self, name: str, start: Start) -> None:
+        """Call `start` with the elements of a part."""
+        parse_xml(*self._opened(name), start)
 
     def part(self, name: str) -> ModelPart:
         """Return a part, parsed once."""
@@ -111,7 +120,7 @@ class Package:
 
     def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
         """Yield the bytes of a part, which may be others than the directory promises."""
-        with self._archive.open(entry) as stream:
+        with _damage_told(self.source), self._archive.open(entry) as stream:
             while chunk := stream.read(_CHUNK):
                 self._left -= len(chunk)
                 if self._left < 0:
@@ -128,7 +137,7 @@ class Package:
 
 @contextmanager
 def opened(source: Source) -> Iterator[Package]:
-    """Open a package, and tell of damage that shows while it is read.
+    """Open a package; damage is told where it shows, as its parts are read.
 
     Raises
     ------
@@ -138,9 +147,17 @@ def opened(source: Source) -> Iterator[Package]:
     if source.data.count(_ENTRY) > _MOST_PARTS:
         message = f"the archive has more than {_MOST_PARTS:,} parts."
         raise source.error(message, "too_large")
+    with _damage_told(source):
+        archive = zipfile.ZipFile(io.BytesIO(source.data))
+    with archive:
+        yield Package(source, archive)
+
+
+@contextmanager
+def _damage_told(source: Source) -> Iterator[None]:
+    """Tell of an archive that cannot be unpacked; what is said in it is no matter of this."""
     try:
-        with zipfile.ZipFile(io.BytesIO(source.data)) as archive:
-            yield Package(source, archive)
+        yield
     except BspcsgError:
         raise
     except _DAMAGES as error:

@@ -41,6 +41,14 @@ _READ = (
     "/trianglesets/",
 )
 
+#: The kinds of objects that Cura names in their metadata; none is material.
+_CURA = {
+    "cura:anti_overhang_mesh": "support blocker",
+    "cura:support_mesh": "support",
+    "cura:infill_mesh": "modifier",
+    "cura:cutting_mesh": "modifier",
+}
+
 #: Attributes of a triangle that has no properties.
 _BARE = 3
 
@@ -48,6 +56,9 @@ _BARE = 3
 Base: TypeAlias = tuple[str, tuple[int, ...]]
 
 Start: TypeAlias = Callable[[str, dict[str, str]], None]
+
+#: Takes what an element of metadata is named and what it says.
+Metadata: TypeAlias = Callable[[str, str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,11 +90,14 @@ class BooleanShape:
         It takes one operand after another.
     base : PlacedObject
     operands : list of PlacedObject
+    is_optional : bool
+        True if it is the base alone where it cannot be made.
     """
 
     operation: str
     base: PlacedObject
     operands: list[PlacedObject]
+    is_optional: bool = False
 
 
 @dataclass(eq=False)
@@ -130,7 +144,11 @@ class ModelPart:
 
 
 def parse_xml(
-    source: Source, chunks: Iterable[bytes], start: Start, spaces: dict[str, str] | None = None
+    source: Source,
+    chunks: Iterable[bytes],
+    start: Start,
+    spaces: dict[str, str] | None = None,
+    metadata: Metadata | None = None,
 ) -> None:
     """Call `start` with the name (without namespace) and attributes of each element.
 
@@ -146,6 +164,8 @@ def parse_xml(
     start : callable
     spaces : dict of str to str, optional
         Takes in the namespaces by their prefixes, each before the element that declares it.
+    metadata : callable, optional
+        Takes names and texts of metadata.
 
     Raises
     ------
@@ -166,8 +186,11 @@ def parse_xml(
         try:
             start(element, named)
         except (KeyError, ValueError, OverflowError) as error:
-            message = f"the element {quoted(element.encode())} is not valid: {error}."
+            reason = f"“{error.args[0]}” is missing" if isinstance(error, KeyError) else error
+            message = f"the element {quoted(element.encode())} is not valid: {reason}."
             raise source.error(message, line=parser.CurrentLineNumber) from None
+        if element == "metadata" and metadata is not None:
+            _listen(parser, named.get("name", ""), metadata)
 
     def refuse(*_: object) -> None:
         raise source.error("document types are not allowed here.", line=parser.CurrentLineNumber)
@@ -186,8 +209,22 @@ def parse_xml(
     except expat.ExpatError as error:
         message = f"the XML is not well-formed: {expat.ErrorString(error.code)}."
         raise source.error(message, line=error.lineno) from None
+    except FormatError:
+        raise
     except (LookupError, ValueError) as error:  # of the encoding: `begin` lets out none of its own
         raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
+
+
+def _listen(parser: expat.XMLParserType, name: str, metadata: Metadata) -> None:
+    """Take in the text of the element that has just begun; others are passed by unheard."""
+    words: list[str] = []
+
+    def end(_: str) -> None:
+        parser.CharacterDataHandler = parser.EndElementHandler = None
+        metadata(name, "".join(words))
+
+    parser.CharacterDataHandler = words.append
+    parser.EndElementHandler = end
 
 
 class PartReader:
@@ -223,7 +260,7 @@ class PartReader:
         FormatError
             If it is no valid XML or no valid model, or needs an extension that is not read here.
         """
-        parse_xml(self._source, self._chunks, self._start, self._spaces)
+        parse_xml(self._source, self._chunks, self._start, self._spaces, self._hear)
         for space in self._needs:
             if not any(word in space for word in _READ):
                 message = f"the model needs the extension {space}, which cannot be read here."
@@ -263,8 +300,16 @@ class PartReader:
             self._needs = [self._spaces[one] for one in prefixes if one in self._spaces]
         elif tag in ("booleanshape", "boolean"):
             self._combine(tag, attributes)
+        elif tag == "build":
+            # What follows is said of no object.
+            self._current = Object("none")
         else:
             self._note(tag, attributes)
+
+    def _hear(self, name: str, text: str) -> None:
+        """Take in metadata: Cura says by it which objects are no material."""
+        if name in _CURA and text.strip().lower() == "true":
+            self._current.kind = _CURA[name]
 
     def _combine(self, tag: str, attributes: dict[str, str]) -> None:
         """Take in a boolean shape or one of its operands."""

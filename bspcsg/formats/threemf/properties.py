@@ -41,7 +41,7 @@ def properties_of(
 
     Raises
     ------
-    ValueError
+    IndexError
         If a triangle names a property that does not exist.
     """
     if held.usual is None and not held.properties:
@@ -89,7 +89,7 @@ class _Reading:
     def _called(self, texture: str) -> str:
         """Return the name of a texture, by which no other material goes."""
         if texture not in self._part.textures:
-            raise ValueError(f"texture {texture} does not exist")
+            raise IndexError(f"texture {texture} does not exist")
         name = named_after(self._part.textures[texture])
         return name if self._taken[name] == 1 else f"{name} ({texture})"
 
@@ -139,7 +139,7 @@ def _pictured(data: bytes) -> Material:
 
 def _entry(group: list[_Entry], number: int) -> _Entry:
     if not 0 <= number < len(group):
-        raise ValueError(f"a triangle names property {number} of a group of {len(group)}")
+        raise IndexError(f"a triangle names property {number} of a group of {len(group)}")
     return group[number]
 
 

@@ -16,6 +16,7 @@ from ..source import Source
 from .objects import Objects
 from .package import Package, opened
 from .part import INSTANCE, MILLIMETRES, ModelPart, Object, PlacedObject
+from .slicers import settled
 from .textures import Resources
 from .write import beginning, called, hex_of, mesh_object, packed, properties
 
@@ -31,7 +32,9 @@ def read(source: Source) -> SceneNode:
         As for a mesh.
     """
     with opened(source) as package:
-        return _Reading(package, package.root()).tree()
+        root = package.root()
+        settled(package, root)
+        return _Reading(package, root).tree()
 
 
 class _Reading:

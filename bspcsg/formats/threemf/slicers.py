@@ -1,0 +1,205 @@
+"""Parts of objects that slicers call no material, or material that is taken away.
+
+PrusaSlicer and its kin write all volumes of an object as one mesh, and say in a part beside the
+model which triangles are which kind of volume. Bambu Studio and OrcaSlicer say it of components.
+Cura says it in the metadata of objects, which the reader of model parts takes in.
+"""
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ...errors import Finding, FormatError
+from .package import Package
+from .part import BooleanShape, ModelPart, Object, PlacedObject
+
+#: The parts in which slicers say it, in small letters.
+_SETTINGS = re.compile(r"metadata/(\w+_model|model_settings)\.config")
+
+#: What is taken away from the other parts of its object.
+NEGATIVE = "negative volumes"
+
+#: Kinds of parts by the words of slicers; those of material have no name.
+_KINDS = {
+    **dict.fromkeys(("ModelPart", "normal_part"), ""),
+    **dict.fromkeys(("NegativeVolume", "negative_part"), NEGATIVE),
+    **dict.fromkeys(("ParameterModifier", "modifier_part"), "modifiers"),
+    **dict.fromkeys(("SupportBlocker", "support_blocker"), "support blockers"),
+    **dict.fromkeys(("SupportEnforcer", "support_enforcer"), "support enforcers"),
+}
+
+
+@dataclass
+class Slicing:
+    """The parts of a package that are not what they seem.
+
+    Parameters
+    ----------
+    counts : Counter of str
+        The number of parts of each kind that is no material.
+    inner : set of (str, str)
+        Part and number of objects that are no bodies by themselves.
+    findings : list of Finding
+        The trouble with what slicers say.
+    shapes : int
+        The number of meshes from which others are to be taken away.
+    unmade : list of str
+        Why others are not.
+    """
+
+    counts: Counter[str] = field(default_factory=Counter)
+    inner: set[tuple[str, str]] = field(default_factory=set)
+    findings: list[Finding] = field(default_factory=list)
+    shapes: int = 0
+    unmade: list[str] = field(default_factory=list)
+
+
+@dataclass
+class _Said:
+    """What slicers say of objects by their numbers: of ranges of triangles, and of components."""
+
+    volumes: dict[str, list[tuple[int, int, dict[str, str]]]] = field(default_factory=dict)
+    components: dict[str, dict[str, str]] = field(default_factory=dict)
+    current: str = ""
+
+    def take(self, tag: str, attributes: dict[str, str]) -> None:
+        """Take in an element."""
+        if tag == "object":
+            self.current = attributes["id"]
+        elif tag == "volume":
+            first, last = int(attributes["firstid"]), int(attributes["lastid"])
+            self.volumes.setdefault(self.current, []).append((first, last, {}))
+        elif tag == "metadata" and attributes.get("type") == "volume":
+            for _, _, told in self.volumes.get(self.current, [])[-1:]:
+                told[attributes.get("key", "")] = attributes.get("value", "")
+        elif tag == "part":
+            kind = attributes.get("subtype", "normal_part")
+            self.components.setdefault(self.current, {})[attributes["id"]] = kind
+
+
+def settled(package: Package, root: str) -> Slicing:
+    """Change the objects of a package so that they are what slicers say of them.
+
+    What is no material is left out; what is taken away becomes part of a boolean shape.
+    """
+    slicing, part = Slicing(), package.part(root)
+    said = _said(package, slicing)
+    for item, volumes in said.volumes.items():
+        if item in part.objects:
+            _divide(slicing, root, part, item, volumes)
+    for item, kinds in said.components.items():
+        if item in part.objects:
+            _sort(slicing, package, root, item, kinds)
+    return slicing
+
+
+def _said(package: Package, slicing: Slicing) -> _Said:
+    said = _Said()
+    for name in package.named(_SETTINGS):
+        try:
+            package.parse(name, said.take)
+        except FormatError as error:
+            message = f"the settings of a slicer cannot be read: {error.message}"
+            slicing.findings.append(Finding("ignored", "warning", message, (), 1))
+    return said
+
+
+def _kind(slicing: Slicing, word: str) -> str:
+    """Return the kind that a slicer names by a word; what is not known is material."""
+    if word not in _KINDS:
+        message = f"a part of the kind “{word}”, which is not known here, was read as material."
+        slicing.findings.append(Finding("unknown_part", "warning", message, (), 1))
+    kind = _KINDS.get(word, "")
+    slicing.counts[kind] += bool(kind)
+    return kind
+
+
+def _divide(
+    slicing: Slicing,
+    root: str,
+    part: ModelPart,
+    item: str,
+    volumes: list[tuple[int, int, dict[str, str]]],
+) -> None:
+    """Leave the triangles of some volumes out of an object, and take away what some enclose."""
+    whole = part.objects[item]
+    is_body = np.ones(len(whole.triangles), dtype=bool)
+    negatives = []
+    for first, last, told in volumes:
+        usual = "ParameterModifier" if told.get("modifier") == "1" else "ModelPart"
+        kind = _kind(slicing, told.get("volume_type", usual))
+        rows = np.arange(max(first, 0), min(last + 1, len(is_body)))
+        if kind:
+            is_body[rows] = False
+        if kind == NEGATIVE and len(rows):
+            negatives.append(_taken(whole, rows.tolist()))
+    if is_body.all():
+        return
+    body = _taken(whole, np.flatnonzero(is_body).tolist())
+    part.objects[item] = body
+    if negatives and body.triangles:
+        base = _added(slicing, root, part, item, body)
+        operands = [_added(slicing, root, part, item, one) for one in negatives]
+        shape = BooleanShape("difference", base, operands, is_optional=True)
+        slicing.shapes += 1
+        part.objects[item] = replace(body, vertices=[], triangles=[], properties={}, shape=shape)
+
+
+def _sort(slicing: Slicing, package: Package, root: str, item: str, kinds: dict[str, str]) -> None:
+    """Leave some components out of an object, and take away what some enclose from the others."""
+    whole = package.part(root).objects[item]
+    kept, negatives = [], []
+    for one in whole.components:
+        kind = _kind(slicing, kinds.get(one.item, "normal_part"))
+        if not kind:
+            kept.append(one)
+            continue
+        slicing.inner.add((one.path or root, one.item))
+        negatives += [one] if kind == NEGATIVE else []
+    if negatives:
+        kept = [_lessened(slicing, package, root, item, one, negatives) for one in kept]
+    whole.components[:] = kept
+
+
+def _lessened(
+    slicing: Slicing,
+    package: Package,
+    root: str,
+    item: str,
+    one: PlacedObject,
+    negatives: list[PlacedObject],
+) -> PlacedObject:
+    """Return a component from which others are taken away."""
+    known = package.part(one.path or root).objects.get(one.item)
+    if known is None or not known.is_body:
+        slicing.unmade.append(f"object {one.item} is no mesh.")
+        return one
+    slicing.shapes += 1
+    shape = BooleanShape("difference", one, negatives, is_optional=True)
+    made = Object(known.kind, name=known.name, shape=shape)
+    return _added(slicing, root, package.part(root), item, made)
+
+
+def _added(slicing: Slicing, root: str, part: ModelPart, item: str, one: Object) -> PlacedObject:
+    """Add an object of a number that no other has, and return it in the place of another."""
+    number = len(part.objects)
+    while f"{item}.{number}" in part.objects:
+        number += 1
+    part.objects[f"{item}.{number}"] = one
+    slicing.inner.add((root, f"{item}.{number}"))
+    return PlacedObject("", f"{item}.{number}", np.eye(4, 3))
+
+
+def _taken(whole: Object, rows: list[int]) -> Object:
+    """Return some triangles of an object with the vertices that they use."""
+    triangles = [whole.triangles[row] for row in rows]
+    used = sorted({corner for triangle in triangles for corner in triangle})
+    numbers = {corner: number for number, corner in enumerate(used)}
+    faces = [(numbers[a], numbers[b], numbers[c]) for a, b, c in triangles]
+    properties = {
+        number: whole.properties[row] for number, row in enumerate(rows) if row in whole.properties
+    }
+    vertices = [whole.vertices[corner] for corner in used]
+    return replace(whole, vertices=vertices, triangles=faces, components=[], properties=properties)
