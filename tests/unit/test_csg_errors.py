@@ -31,12 +31,12 @@ from support.scripts import moved
         ("polygon(points = [[0, 0]], paths = [[0.5]]);", "whole numbers"),
         ("rotate_extrude() square(2, center = true);", "must not cross the axis"),
         ('linear_extrude(file = "../a.dxf");', "outside the script's folder"),
-        ("linear_extrude(height = 1, v = [1, 0, 1]) square(1);", "only v = [0, 0, 1]"),
+        ("linear_extrude(height = 1, v = [1, 0]) square(1);", "v must be 3 numbers"),
         ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
         ("text(text = 3);", "text must be a text"),
         ('text("a", size = "b");', "size must be a number"),
-        ("roof() square(1);", "roof() is not supported. Supported: circle color"),
+        ("sausage() square(1);", "sausage() is not supported. Supported: circle color"),
     ],
 )
 def test_errors_name_node_line_and_column(text: str, says: str) -> None:
