@@ -36,7 +36,7 @@ from support.scripts import moved
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
         ("text(text = 3);", "text must be a text"),
         ('text("a", size = "b");', "size must be a number"),
-        ("sausage() square(1);", "sausage() is not supported. Supported: circle color"),
+        ("tent() square(1);", "tent() is not supported. Supported: circle color"),
     ],
 )
 def test_errors_name_node_line_and_column(text: str, says: str) -> None:
@@ -113,7 +113,7 @@ def test_what_is_left_out_counts_as_openscads_empty_set(text: str, volume: float
 
 
 BAD_CHILDREN = [
-    "roof() square(1);",
+    "tent() square(1);",
     "polyhedron(points = [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], faces = [[0,1,2],[0,3,1],[1,3,2]]);",
     "polyhedron(points = [[0,0,0]], faces = [[0,1,2]]);",
     "rotate_extrude() square(2, center = true);",

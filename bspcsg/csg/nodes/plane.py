@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...bsp import Region
+from ...geometry.polygon import signed_area
 from ...modelling.planar.offsetting import cleaned, grown, refuse_far
 from ...shapes.sweep import unit_circle
 from ..making.tessellation import Fineness
@@ -79,6 +80,16 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
         return figure
     refuse_far(figure, delta)
     return grown(figure, delta, _join(is_round, arguments), sides)
+
+
+@node("fill")
+def fill(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Fill the holes of the children, and what is in these."""
+    figure = union_of(owner, run.figures(owner, children), run)
+    if not isinstance(figure, Region):
+        return None
+    outer = [loop for loop in figure.to_polygons() if signed_area(loop) > 0]
+    return Region(outer, pitch=figure.pitch) if outer else figure
 
 
 def _is_combined(owner: Node) -> bool:

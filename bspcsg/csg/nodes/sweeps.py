@@ -1,4 +1,4 @@
-"""Solids from plane figures: linear_extrude and rotate_extrude."""
+"""Solids from plane figures: linear_extrude, rotate_extrude and roof."""
 
 import math
 
@@ -6,6 +6,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
+from ...modelling.making import roofs
 from ...shapes.profile import extrude, least_segments
 from ...solid.solid import Solid
 from ..making.dividing import Stretch, divided
@@ -159,3 +160,28 @@ def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
     solid = right.revolve(angle=abs(angle), segments=segments)
     solid = solid.mirror((0, 1, 0)) if angle < 0 else solid
     return solid.rotate(start % 360) if start % 360 else solid
+
+
+@node("roof", takes=Signature(("method",)))
+def roof(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Build a roof over the children, all sides of which rise by 45 degrees.
+
+    Over figures without corners that point inwards both methods give the same; over others a roof
+    by "voronoi", which is curved there, is refused.
+    """
+    arguments = run.arguments(owner)
+    figure = union_of(owner, run.figures(owner, children), run)
+    if not isinstance(figure, Region):
+        return None
+    method = arguments.text("method", "voronoi")
+    if method not in ("voronoi", "straight"):
+        run.warn(
+            owner, f"its method “{method}” is none of voronoi, straight; it is voronoi instead"
+        )
+    if method != "straight" and not roofs.is_convex(figure):
+        message = (
+            "method “voronoi” is not supported where corners point inwards, for its roofs are"
+            " curved there; method “straight” is."
+        )
+        raise arguments.error(message, "unsupported")
+    return roofs.roof(figure)
