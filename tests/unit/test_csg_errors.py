@@ -145,6 +145,29 @@ def test_a_lenient_evaluation_repairs_what_it_is_told_to(tmp_path: Path) -> None
     assert solid.volume == pytest.approx(1 / 6)
 
 
+# Found: a polyhedron with open edges that lie on one line, and so bound nothing, was kept, where
+# OpenSCAD leaves it out.
+def test_a_lenient_evaluation_drops_polyhedra_whose_faces_do_not_close() -> None:
+    # A tetrahedron whose third edge is divided for one of its two faces only.
+    points = "[[0,0,0], [2,0,0], [0,2,0], [0,0,2], [1,0,0]]"
+    faces = "[[0,4,1,2], [0,3,1], [0,2,3], [1,3,2]]"
+    text = f"cube(9);\n  polyhedron({points}, {faces});"
+    assert csg.loads(f"polyhedron({points}, {faces});").volume == pytest.approx(8 / 6)
+    with pytest.warns(csg.CsgWarning) as told:
+        found = csg.loads(f"polyhedron({points}, {faces});", lenient=True)
+        assert csg.loads(text, name="part.csg", lenient=True).volume == 729
+    assert found.is_empty
+    assert str(told[-1].message).startswith(
+        "part.csg:2:3: polyhedron(): its faces do not close: 3 edges"
+    )
+    # Four faces at one edge are closed.
+    pair = b.cube(1) | b.cube(1).translate(1, 1, 0)
+    assert csg.loads(csg.dumps(pair, flat=True), lenient=True).equals(pair)
+    kept = csg.loads(f"polyhedron({points}, {faces});", lenient=True, on_invalid="repair")
+    assert kept.volume == pytest.approx(8 / 6)
+    assert csg.loads(f"hull() polyhedron({points}, {faces});", lenient=True).volume > 1
+
+
 def test_what_is_not_the_scripts_fault_is_never_dropped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

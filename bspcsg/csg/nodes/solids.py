@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..._types import IndexArray
 from ...geometry.polygon import triangulate_face
 from ...mesh.weld import welded
 from ...shapes.arrays import from_arrays
@@ -101,7 +102,23 @@ def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     vertices, same = welded(points)
     triangles = same[triangles]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    return run.closed_solid(owner, vertices, triangles[proper]) if proper.any() else Solid.empty()
+    if not proper.any():
+        return Solid.empty()
+    if run.lenient and run.on_invalid == "warn" and not run.in_hull:
+        # Open edges on one line may bound nothing together; OpenSCAD leaves out such, too.
+        count = _open_edges(triangles)
+        if count:
+            run.warn(owner, f"its faces do not close: {count} edges are open. It is left out.")
+            return Solid.empty()
+    return run.closed_solid(owner, vertices, triangles[proper])
+
+
+def _open_edges(triangles: IndexArray) -> int:
+    """Return how many edges are passed more often one way than the other."""
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    _, edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
+    turns = np.bincount(edge.ravel(), np.sign(ends[:, 1] - ends[:, 0]))
+    return int(np.count_nonzero(turns))
 
 
 def _triangles(points: np.ndarray, face: list[int]) -> np.ndarray:
