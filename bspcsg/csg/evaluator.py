@@ -90,8 +90,8 @@ def evaluate(
     -----
     CsgWarning
         For what is left out as OpenSCAD leaves it out: files that are not there, numbers that are
-        not finite, points that are missing, children of the other dimension, and what drawings
-        hold beside outlines.
+        not finite, points that are missing, children of the other dimension, what drawings hold
+        beside outlines, and arguments that a node does not know or that do not count beside others.
     """
     word(get_args(OnInvalid), on_invalid, "on_invalid")
     polishes, skips = truth_value(polish, "polish"), truth_value(lenient, "lenient")
@@ -194,6 +194,8 @@ class _Cache:
 
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the number of the node's geometry, made if it is new."""
+        # Another node like it passes over the same, at its own place.
+        self.run.tell_of_arguments(node)
         key = (node.name, node.arguments, children, is_part, self.run.in_hull)
         if key in self.numbers:
             return self.numbers[key]

@@ -54,6 +54,28 @@ def test_scad(folder: Path, capsys: Capture) -> None:
     assert b.load("x.3mf").volume_exact == 11
 
 
+# Found: a word that begins with a letter outside ASCII was refused.
+@pytest.mark.parametrize("word", ["ab", "ä", "Ärger", "é1", "größe", "a\u0308rger", "日本", "x-y"])
+def test_a_word_alone_is_a_text(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch, word: str
+) -> None:
+    Path("openscad").write_text('#!/bin/sh\necho "// $4" > "$3"\necho "cube(2);" >> "$3"\n'
+                                'echo "$4" > asked\n')  # fmt: skip
+    Path("openscad").chmod(0o755)
+    monkeypatch.setenv("PATH", os.pathsep.join([str(folder), os.environ["PATH"]]))
+    Path("part.scad").write_text('word = "x"; cube(2);')
+    code, _, err = ran(capsys, "run", "part.scad", "-o", "x.ply", "-D", f"word={word}")
+    assert (code, err) == (0, "")
+    assert Path("asked").read_text("utf-8").strip() == f'-Dword="{word}"'
+
+
+@pytest.mark.parametrize("text", ["-", "1a", "a b", "ä+b", "", "(ä)", "\u0308a"])
+def test_an_expression_is_no_word(folder: Path, capsys: Capture, text: str) -> None:
+    Path("part.scad").write_text("cube(2);")
+    code, _, err = ran(capsys, "run", "part.scad", "-o", "x.ply", "-D", f"word={text}")
+    assert code == 2 and "is no value" in err
+
+
 def test_openscad_that_is_missing_is_code_6(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -195,12 +217,12 @@ def test_refusals(
 
 
 def test_lenient_leaves_out_what_cannot_be_made(folder: Path, capsys: Capture) -> None:
-    Path("bad.csg").write_text(f'{OPEN}roof();\nimport("none.stl");\n')
+    Path("bad.csg").write_text(f'{OPEN}tent();\nimport("none.stl");\n')
     code, _, err = ran(capsys, "run", "bad.csg", "-o", "x.ply")
     assert code == 4 and "bad.csg:2:1: polyhedron()" in err
     code, _, err = ran(capsys, "run", "bad.csg", "-o", "x.ply", "--lenient")
     assert code == 0 and b.load("x.ply").volume == 1
-    for place in ("bad.csg:2:1: polyhedron()", "bad.csg:3:1: roof()", "bad.csg:4:1: import()"):
+    for place in ("bad.csg:2:1: polyhedron()", "bad.csg:3:1: tent()", "bad.csg:4:1: import()"):
         assert place in err, err
     assert err.count("is left out") == 3
     Path("a.py").write_text(PYTHON)

@@ -181,8 +181,8 @@ def test_scripts_from_a_stream(piped: Piped) -> None:
     arguments = ("run", "-", "-o", "-", "--to", "off", "-q")
     code, out, _ = piped(*arguments, given=b"cube(3);")
     assert code == 0 and volume_of(out, "off") == 27
-    code, _, err = piped(*arguments, given=b"cube(3);\n\n  roof();")
-    assert code == 3 and err.startswith(b"bspcsg: error: -:3:3: roof() is not supported. ")
+    code, _, err = piped(*arguments, given=b"cube(3);\n\n  tent();")
+    assert code == 3 and err.startswith(b"bspcsg: error: -:3:3: tent() is not supported. ")
     assert piped(*arguments, given=b"\xff")[0] == 3
 
 

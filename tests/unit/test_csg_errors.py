@@ -31,12 +31,12 @@ from support.scripts import moved
         ("polygon(points = [[0, 0]], paths = [[0.5]]);", "whole numbers"),
         ("rotate_extrude() square(2, center = true);", "must not cross the axis"),
         ('linear_extrude(file = "../a.dxf");', "outside the script's folder"),
-        ("linear_extrude(height = 1, v = [1, 0, 1]) square(1);", "only v = [0, 0, 1]"),
+        ("linear_extrude(height = 1, v = [1, 0]) square(1);", "v must be 3 numbers"),
         ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
         ("text(text = 3);", "text must be a text"),
         ('text("a", size = "b");', "size must be a number"),
-        ("roof() square(1);", "roof() is not supported. Supported: circle color"),
+        ("tent() square(1);", "tent() is not supported. Supported: circle color"),
     ],
 )
 def test_errors_name_node_line_and_column(text: str, says: str) -> None:
@@ -113,7 +113,7 @@ def test_what_is_left_out_counts_as_openscads_empty_set(text: str, volume: float
 
 
 BAD_CHILDREN = [
-    "roof() square(1);",
+    "tent() square(1);",
     "polyhedron(points = [[0,0,0],[1,0,0],[0,1,0],[0,0,1]], faces = [[0,1,2],[0,3,1],[1,3,2]]);",
     "polyhedron(points = [[0,0,0]], faces = [[0,1,2]]);",
     "rotate_extrude() square(2, center = true);",
@@ -143,6 +143,29 @@ def test_a_lenient_evaluation_repairs_what_it_is_told_to(tmp_path: Path) -> None
     with pytest.warns(csg.CsgWarning, match="It is repaired"):
         solid = csg.loads(BAD_CHILDREN[1], lenient=True, on_invalid="repair")
     assert solid.volume == pytest.approx(1 / 6)
+
+
+# Found: a polyhedron with open edges that lie on one line, and so bound nothing, was kept, where
+# OpenSCAD leaves it out.
+def test_a_lenient_evaluation_drops_polyhedra_whose_faces_do_not_close() -> None:
+    # A tetrahedron whose third edge is divided for one of its two faces only.
+    points = "[[0,0,0], [2,0,0], [0,2,0], [0,0,2], [1,0,0]]"
+    faces = "[[0,4,1,2], [0,3,1], [0,2,3], [1,3,2]]"
+    text = f"cube(9);\n  polyhedron({points}, {faces});"
+    assert csg.loads(f"polyhedron({points}, {faces});").volume == pytest.approx(8 / 6)
+    with pytest.warns(csg.CsgWarning) as told:
+        found = csg.loads(f"polyhedron({points}, {faces});", lenient=True)
+        assert csg.loads(text, name="part.csg", lenient=True).volume == 729
+    assert found.is_empty
+    assert str(told[-1].message).startswith(
+        "part.csg:2:3: polyhedron(): its faces do not close: 3 edges"
+    )
+    # Four faces at one edge are closed.
+    pair = b.cube(1) | b.cube(1).translate(1, 1, 0)
+    assert csg.loads(csg.dumps(pair, flat=True), lenient=True).equals(pair)
+    kept = csg.loads(f"polyhedron({points}, {faces});", lenient=True, on_invalid="repair")
+    assert kept.volume == pytest.approx(8 / 6)
+    assert csg.loads(f"hull() polyhedron({points}, {faces});", lenient=True).volume > 1
 
 
 def test_what_is_not_the_scripts_fault_is_never_dropped(

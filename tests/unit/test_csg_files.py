@@ -70,6 +70,37 @@ def test_imports_are_relative_to_the_script(tmp_path: Path) -> None:
         assert b.load(tmp_path / "all.csg").volume == 8
 
 
+# Found: `center` counted for SVG files alone, and what does not concern a file was passed over.
+def test_imports_are_centered() -> None:
+    folder = Path(__file__).parents[1] / "corpus" / "csg"
+    for name in ("block.stl", "drawing.svg", "drawing.dxf"):
+        plain, centered = (
+            csg.evaluate(csg.parse(f'import("{name}", center = {word});', folder=folder))
+            for word in ("false", "true")
+        )
+        assert isinstance(plain, (b.Solid, Region)) and type(centered) is type(plain)
+        assert plain.bounds is not None and centered.bounds is not None
+        middle = plain.bounds.mean(axis=0)
+        np.testing.assert_allclose(centered.bounds, plain.bounds - middle, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "unused"),
+    [
+        ('"block.stl", scale = 2', "scale"),
+        ('"block.stl", origin = [1, 0]', "origin"),
+        ('"block.stl", layer = "walls"', "layer"),
+        ('"drawing.svg", id = "a"', "id"),
+        ('"drawing.svg", scale = 2', "scale"),
+        ('"drawing.dxf", dpi = 96', "dpi"),
+    ],
+)
+def test_what_does_not_concern_a_file_is_told(arguments: str, unused: str) -> None:
+    folder = Path(__file__).parents[1] / "corpus" / "csg"
+    with pytest.warns(csg.CsgWarning, match=f"its {unused} does not count for such a file"):
+        csg.evaluate(csg.parse(f"import({arguments});", folder=folder))
+
+
 # Found: `import` of a name too long for a file ended in an `OSError`.
 def test_names_that_no_file_can_have(tmp_path: Path) -> None:
     for name in ("a" * 300 + ".stl", "a" * 5000 + ".stl"):

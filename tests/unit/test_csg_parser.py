@@ -398,9 +398,9 @@ def test_numbers_of_numpy_are_written_as_numbers() -> None:
 @pytest.mark.parametrize(
     ("source", "made", "place", "own"),
     [
-        ("// roof(\n\nt = 1;\nroof(t);", "group() {\n  roof(t = 1);\n}", "2:3", 4),
-        ("roof(1);\nroof(2);", "group() {\n  roof(t = 1);\n}", "2:3", None),
-        ("use <ball.scad>\nroof(1);", "group() {\n  roof(t = 1);\n}", "2:3", None),
+        ("// tent(\n\nt = 1;\ntent(t);", "group() {\n  tent(t = 1);\n}", "2:3", 4),
+        ("tent(1);\ntent(2);", "group() {\n  tent(t = 1);\n}", "2:3", None),
+        ("use <ball.scad>\ntent(1);", "group() {\n  tent(t = 1);\n}", "2:3", None),
         ("cube(1); wrap();\n/*\nwarp()*/ warp();", "cube(1);\n  warp();", "2:3", 3),
         ("cube(1);", "cube(1);\n  cube(1;", "2:9", None),
     ],

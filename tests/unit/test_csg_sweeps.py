@@ -221,7 +221,8 @@ def test_offsets_that_cannot_be_counted_are_refused(text: str) -> None:
 
 # Found: `offset(r=…, delta=…)` took `delta`.
 def test_a_radius_goes_before_a_distance() -> None:
-    round_corners = region("offset(r = 2, delta = 1) square(10);")
+    with pytest.warns(csg.CsgWarning, match="its delta does not count beside r"):
+        round_corners = region("offset(r = 2, delta = 1) square(10);")
     assert round_corners.equals(region("offset(r = 2) square(10);"))
 
 
@@ -242,3 +243,34 @@ def test_many_plane_figures_are_taken_away_at_once() -> None:
 
     assert rest(40).area == pytest.approx(6_400 - 39.5 * 12 * math.sin(math.tau / 24) / 2)
     assert seconds(lambda: rest(1_000), 2) < 7 * seconds(lambda: rest(250), 2)
+
+
+# Where OpenSCAD 2021.01 is wrong: docs/compare.md shows these two.
+@pytest.mark.parametrize(
+    ("scale", "square"),
+    [
+        ("[1, 0]", "square([1, 3]);"),
+        ("[0, 1]", "square([1, 3]);"),
+        ("[1, 0]", "square([3, 1], center = true);"),
+        ("[0, 1]", f"{moved(7, -2, 0)} square([3, 1]);"),
+    ],
+)
+def test_extrusions_that_end_in_an_edge_are_half_of_a_box(scale: str, square: str) -> None:
+    wedge = csg.loads(f"linear_extrude(height = 3, scale = {scale}) {square}")
+    assert wedge.volume == pytest.approx(4.5)
+
+
+@pytest.mark.parametrize("sides", [5, 6, 7, 8, 10, 11])
+def test_sums_of_a_union_are_unions_of_sums(sides: int) -> None:
+    bodies = [
+        f"{moved(5, 0, 0)} cylinder(h = 10, r = 5, center = true, $fn = {sides});",
+        f"cylinder(h = 5, r = 10, center = true, $fn = {sides});",
+    ]
+    both = csg.loads(f"minkowski() {{ cube(0.1); union() {{ {' '.join(bodies)} }} }}")
+    each = [csg.loads(f"minkowski() {{ cube(0.1); {body} }}") for body in bodies]
+    assert both.volume == pytest.approx((each[0] | each[1]).volume)
+    pen = Region.rectangle(0.1, 0.1)
+    thin = b.minkowski(Region.circle(5, sides).translate(5, 0), pen)
+    wide = b.minkowski(Region.circle(10, sides), pen)
+    by_hand = 10.1 * thin.area + 5.1 * wide.area - 5.1 * (thin & wide).area
+    assert both.volume == pytest.approx(by_hand)

@@ -1,11 +1,11 @@
 """The verb that evaluates scripts: run."""
 
 import ast
-import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from unicodedata import category
 
 import click
 
@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from ...solid.solid import Solid
 
 
-#: Words that need no quotes on the command line; an expression is not taken for a text.
-_PLAIN_WORD = re.compile(r"[A-Za-z_][\w.-]*")
+def _is_plain_word(text: str) -> bool:
+    """Say whether a text needs no quotes: a word of any script; an expression is none."""
+    starts = text[:1].isalpha() or text.startswith("_")
+    return starts and all(c.isalnum() or c in "_.-" or category(c)[0] == "M" for c in text)
 
 
 def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -> None:
@@ -56,7 +58,7 @@ def _value(text: str) -> Any:
     try:
         return value_of(text)
     except FormatError:
-        if _PLAIN_WORD.fullmatch(text):
+        if _is_plain_word(text):
             return text
         wanted = "a number, text, true, false or [list]"
         message = f"{text!r} is no value; it takes {wanted}."

@@ -1,8 +1,9 @@
 """The number of sides of round things: OpenSCAD's rules, so that results have the same corners.
 
-``$fn`` above 0 is the number of sides; otherwise ``$fa``, the smallest angle of a side in degrees,
-and ``$fs``, its smallest length, say what is enough. Source: OpenSCAD's user manual, "Special
-variables"; the slices of twisted extrusions follow OpenSCAD 2021.01.
+``$fn`` above 0 is the number of sides; otherwise ``$fe`` above 0 is how far sides may be from the
+circle; otherwise ``$fa``, the smallest angle of a side in degrees, and ``$fs``, its smallest
+length, say what is enough. Source: OpenSCAD's user manual, "Special variables"; the slices of
+twisted extrusions follow OpenSCAD 2021.01, ``$fe`` its development snapshots.
 """
 
 import math
@@ -19,17 +20,18 @@ _NOTHING = 2.0**-20
 
 @dataclass(frozen=True)
 class Fineness:
-    """The three special variables.
+    """The special variables.
 
     Parameters
     ----------
-    fn, fa, fs : float
-        Number of sides or 0; degrees; model units.
+    fn, fa, fs, fe : float
+        Number of sides or 0; degrees; model units; the same, or 0.
     """
 
     fn: float = 0.0
     fa: float = 12.0
     fs: float = 2.0
+    fe: float = 0.0
 
     @classmethod
     def of(cls, arguments: Arguments) -> "Fineness":
@@ -42,6 +44,7 @@ class Fineness:
             arguments.number("$fn", 0.0),
             _step(arguments, "$fa", 12.0),
             _step(arguments, "$fs", 2.0),
+            arguments.number("$fe", 0.0),
         )
 
     def fragments(self, radius: float) -> float:
@@ -50,6 +53,9 @@ class Fineness:
             return 3
         if self.fn > 0:
             return math.floor(max(self.fn, 3))
+        if self.fe >= _NOTHING:
+            finest = min(360 / _FINEST, radius * 2 * math.pi / _FINEST)
+            return math.ceil(max(min(math.tau / self._step_within(radius), finest), 5))
         return math.ceil(max(min(360 / self.fa, radius * 2 * math.pi / self.fs), 5))
 
     def twist_slices(self, reach: float, height: float, twist: float, scale: float) -> float:
@@ -68,8 +74,14 @@ class Fineness:
             return least
         if self.fn > 0:
             return max(math.ceil(turn / 360 * self.fn), least)
+        if self.fe >= _NOTHING and scale == 1:
+            return max(math.ceil(math.radians(turn) / self._step_within(reach)), least)
         length = _helix_length(reach, height, math.radians(turn), scale)
         return max(min(math.ceil(turn / self.fa), math.ceil(length / self.fs)), least)
+
+    def _step_within(self, radius: float) -> float:
+        """Return the angle whose chord leaves a circle by what is allowed, in radians."""
+        return 2 * math.acos(max(1 - self.fe / radius, 0.0))
 
     def taper_slices(self, shift: float, height: float) -> float:
         """Return the slices of an extrusion that scales x and y differently.

@@ -20,32 +20,61 @@ from ...solid.solid import Solid
 from ..making.drawings import dxf_region
 from ..making.paper import svg_region
 from ..syntax.arguments import Arguments
-from ..syntax.tree import Node
+from ..syntax.tree import Node, Value
 from .registry import Evaluation, Geometry, node
+from .signature import Signature
 
 #: Pixels per inch of drawings that do not say, and the fewest that count.
 _DPI, _LEAST_DPI = 72.0, 0.001
 
+#: Arguments that concern some kinds of files, with the values that dumps of OpenSCAD have anyway.
+_ASKING_NOTHING: dict[str, Value] = {
+    "id": "", "layer": "", "origin": (0.0, 0.0), "scale": 1.0, "dpi": _DPI,
+}  # fmt: skip
 
-@node("import")
+
+_IMPORT = Signature(
+    ("file", "layer", "convexity", "origin", "scale"), ("center", "dpi", "id", "timestamp")
+)
+
+
+@node("import", takes=_IMPORT)
 def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Read a mesh (STL, OFF, OBJ, PLY, 3MF) or a drawing (DXF, SVG)."""
     del children
-    arguments = run.arguments(owner, ("file",))
+    arguments = run.arguments(owner)
     path = _path(arguments, run)
     suffix = path.suffix.lower()
     if suffix == ".dxf":
-        return _dxf(path, owner, arguments, run, arguments.number("scale", 1.0))
+        _tell_of_unused(owner, arguments, run, ("layer", "origin", "scale"))
+        drawing = _dxf(path, owner, arguments, run, arguments.number("scale", 1.0))
+        bounds = drawing.bounds if arguments.flag("center") else None
+        return drawing if bounds is None else drawing.translate(*(-bounds.mean(axis=0)).tolist())
     if suffix == ".svg":
+        _tell_of_unused(owner, arguments, run, ("dpi",))
         return _svg(path, owner, arguments, run)
     if suffix not in FORMATS:
         known = ", ".join(sorted([*FORMATS, ".dxf", ".svg"]))
         message = f"“{suffix}” files are not supported; known are {known}."
         raise arguments.error(message, "unsupported")
+    _tell_of_unused(owner, arguments, run, ())
     raw = read(path)
     if raw.is_empty_set:
         return Solid.empty()
-    return run.closed_solid(owner, raw.vertices, raw.faces)
+    vertices = raw.vertices
+    if arguments.flag("center") and len(raw.faces):
+        there = vertices[np.unique(raw.faces)]
+        vertices = vertices - (there.min(axis=0) + there.max(axis=0)) / 2
+    return run.closed_solid(owner, vertices, raw.faces)
+
+
+def _tell_of_unused(
+    owner: Node, arguments: Arguments, run: Evaluation, used: tuple[str, ...]
+) -> None:
+    """Tell of arguments that do not concern this kind of file, and ask for something."""
+    for name, nothing in _ASKING_NOTHING.items():
+        if name not in used and arguments.value(name) not in (None, nothing):
+            run.warn(owner, f"its {name} does not count for such a file, all of which is read")
 
 
 def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
@@ -59,11 +88,9 @@ def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Regi
     if dpi < _LEAST_DPI:
         run.warn(owner, f"its dpi must be {_LEAST_DPI:g} or more; it is {_DPI:g} instead")
         dpi = _DPI
-    for name in ("id", "layer"):
-        if arguments.value(name) not in (None, ""):
-            run.warn(owner, f"all of the drawing is read: its {name} does not count")
     lost = LeftOut()
-    return _told(owner, run, lost, svg_region(path, dpi, arguments.flag("center"), lost))
+    region = svg_region(path, dpi, arguments.flag("center"), lost)
+    return _told(owner, run, arguments.text("file"), lost, region)
 
 
 def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: float) -> Region:
@@ -71,23 +98,22 @@ def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: 
     layer = arguments.text("layer", "")
     lost = LeftOut()
     region = dxf_region(path, layer, np.array(origin), scale, arguments, lost)
-    return _told(owner, run, lost, region)
+    return _told(owner, run, arguments.text("file"), lost, region)
 
 
-def _told(owner: Node, run: Evaluation, lost: LeftOut, region: Region) -> Region:
+def _told(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
     """Return the region of a drawing; the caller is told what it lacks."""
     words = lost.words(region)
     if words:
-        name = run.arguments(owner, ("file",)).text("file")
         run.warn(owner, f"{name}: {words}")
     return region
 
 
-@node("surface")
+@node("surface", takes=Signature(("file", "center", "convexity", "invert"), ("timestamp",)))
 def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make the body below a table of heights: a text file of numbers, or a picture's brightness."""
     del children
-    arguments = run.arguments(owner, ("file", "center", "convexity", "invert"))
+    arguments = run.arguments(owner)
     path = _path(arguments, run)
     is_picture = path.suffix.lower() == ".png"
     heights = read_picture(path) if is_picture else read_heights(path)

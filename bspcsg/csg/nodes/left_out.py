@@ -11,9 +11,12 @@ from .registry import Geometry
 
 #: Nodes that make solids, and such as make plane figures.
 _SOLIDS = frozenset(
-    {"cube", "sphere", "cylinder", "polyhedron", "surface", "linear_extrude", "rotate_extrude"}
-)
-_FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection"})
+    {
+        "cube", "sphere", "cylinder", "polyhedron", "surface", "linear_extrude", "rotate_extrude",
+        "roof",
+    }
+)  # fmt: skip
+_FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection", "fill"})
 _DRAWINGS = (".dxf", ".svg")
 
 #: Codes of errors after which OpenSCAD goes on without the node.

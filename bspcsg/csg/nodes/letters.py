@@ -25,6 +25,7 @@ from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
+from .signature import Signature
 
 #: OpenSCAD 2021.01 takes a pixel of FreeType for this part of the size where it draws glyphs…
 _PIXEL = 64 / 100_000
@@ -33,11 +34,16 @@ _PIXEL = 64 / 100_000
 _TIGHTNESS = 1000 / 1024
 
 
-@node("text")
+_TEXT = Signature(
+    ("text", "size", "font"), ("halign", "valign", "spacing", "direction", "language", "script")
+)
+
+
+@node("text", takes=_TEXT)
 def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Write a line of text; fonts that are not there are replaced by the package's own."""
     del children
-    arguments = run.arguments(owner, ("text", "size", "font"))
+    arguments = run.arguments(owner)
     string, size = arguments.text("text", ""), arguments.number("size", 10.0)
     if not string or size <= 0:
         return Region.empty()
@@ -80,6 +86,8 @@ def _choice(
 ) -> Any:
     """Return one of the words that an argument may be; another counts as the default."""
     word = arguments.text(name, default)
+    if word == "default":  # which dumps of OpenSCAD have since 2024
+        return default
     if word in get_args(known):
         return word
     run.warn(owner, f"its {name} “{word}” is none of {', '.join(get_args(known))}")

@@ -15,16 +15,17 @@ from ..syntax.arguments import LARGEST, Arguments, is_number
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
+from .signature import Signature
 
 #: Entries of matrices beyond this may move a body beyond all lattices.
 _FAR = 1e15
 
 
-@node("multmatrix", makes_corners=False)
+@node("multmatrix", takes=Signature(("m",)), makes_corners=False)
 def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Move the children by a matrix; what it flattens is left out."""
     body = union_of(owner, children, run)
-    arguments = run.arguments(owner, ("m",))
+    arguments = run.arguments(owner)
     matrix = _matrix(arguments)
     if matrix is None:
         run.warn(owner, "its matrix is not finite; it is left out")
@@ -76,13 +77,13 @@ def _is_row(row: object) -> bool:
     return isinstance(row, tuple) and len(row) == 4 and all(map(is_number, row))
 
 
-@node("resize", makes_corners=False)
+@node("resize", takes=Signature(("newsize", "auto", "convexity")), makes_corners=False)
 def resize(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Scale the children to new sizes along the axes; 0 keeps one, unless `auto` scales it too.
 
     In the plane only the sizes along x and y count. Sizes that are left out are 0.
     """
-    arguments = run.arguments(owner, ("newsize", "auto"))
+    arguments = run.arguments(owner)
     body = union_of(owner, children, run)
     sizes = arguments.padded("newsize", 3)
     bounds = None if body is None else _bounds(body)

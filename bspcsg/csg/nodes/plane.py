@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...bsp import Region
+from ...geometry.polygon import signed_area
 from ...modelling.planar.offsetting import cleaned, grown, refuse_far
 from ...shapes.sweep import unit_circle
 from ..making.tessellation import Fineness
@@ -10,6 +11,7 @@ from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
+from .signature import Signature
 
 #: Nodes that hand down an only child as it is.
 _PASSING = frozenset({"group", "union", "color", "render", "multmatrix", "resize", "difference",
@@ -19,22 +21,22 @@ _PASSING = frozenset({"group", "union", "color", "render", "multmatrix", "resize
 _PRIMITIVE = frozenset({"square", "circle", "polygon"})
 
 
-@node("square")
+@node("square", takes=Signature(("size", "center")))
 def square(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make a rectangle; a side of length 0 or less leaves it empty."""
     del children
-    arguments = run.arguments(owner, ("size", "center"))
+    arguments = run.arguments(owner)
     width, height = arguments.vector("size", 2, (1.0, 1.0))
     if min(width, height) <= 0:
         return Region.empty()
     return Region.rectangle(width, height, center=arguments.flag("center"))
 
 
-@node("circle")
+@node("circle", takes=Signature(("r",), ("d",), (("r", ("d",)),)))
 def circle(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make a regular polygon with its first corner on the x axis."""
     del children
-    arguments = run.arguments(owner, ("r",))
+    arguments = run.arguments(owner)
     r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
     if r <= 0:
         return Region.empty()
@@ -42,11 +44,11 @@ def circle(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     return Region(unit_circle(sides) * r)
 
 
-@node("polygon")
+@node("polygon", takes=Signature(("points", "paths", "convexity")))
 def polygon(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make what is inside an odd number of times of one path around all points, or of `paths`."""
     del children
-    arguments = run.arguments(owner, ("points", "paths"))
+    arguments = run.arguments(owner)
     points = np.array(arguments.points("points", 2)).reshape(-1, 2)
     loops = [points[path] for path in _paths(arguments, len(points)) if len(path) >= 3]
     return Region(loops, winding="even-odd")
@@ -58,10 +60,13 @@ def _paths(arguments: Arguments, count: int) -> list[list[int]]:
     return arguments.index_lists("paths", count, single=True)
 
 
-@node("offset")
+_OFFSET = Signature(("r",), ("delta", "chamfer"), (("delta", ("r",)), ("chamfer", ("r",))))
+
+
+@node("offset", takes=_OFFSET)
 def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Grow or shrink the children, with round (`r`), mitred or chamfered (`delta`) corners."""
-    arguments = run.arguments(owner, ("r",))
+    arguments = run.arguments(owner)
     figure = union_of(owner, run.figures(owner, children), run)
     if not isinstance(figure, Region):
         return None
@@ -75,6 +80,16 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
         return figure
     refuse_far(figure, delta)
     return grown(figure, delta, _join(is_round, arguments), sides)
+
+
+@node("fill")
+def fill(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Fill the holes of the children, and what is in these."""
+    figure = union_of(owner, run.figures(owner, children), run)
+    if not isinstance(figure, Region):
+        return None
+    outer = [loop for loop in figure.to_polygons() if signed_area(loop) > 0]
+    return Region(outer, pitch=figure.pitch) if outer else figure
 
 
 def _is_combined(owner: Node) -> bool:

@@ -5,12 +5,13 @@ from ...solid.solid import Solid
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
+from .signature import Signature
 
 
-@node("projection")
+@node("projection", takes=Signature(("cut",)))
 def projection(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the children's shadow on the plane z = 0, or their section by it (`cut`)."""
-    arguments = run.arguments(owner, ("cut",))
+    arguments = run.arguments(owner)
     body = union_of(owner, run.solids(owner, children), run)
     if not isinstance(body, Solid):
         return None

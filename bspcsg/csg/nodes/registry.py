@@ -16,6 +16,7 @@ from ...repair.repair import repair
 from ...solid.solid import Solid
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
+from .signature import Signature
 
 #: The shape that a node stands for; None is nothing at all, which has no dimension.
 Geometry: TypeAlias = Solid | Region | None
@@ -75,9 +76,15 @@ class Evaluation:
     loose: dict[int, tuple[Solid, FloatArray]] = field(default_factory=dict)
     told: set[str] = field(default_factory=set)
 
-    def arguments(self, node: Node, order: tuple[str, ...] = ()) -> Arguments:
+    def arguments(self, node: Node) -> Arguments:
         """Return the arguments of a node."""
-        return Arguments(node, self.script, order)
+        return Arguments(node, self.script, RECIPES[node.name].takes.order)
+
+    def tell_of_arguments(self, node: Node) -> None:
+        """Tell the caller of arguments of a node that do not count."""
+        if node.name in RECIPES:
+            for complaint in RECIPES[node.name].takes.complaints(node):
+                self.warn(node, complaint)
 
     def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
         """Return the children of a node that takes plane figures; solids are left out and told."""
@@ -169,23 +176,31 @@ class Recipe:
     ----------
     maker : callable
         Takes the node, its children's geometries and the evaluation.
+    takes : Signature
+        The arguments that it knows.
     makes_corners : bool
         True if its result has corners that its children do not have.
     """
 
     maker: NodeMaker
+    takes: Signature
     makes_corners: bool
 
 
 RECIPES: dict[str, Recipe] = {}
 
 
-def node(*names: str, makes_corners: bool = True) -> Callable[[NodeMaker], NodeMaker]:
+_NO_ARGUMENTS = Signature()
+
+
+def node(
+    *names: str, takes: Signature = _NO_ARGUMENTS, makes_corners: bool = True
+) -> Callable[[NodeMaker], NodeMaker]:
     """Register a function as the maker of the nodes with these names."""
 
     def register(maker: NodeMaker) -> NodeMaker:
         for name in names:
-            RECIPES[name] = Recipe(maker, makes_corners)
+            RECIPES[name] = Recipe(maker, takes, makes_corners)
         return maker
 
     return register

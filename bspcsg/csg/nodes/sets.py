@@ -8,6 +8,7 @@ from ...operations import setops
 from ...solid.solid import Solid
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
+from .signature import Signature
 
 
 def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
@@ -25,7 +26,8 @@ def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry
     return union
 
 
-@node("group", "union", "color", "render", makes_corners=False)
+@node("group", "union", "render", makes_corners=False)
+@node("color", takes=Signature(("c", "alpha")), makes_corners=False)
 def group(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Unite the children; colours and hints for the preview make no difference."""
     return union_of(owner, children, run)

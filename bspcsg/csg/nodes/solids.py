@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..._types import IndexArray
 from ...geometry.polygon import triangulate_face
 from ...mesh.weld import welded
 from ...shapes.arrays import from_arrays
@@ -11,22 +12,23 @@ from ...solid.solid import Solid
 from ..making.tessellation import Fineness
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
+from .signature import Signature
 
 
-@node("cube")
+@node("cube", takes=Signature(("size", "center")))
 def cube(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make a box; an edge of length 0 or less leaves it empty."""
     del children
-    arguments = run.arguments(owner, ("size", "center"))
+    arguments = run.arguments(owner)
     size = arguments.vector("size", 3, (1.0, 1.0, 1.0))
     return box(size, arguments.flag("center")) if min(size) > 0 else Solid.empty()
 
 
-@node("sphere")
+@node("sphere", takes=Signature(("r",), ("d",), (("r", ("d",)),)))
 def sphere(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make a sphere without poles: rings at the middles of equal angles from pole to pole."""
     del children
-    arguments = run.arguments(owner, ("r",))
+    arguments = run.arguments(owner)
     r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
     if r <= 0:
         return Solid.empty()
@@ -50,11 +52,22 @@ def _sphere(r: float, around: int, rings: int) -> Solid:
     return from_arrays(np.concatenate(levels) * r, np.concatenate(faces))
 
 
-@node("cylinder")
+_CYLINDER = Signature(
+    ("h", "r1", "r2", "center"),
+    ("r", "d", "d1", "d2"),
+    (
+        *(("r", ("d",)), ("r1", ("d1",)), ("r2", ("d2",))),
+        # That of both ends counts for an end whose own is not given.
+        *((both, (f"{low}1", f"{high}2")) for both in "rd" for low in "rd" for high in "rd"),
+    ),
+)
+
+
+@node("cylinder", takes=_CYLINDER)
 def cylinder_node(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make a cylinder or cone; what has no height or no radius is empty."""
     del children
-    arguments = run.arguments(owner, ("h", "r1", "r2", "center"))
+    arguments = run.arguments(owner)
     h = arguments.number("h", 1.0)
     r = arguments.number("d") / 2 if "d" in arguments else arguments.number("r", 1.0)
     low, high = (
@@ -70,11 +83,16 @@ def cylinder_node(owner: Node, children: list[Geometry], run: Evaluation) -> Geo
     return cylinder(h, r1=low, r2=high, segments=segments, center=arguments.flag("center"))
 
 
-@node("polyhedron")
+_POLYHEDRON = Signature(
+    ("points", "faces", "convexity"), ("triangles",), (("triangles", ("faces",)),)
+)
+
+
+@node("polyhedron", takes=_POLYHEDRON)
 def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Make what polygons bound, clockwise seen from outside; inside out makes no difference."""
     del children
-    arguments = run.arguments(owner, ("points", "faces"))
+    arguments = run.arguments(owner)
     points = np.array(arguments.points("points", 3)).reshape(-1, 3)
     name = "faces" if "faces" in arguments else "triangles"
     faces = [face for face in arguments.index_lists(name, len(points)) if len(face) >= 3]
@@ -84,7 +102,23 @@ def polyhedron(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
     vertices, same = welded(points)
     triangles = same[triangles]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
-    return run.closed_solid(owner, vertices, triangles[proper]) if proper.any() else Solid.empty()
+    if not proper.any():
+        return Solid.empty()
+    if run.lenient and run.on_invalid == "warn" and not run.in_hull:
+        # Open edges on one line may bound nothing together; OpenSCAD leaves out such, too.
+        count = _open_edges(triangles)
+        if count:
+            run.warn(owner, f"its faces do not close: {count} edges are open. It is left out.")
+            return Solid.empty()
+    return run.closed_solid(owner, vertices, triangles[proper])
+
+
+def _open_edges(triangles: IndexArray) -> int:
+    """Return how many edges are passed more often one way than the other."""
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
+    _, edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
+    turns = np.bincount(edge.ravel(), np.sign(ends[:, 1] - ends[:, 0]))
+    return int(np.count_nonzero(turns))
 
 
 def _triangles(points: np.ndarray, face: list[int]) -> np.ndarray:

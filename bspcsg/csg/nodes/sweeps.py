@@ -1,30 +1,74 @@
-"""Solids from plane figures: linear_extrude and rotate_extrude."""
+"""Solids from plane figures: linear_extrude, rotate_extrude and roof."""
+
+import math
 
 import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
-from ...shapes.profile import least_segments
+from ...modelling.making import roofs
+from ...shapes.profile import extrude, least_segments
 from ...solid.solid import Solid
+from ..making.dividing import Stretch, divided
 from ..making.tessellation import Fineness
 from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .files import drawing_of
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
+from .signature import Signature
+
+#: What scripts of before 2013 say of the drawing that an extrusion names.
+_DRAWING = ("file", "layer", "origin", "timestamp")
+
+_LINEAR = Signature(
+    ("height", "v", "scale", "center", "twist", "slices", "segments"),
+    ("h", *_DRAWING),
+    (("h", ("height",)),),
+)
+
+_ROTATE = Signature(("angle", "start"), ("a", "scale", *_DRAWING), (("a", ("angle",)),))
 
 
-@node("linear_extrude")
+@node("linear_extrude", takes=_LINEAR)
 def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Extrude the children along z, turned (`twist`) and scaled on the way up."""
-    arguments = run.arguments(owner, ("height", "center"))
+    """Extrude the children along z or `v`, turned (`twist`) and scaled on the way up."""
+    arguments = run.arguments(owner)
     figure = _figure(arguments, owner, children, run)
-    height = arguments.number("height", 100.0)
+    way = _way(arguments)
     if figure is None:
         return None
-    if figure.is_empty or height <= 0:
+    if figure.is_empty or way[2] == 0:
         return Solid.empty()
-    return _extruded(arguments, figure, height)
+    return _leaning(_extruded(arguments, figure, abs(way[2])), way)
+
+
+def _way(arguments: Arguments) -> tuple[float, float, float]:
+    """Return the way from the lower to the upper end: `v`, as long as the height if that is given.
+
+    A height below 0 leaves nothing, as in OpenSCAD 2021.01; later ones write such as a `v` that
+    points downwards.
+    """
+    name = "height" if "height" in arguments else "h"
+    if "v" not in arguments:
+        return 0.0, 0.0, max(arguments.number(name, 100.0), 0.0)
+    x, y, z = arguments.vector("v", 3)
+    if name not in arguments:
+        return x, y, z
+    # Zero has no direction, and stays so.
+    length = math.hypot(x, y, z) or 1.0
+    height = max(arguments.number(name), 0.0)
+    return x / length * height, y / length * height, z / length * height
+
+
+def _leaning(upright: Solid, way: tuple[float, float, float]) -> Solid:
+    """Return what stands upright along another way of the same height, or depth."""
+    x, y, z = way
+    if z < 0:
+        upright = upright.mirror((0, 0, 1))
+    if x == 0 and y == 0:
+        return upright
+    return upright.transform([[1, 0, x / z, 0], [0, 1, y / z, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
 
 
 def _figure(
@@ -37,14 +81,26 @@ def _figure(
 
 
 def _extruded(arguments: Arguments, figure: Region, height: float) -> Solid:
-    direction = arguments.vector("v", 3, (0.0, 0.0, 1.0))
-    if direction[:2] != (0, 0) or direction[2] <= 0:
-        raise arguments.error("only v = [0, 0, 1] is supported.", "unsupported")
     x, y = arguments.vector("scale", 2, (1.0, 1.0))
     twist, scale = arguments.number("twist", 0.0), (max(x, 0.0), max(y, 0.0))
-    slices = _slices(arguments, np.concatenate(figure.to_polygons()), height, twist, scale)
+    outlines = figure.to_polygons()
+    slices = _slices(arguments, np.concatenate(outlines), height, twist, scale)
+    stretch = Stretch(twist, scale, slices)
+    shape = figure if stretch.is_even else _segmented(arguments, outlines, stretch)
     center = arguments.flag("center")
-    return figure.extrude(height, center=center, twist=twist, scale=scale, slices=slices)
+    return extrude(shape, height, center=center, twist=twist, scale=scale, slices=slices)
+
+
+def _segmented(
+    arguments: Arguments, outlines: list[FloatArray], stretch: Stretch
+) -> list[FloatArray]:
+    """Return outlines with as many edges as `segments` wants."""
+    wanted = arguments.number("segments", 0.0)
+    arguments.limited(wanted * len(outlines) * (stretch.slices + 1), "this extrusion")
+    return [
+        outline if len(outline) >= wanted else divided(outline, int(wanted), stretch)
+        for outline in outlines
+    ]
 
 
 def _slices(
@@ -70,17 +126,18 @@ def _slices(
     return int(count)
 
 
-@node("rotate_extrude")
+@node("rotate_extrude", takes=_ROTATE)
 def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Turn the children around the z axis, their x axis pointing away from it.
 
-    A full turn of what lies at x >= 0 starts on the negative x axis, as in OpenSCAD.
+    It starts where `start` says. Without that a full turn starts on the negative x axis, and any
+    other on the positive one, as in OpenSCAD 2021.01.
     """
-    arguments = run.arguments(owner, ("angle",))
+    arguments = run.arguments(owner)
     figure = _figure(arguments, owner, children, run)
     if figure is None:
         return None
-    angle = arguments.number("angle", 360.0)
+    angle = arguments.number("angle" if "angle" in arguments else "a", 360.0)
     angle = 360.0 if angle <= -360 or angle > 360 else angle
     bounds = figure.bounds
     if bounds is None or angle == 0:
@@ -92,11 +149,39 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
     around = arguments.sides(Fineness.of(arguments).fragments(max(right, -left)), "this turn")
     segments = max(int(around * abs(angle) / 360), least_segments(angle))
     arguments.limited(segments * sum(map(len, figure.to_polygons())), "this turn")
-    return _turned(figure, angle, segments, left < 0)
+    start = arguments.number("start", 180.0 if angle == 360 else 0.0)
+    return _turned(figure, angle, segments, start + 180 if left < 0 else start)
 
 
-def _turned(figure: Region, angle: float, segments: int, is_left: bool) -> Solid:
-    right = figure.mirror((1, 0)) if is_left else figure
+def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
+    """Return what a figure on one side of the axis sweeps; its far corners begin at `start`."""
+    bounds = figure.bounds
+    right = figure.mirror((1, 0)) if bounds is not None and bounds[0, 0] < 0 else figure
     solid = right.revolve(angle=abs(angle), segments=segments)
     solid = solid.mirror((0, 1, 0)) if angle < 0 else solid
-    return solid.rotate(180) if is_left != (angle == 360) else solid
+    return solid.rotate(start % 360) if start % 360 else solid
+
+
+@node("roof", takes=Signature(("method",)))
+def roof(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
+    """Build a roof over the children, all sides of which rise by 45 degrees.
+
+    Over figures without corners that point inwards both methods give the same; over others a roof
+    by "voronoi", which is curved there, is refused.
+    """
+    arguments = run.arguments(owner)
+    figure = union_of(owner, run.figures(owner, children), run)
+    if not isinstance(figure, Region):
+        return None
+    method = arguments.text("method", "voronoi")
+    if method not in ("voronoi", "straight"):
+        run.warn(
+            owner, f"its method “{method}” is none of voronoi, straight; it is voronoi instead"
+        )
+    if method != "straight" and not roofs.is_convex(figure):
+        message = (
+            "method “voronoi” is not supported where corners point inwards, for its roofs are"
+            " curved there; method “straight” is."
+        )
+        raise arguments.error(message, "unsupported")
+    return roofs.roof(figure)

@@ -16,7 +16,7 @@ _PLAIN = frozenset({"group", "union"})
 _UNITING = frozenset({*_PLAIN, "color", "multmatrix", "render"})
 
 #: Nodes that make plane figures, and such as make what their first child is.
-_FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection"})
+_FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection", "fill"})
 _KEEPING = _UNITING | {"difference", "intersection", "hull", "minkowski", "resize"}
 
 

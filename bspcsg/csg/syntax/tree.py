@@ -44,7 +44,7 @@ class Place(NamedTuple):
 NOWHERE = Place(0, 0)
 
 #: The special variables, which hold in the nodes inside of the one that has them, too.
-SPECIAL = ("$fn", "$fa", "$fs")
+SPECIAL = ("$fn", "$fa", "$fs", "$fe")
 
 
 def is_name(name: Any) -> TypeGuard[str]:

@@ -1,0 +1,90 @@
+"""Outlines whose edges are divided, so that walls that turn or shrink follow their curves."""
+
+import heapq
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...geometry.transform import cos_sin
+
+#: Edges whose parts differ by less than this part of their length are divided together.
+_ALIKE = 0.999
+
+
+class Stretch(NamedTuple):
+    """The change of a figure on its way up.
+
+    Parameters
+    ----------
+    twist : float
+        Degrees that the upper end is turned clockwise.
+    scale : (float, float)
+        Of the upper end.
+    slices : int
+    """
+
+    twist: float
+    scale: tuple[float, float]
+    slices: int
+
+    @property
+    def is_even(self) -> bool:
+        """True if walls stay plane, so that nothing is gained by dividing them."""
+        return self.twist == 0 and self.scale[0] == self.scale[1]
+
+    def lengths(self, vectors: FloatArray) -> FloatArray:
+        """Return the largest length that each vector has at any level."""
+        x, y = self.scale
+        if x == y:
+            return np.asarray(np.linalg.norm(vectors, axis=1) * max(x, 1.0))
+        longest = np.zeros(len(vectors))
+        for level in range(self.slices + 1):
+            part = level / self.slices
+            cosine, sine = cos_sin(-self.twist * part)
+            turned = vectors @ np.array([[cosine, sine], [-sine, cosine]])
+            wide = turned * (1 - (1 - np.array([x, y])) * part)
+            longest = np.maximum(longest, np.linalg.norm(wide, axis=1))
+        return longest
+
+
+def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
+    """Return an outline with up to so many edges, where it has fewer: OpenSCAD's `segments`.
+
+    Whichever edge has the longest parts is divided once more; edges that are alike are divided
+    together or not at all, so that what is symmetric stays so.
+
+    Parameters
+    ----------
+    outline : (n, 2) float64
+    segments : int
+    stretch : Stretch
+        Says how long edges become.
+    """
+    vectors = np.roll(outline, -1, axis=0) - outline
+    counts = _counts(stretch.lengths(vectors).tolist(), segments)
+    starts, steps = np.repeat(outline, counts, axis=0), np.repeat(vectors, counts, axis=0)
+    rank = np.arange(len(starts)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return np.asarray(starts + steps * (rank / np.repeat(counts, counts))[:, None])
+
+
+def _counts(lengths: Sequence[float], segments: int) -> IndexArray:
+    """Return into how many parts edges of these lengths are divided."""
+    counts = np.ones(len(lengths), dtype=np.int64)
+    longest = [(-length / 1.5, edge) for edge, length in enumerate(lengths)]
+    heapq.heapify(longest)
+    total = len(lengths)
+    while longest:
+        first = longest[0][0]
+        alike = []
+        while longest and longest[0][0] <= first * _ALIKE:
+            alike.append(heapq.heappop(longest)[1])
+        total += len(alike)
+        if total > segments:
+            break
+        for edge in alike:
+            counts[edge] += 1
+            # Half way between the lengths of its parts now and once it is divided again.
+            heapq.heappush(longest, (-lengths[edge] / (counts[edge] + 0.5), edge))
+    return counts

@@ -1,0 +1,62 @@
+"""The arguments that a node knows, and what is said of others."""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ..syntax.tree import SPECIAL, Argument, Node, Value
+
+#: What every node may have: special variables, of which some concern the preview alone.
+_EVERYWHERE = frozenset(
+    {*SPECIAL, "$t", "$preview", "$vpr", "$vpt", "$vpd", "$vpf", "convexity"}
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Signature:
+    """The arguments of one kind of node.
+
+    Parameters
+    ----------
+    order : tuple of str
+        The names that arguments without one take, one after another.
+    named : tuple of str
+        Those that go by their names only.
+    beside : tuple of (str, tuple of str)
+        Arguments, each with others: where all of these are given, it does not count.
+    """
+
+    order: tuple[str, ...] = ()
+    named: tuple[str, ...] = ()
+    beside: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+    def complaints(self, node: Node) -> Iterator[str]:
+        """Yield what is wrong with a node's arguments: such as are passed over."""
+        names = self._names(node.arguments)
+        given = Counter(name for name in names if name is not None)
+        for name, count in given.items():
+            if name not in _EVERYWHERE and name not in self.order and name not in self.named:
+                yield f"it knows no argument “{name}”, which does not count; {self._known()}"
+            elif count > 1:
+                yield f"its {name} is given {count} times; the last one counts"
+        if None in names:
+            count = names.count(None)
+            yield f"{count} of its arguments without a name do not count; {self._known()}"
+        values = dict(zip(names, (argument.value for argument in node.arguments), strict=True))
+        for name, others in self.beside:
+            if _asks(values.get(name)) and all(_asks(values.get(other)) for other in others):
+                yield f"its {name} does not count beside {' and '.join(others)}"
+
+    def _names(self, arguments: tuple[Argument, ...]) -> list[str | None]:
+        """Return the names of arguments, None for those that stand behind the last of the order."""
+        left = iter(self.order)
+        return [next(left, None) if one.name is None else one.name for one in arguments]
+
+    def _known(self) -> str:
+        known = (*self.order, *self.named)
+        return f"known: {', '.join(known)}" if known else "it takes none"
+
+
+def _asks(value: Value) -> bool:
+    """Say whether a value asks for something: undef and false do not."""
+    return value is not None and value is not False

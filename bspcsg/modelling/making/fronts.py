@@ -1,0 +1,289 @@
+"""Fronts that move inwards from all sides of a figure: what makes straight skeletons and roofs.
+
+Each side of the outlines moves at speed one, and stays parallel to itself. A front changes where
+one of its sides vanishes, or a corner that points inwards runs into another side; then what has met
+is joined anew (Aichholzer et al., A Novel Type of Skeleton for Polygons, 1995). What meets within
+`nearness` meets at once, so that symmetric figures need no special care.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TypeAlias
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray
+
+#: Sine of the least turn that counts as one.
+_STRAIGHT = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """The sides that move.
+
+    Parameters
+    ----------
+    directions, normals : (n, 2) float64
+        Unit vectors along them and inwards, to the left of these.
+    """
+
+    directions: FloatArray
+    normals: FloatArray
+
+    def speeds(self, before: IndexArray, after: IndexArray) -> FloatArray:
+        """Return how corners move between walls, each ahead of its corner and behind it."""
+        sums = self.normals[before] + self.normals[after]
+        return np.asarray(2 * sums / np.square(sums).sum(axis=1)[:, None])
+
+    def are_reflex(self, before: IndexArray, after: IndexArray) -> BoolArray:
+        """Say which corners point inwards."""
+        a, b = self.directions[before], self.directions[after]
+        return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < -_STRAIGHT)
+
+
+@dataclass(frozen=True, eq=False)
+class Front:
+    """The corners of a front; each is followed by the next one of its outline.
+
+    Parameters
+    ----------
+    node : (n,) int64
+        The node that each corner comes from.
+    place : (n, 2) float64
+    since : (n,) float64
+        Where that is, and when it was there.
+    before, after : (n,) int64
+        The walls that meet there: the one that ends and the one that begins.
+    following : (n,) int64
+        The number of the next corner.
+    walls : Walls
+    """
+
+    node: IndexArray
+    place: FloatArray
+    since: FloatArray
+    before: IndexArray
+    after: IndexArray
+    following: IndexArray
+    walls: Walls
+
+    def __len__(self) -> int:
+        """Return the number of corners."""
+        return len(self.node)
+
+    def at(self, time: float) -> FloatArray:
+        """Return where the corners are at a time."""
+        return np.asarray(self.place + self.speeds() * (time - self.since)[:, None])
+
+    def speeds(self) -> FloatArray:
+        """Return how the corners move."""
+        return self.walls.speeds(self.before, self.after)
+
+    def next_time(self, now: float, nearness: float) -> float:
+        """Return when the front changes next; infinity if it never does."""
+        places, speeds = self.at(now), self.speeds()
+        sides = self._next_vanishing(places, speeds)
+        return now + min(sides, self._next_hit(places, speeds, nearness))
+
+    def _lengths(self, places: FloatArray, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return how long the sides are, below 0 for one that is turned over, and how they grow."""
+        along = self.walls.directions[self.after]
+        return tuple(
+            ((ends[self.following] - ends) * along).sum(axis=1) for ends in (places, speeds)
+        )
+
+    def vanished(self, places: FloatArray, nearness: float) -> IndexArray:
+        """Return the sides of which nothing is left.
+
+        One may even be turned over by rounding, where others vanished at the same time.
+        """
+        lengths, growth = self._lengths(places, self.speeds())
+        return np.flatnonzero((lengths <= nearness) & (growth < 0))
+
+    def _next_vanishing(self, places: FloatArray, speeds: FloatArray) -> float:
+        lengths, growth = self._lengths(places, speeds)
+        shrinks = growth < 0
+        times = lengths[shrinks] / -growth[shrinks]
+        return max(float(times.min(initial=math.inf)), 0.0)
+
+    def _next_hit(self, places: FloatArray, speeds: FloatArray, nearness: float) -> float:
+        """Return in what time a corner that points inwards hits a side first."""
+        reflex = np.flatnonzero(self.walls.are_reflex(self.before, self.after))
+        normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
+        levels = (places * normals).sum(axis=1)
+        ahead = _products(places[reflex], normals) - levels
+        closing = 1 - _products(speeds[reflex], normals)
+        corner, side = np.nonzero((ahead > nearness) & (closing > 0))
+        times = ahead[corner, side] / closing[corner, side]
+        corner = reflex[corner]
+        hits = places[corner] + speeds[corner] * times[:, None]
+        ends = (side, self.following[side])
+        first, last = (places[end] + speeds[end] * times[:, None] for end in ends)
+        from_first = ((hits - first) * along[side]).sum(axis=1)
+        to_last = ((last - hits) * along[side]).sum(axis=1)
+        is_hit = (from_first >= -nearness) & (to_last >= -nearness)
+        return float(times[is_hit].min(initial=math.inf))
+
+    def touching(self, places: FloatArray, nearness: float) -> tuple[IndexArray, IndexArray]:
+        """Return corners, and the sides that they lie on between the ends of these."""
+        normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
+        away = _products(places, normals) - (places * normals).sum(axis=1)
+        corner, side = np.nonzero(np.abs(away) <= nearness)
+        from_first = ((places[corner] - places[side]) * along[side]).sum(axis=1)
+        to_last = ((places[self.following[side]] - places[corner]) * along[side]).sum(axis=1)
+        inside = (from_first > nearness) & (to_last > nearness)
+        return corner[inside], side[inside]
+
+
+#: A part of a side between places where something met: these places, and the wall.
+Piece: TypeAlias = tuple[int, int, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Meeting:
+    """What has met at a time.
+
+    Parameters
+    ----------
+    time : float
+    places : (n, 2) float64
+        Where the corners of the front are.
+    corners : list of list of int
+        The corners at each spot: those that have met.
+    pieces : list of Piece
+        The sides that go on, divided where corners lie on them, between numbers of spots.
+    ridges : list of (Piece, Piece)
+        Pieces that have met over their whole length.
+    pairs : list of list of (int, int)
+        At each spot, which piece follows which: their numbers.
+    """
+
+    time: float
+    places: FloatArray
+    corners: list[list[int]]
+    pieces: list[Piece]
+    ridges: list[tuple[Piece, Piece]]
+    pairs: list[list[tuple[int, int]]]
+
+    @property
+    def is_clear(self) -> bool:
+        """True if each piece that goes on is followed by one."""
+        return sum(map(len, self.pairs)) == len(self.pieces)
+
+    def walls_of(self, pair: tuple[int, int]) -> tuple[int, int]:
+        """Return the walls of two pieces that follow each other."""
+        ending, beginning = pair
+        return self.pieces[ending][2], self.pieces[beginning][2]
+
+    def is_calm(self, spot: int, front: Front) -> bool:
+        """Say whether a spot has a corner alone that goes on as it is."""
+        [corner, *others] = self.corners[spot]
+        walls = int(front.before[corner]), int(front.after[corner])
+        return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[spot]]
+
+
+def meeting(front: Front, time: float, nearness: float) -> Meeting:
+    """Return what has met at a time."""
+    places = front.at(time)
+    ended = front.vanished(places, nearness)
+    spots = _met(places, np.column_stack([ended, front.following[ended]]), nearness)
+    corners: list[list[int]] = [[] for _ in range(int(spots.max(initial=-1)) + 1)]
+    for corner, spot in enumerate(spots.tolist()):
+        corners[spot].append(corner)
+    pieces, ridges = _without_ridges(_pieces_of(front, places, spots, nearness))
+    pairs = _joined(pieces, front.walls)
+    following = [pairs.get(spot, []) for spot in range(len(corners))]
+    return Meeting(time, places, corners, pieces, ridges, following)
+
+
+def _products(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the scalar product of each vector of one list with each of the other.
+
+    Two columns are too few for a library of linear algebra, whose threads would wait for others.
+    """
+    return np.asarray(one[:, :1] * other[:, 0] + one[:, 1:] * other[:, 1])
+
+
+def _met(places: FloatArray, pairs: IndexArray, nearness: float) -> IndexArray:
+    """Return a number for each place, the same for places that are near each other, and for pairs.
+
+    So have places met that are not near each other, but each near to a third.
+    """
+    parent = list(range(len(places)))
+
+    def root(one: int) -> int:
+        while parent[one] != one:
+            parent[one] = one = parent[parent[one]]
+        return one
+
+    for one, other in [*_near_pairs(places, nearness), *pairs.tolist()]:
+        parent[root(one)] = root(other)
+    roots = [root(one) for one in range(len(places))]
+    return np.unique(np.array(roots, dtype=np.int64), return_inverse=True)[1]
+
+
+def _near_pairs(places: FloatArray, nearness: float) -> Iterator[tuple[int, int]]:
+    order = np.argsort(places[:, 0], kind="stable")
+    ordered = places[order]
+    for step in range(1, len(places)):
+        gaps = ordered[step:] - ordered[:-step]
+        if gaps[:, 0].min() > nearness:
+            break
+        for one in np.flatnonzero(np.abs(gaps).max(axis=1) <= nearness).tolist():
+            yield int(order[one]), int(order[one + step])
+
+
+def _pieces_of(
+    front: Front, places: FloatArray, numbers: IndexArray, nearness: float
+) -> list[Piece]:
+    """Return the sides of a front, divided where corners lie on them."""
+    on_side: dict[int, list[tuple[float, int]]] = defaultdict(list)
+    for corner, side in zip(*map(np.ndarray.tolist, front.touching(places, nearness)), strict=True):
+        along = float((places[corner] - places[side]) @ front.walls.directions[front.after[side]])
+        on_side[side].append((along, int(numbers[corner])))
+    pieces = []
+    for side, wall in enumerate(front.after.tolist()):
+        ends = int(numbers[side]), int(numbers[front.following[side]])
+        way = [ends[0], *(number for _, number in sorted(on_side[side])), ends[1]]
+        pieces += [(a, b, wall) for a, b in pairwise(way) if a != b]
+    return pieces
+
+
+def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Piece, Piece]]]:
+    """Return the pieces that go on, and the pairs that have met over their whole length."""
+    left: dict[tuple[int, int], list[Piece]] = defaultdict(list)
+    ridges = []
+    for piece in pieces:
+        start, end, _ = piece
+        if left[end, start]:
+            ridges.append((left[end, start].pop(), piece))
+        else:
+            left[start, end].append(piece)
+    return [piece for some in left.values() for piece in some], ridges
+
+
+def _joined(pieces: Sequence[Piece], walls: Walls) -> dict[int, list[tuple[int, int]]]:
+    """Return how pieces follow each other at each place: pairs of their numbers in the list.
+
+    What is inside lies to the left of pieces. Counter-clockwise from each one that begins at a
+    place the next one is its partner, which ends there: between both is a sector of the inside.
+    """
+    rays: dict[int, list[tuple[float, int, int]]] = defaultdict(list)
+    for number, (start, end, wall) in enumerate(pieces):
+        x, y = walls.directions[wall].tolist()
+        rays[start].append((math.atan2(y, x), 1, number))
+        rays[end].append((math.atan2(-y, -x), 0, number))
+    return {place: _sectors(sorted(around)) for place, around in rays.items()}
+
+
+def _sectors(around: Sequence[tuple[float, int, int]]) -> list[tuple[int, int]]:
+    found = []
+    for k, (_, begins, number) in enumerate(around):
+        _, other_begins, other = around[(k + 1) % len(around)]
+        if begins and not other_begins:
+            found.append((other, number))
+    return found

@@ -1,0 +1,209 @@
+"""Roofs over plane figures, with all sides equally steep."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..._types import FloatArray
+from ...bsp import Region
+from ...errors import LimitError
+from ...geometry.polygon import signed_area, triangulate
+from ...operations import setops
+from ...solid.solid import Solid
+from .fronts import Front, Meeting, Piece, Walls, meeting
+
+#: Corners of a figure, at most: time grows with the third power of them.
+_MOST_CORNERS = 1000
+
+#: What is closer than this part of the figure's size has met.
+_NEAR = 1e-8
+
+#: Roofs whose sides miss more than this part of the figure, or their planes by it, are refused.
+_OFF = 1e-6
+
+
+def roof(figure: Region) -> Solid:
+    """Return the roof over a bounded figure, as high everywhere as its front takes to come there.
+
+    From each side of the outline rises a plane of 45 degrees; they meet above the straight skeleton
+    of the figure.
+
+    Raises
+    ------
+    LimitError
+        If a part of the figure has more than 1,000 corners, or its sides meet in ways that doubles
+        do not tell apart.
+
+    Examples
+    --------
+    >>> from bspcsg import Region
+    >>> from bspcsg.modelling.making.roofs import roof
+    >>> roof(Region.rectangle(6, 6)).volume
+    36.0
+    """
+    return setops.union([_roof_of_part(part.to_polygons()) for part in figure.components])
+
+
+def is_convex(figure: Region) -> bool:
+    """Say whether no corner of a figure points inwards, so that no hole is in it."""
+    for loop in figure.to_polygons():
+        front = _first_front([loop])
+        if front.walls.are_reflex(front.before, front.after).any():
+            return False
+    return True
+
+
+def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
+    count = sum(map(len, loops))
+    if count > _MOST_CORNERS:
+        message = f"this roof has a part of {count:,} corners; {_MOST_CORNERS:,} is the limit."
+        raise LimitError(message, "too_large")
+    building = _Building(loops)
+    building.raise_sides()
+    return building.solid(sum(map(signed_area, loops)))
+
+
+def _first_front(loops: Sequence[FloatArray]) -> Front:
+    points = np.concatenate(loops)
+    sides = np.concatenate([np.roll(loop, -1, axis=0) - loop for loop in loops])
+    directions = sides / np.linalg.norm(sides, axis=1)[:, None]
+    walls = Walls(directions, np.column_stack([-directions[:, 1], directions[:, 0]]))
+    starts = np.cumsum([0, *map(len, loops)])[:-1]
+    numbers = [start + np.arange(len(loop)) for start, loop in zip(starts, loops, strict=True)]
+    before = np.concatenate([np.roll(one, 1) for one in numbers])
+    following = np.concatenate([np.roll(one, -1) for one in numbers])
+    own = np.arange(len(points))
+    return Front(own, points, np.zeros(len(points)), before, own, following, walls)
+
+
+class _Building:
+    """A roof that grows: its nodes, and what bounds each of its sides."""
+
+    def __init__(self, loops: Sequence[FloatArray]) -> None:
+        self._front = _first_front(loops)
+        self._points = self._front.place
+        self._walls = self._front.walls
+        self._nearness = _NEAR * float(np.ptp(self._points, axis=0).max())
+        self._nodes: list[tuple[float, float, float]] = []
+        self._bounds: list[list[tuple[int, int]]] = [[] for _ in self._points]
+        self._base: list[Piece] = []
+
+    def raise_sides(self) -> None:
+        """Move the front until nothing is left of it."""
+        now = 0.0
+        self._change(now)
+        for _ in range(8 * len(self._points)):
+            if not len(self._front):
+                return
+            now = self._front.next_time(now, self._nearness)
+            if now == np.inf:
+                break
+            self._change(now)
+        raise _unclear()
+
+    def _change(self, now: float) -> None:
+        """Join anew what has met at a time."""
+        met = meeting(self._front, now, self._nearness)
+        if not met.is_clear:
+            raise _unclear()
+        nodes = self._nodes_of(met)
+        if now == 0:
+            self._base = [(nodes[a], nodes[b], wall) for a, b, wall in met.pieces]
+            for low, high, wall in self._base:
+                self._bounds[wall].append((low, high))
+        for (a, b, wall), (_, _, other) in met.ridges:
+            self._bounds[wall].append((nodes[b], nodes[a]))
+            self._bounds[other].append((nodes[a], nodes[b]))
+        self._front = self._next_front(met, nodes)
+
+    def _nodes_of(self, met: Meeting) -> dict[int, int]:
+        """Return a new node for each spot where something happens, to which its corners came."""
+        front, nodes = self._front, {}
+        for spot, corners in enumerate(met.corners):
+            if met.time > 0 and met.is_calm(spot, front):
+                continue
+            x, y = met.places[corners].mean(axis=0).tolist()
+            nodes[spot] = len(self._nodes)
+            self._nodes.append((x, y, met.time))
+            # On the ground corners come from nowhere.
+            for corner in corners if met.time > 0 else ():
+                ahead, behind = int(front.before[corner]), int(front.after[corner])
+                self._trace(int(front.node[corner]), nodes[spot], ahead, behind)
+        return nodes
+
+    def _trace(self, low: int, high: int, ahead: int, behind: int) -> None:
+        """Record that a corner between two walls has come from one node to another."""
+        if ahead != behind:
+            self._bounds[ahead].append((low, high))
+            self._bounds[behind].append((high, low))
+
+    def _next_front(self, met: Meeting, nodes: dict[int, int]) -> Front:
+        """Return the front that goes on: corners as they are, or new ones at nodes."""
+        rows: list[tuple[int, int, int, int]] = []
+        origins: list[tuple[float, float, float]] = []
+        begun: dict[int, int] = {}
+        for spot, pairs in enumerate(met.pairs):
+            corner = met.corners[spot][0]
+            node = nodes[spot] if spot in nodes else int(self._front.node[corner])
+            for pair in pairs:
+                begun[pair[0]] = len(rows)
+                rows.append((node, *met.walls_of(pair), pair[1]))
+                origins.append(self._nodes[node])
+        node_of, before, after, piece = np.array(rows, dtype=np.int64).reshape(-1, 4).T
+        origin = np.array(origins, dtype=np.float64).reshape(-1, 3)
+        following = np.array([begun[one] for one in piece.tolist()], dtype=np.int64)
+        where, since = origin[:, :2], origin[:, 2]
+        return Front(node_of, where, since, before, after, following, self._walls)
+
+    def solid(self, area: float) -> Solid:
+        """Return the finished roof over a floor of some area.
+
+        Raises
+        ------
+        LimitError
+            If its sides do not cover the floor, or a node is beside its plane.
+        """
+        nodes = np.array(self._nodes)
+        rings = [(wall, ring) for wall, edges in enumerate(self._bounds) for ring in _rings(edges)]
+        covered = 0.0
+        triangles = []
+        for wall, ring in rings:
+            corners = nodes[ring]
+            away = (corners[:, :2] - self._points[wall]) @ self._walls.normals[wall]
+            if np.abs(away - corners[:, 2]).max() > _OFF / _NEAR * self._nearness:
+                raise _unclear()
+            triangles.append(np.array(ring)[triangulate([corners[:, :2]])])
+            a, b, c = (nodes[triangles[-1][:, k], :2] for k in range(3))
+            across = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+            # What is covered twice, or from below, is too much.
+            covered += float(np.abs(across).sum()) / 2
+        if abs(covered - area) > _OFF * area:
+            raise _unclear()
+        floor = _rings([(a, b) for a, b, _ in self._base])
+        below = np.concatenate(floor)[triangulate([nodes[ring][:, :2] for ring in floor])]
+        return Solid(nodes, np.concatenate([*triangles, below[:, ::-1]]))
+
+
+def _rings(edges: Sequence[tuple[int, int]]) -> list[list[int]]:
+    """Return directed edges as closed rings that visit no node twice."""
+    leaving = defaultdict(list)
+    for start, end in edges:
+        leaving[start].append(end)
+    rings = []
+    for first in list(leaving):
+        way = [first]
+        while leaving[way[-1]]:
+            node = leaving[way[-1]].pop()
+            if node in way:
+                at = way.index(node)
+                rings.append(way[at:])
+                del way[at + 1 :]
+            else:
+                way.append(node)
+    return [ring for ring in rings if len(ring) > 2]
+
+
+def _unclear() -> LimitError:
+    message = "the sides of this roof meet in ways that cannot be told apart in doubles."
+    return LimitError(message, "not_told_apart")
