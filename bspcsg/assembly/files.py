@@ -10,6 +10,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..attributes.attributes import Attributes
+from ..attributes.colours import hexadecimal
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
 from ..formats import obj, single
@@ -272,7 +273,7 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
         mesh = moved(part.shape, part.factors).normalized().to_mesh()
         said = mesh.attributes.without_empty_material()
         if part.color is not None and not _is_painted(said):
-            name = "#" + bytes(round(value * _BYTE) for value in part.color).hex()
+            name = hexadecimal(part.color)
             face = {**said.face, "material": np.full(len(mesh.faces), name)}
             said = replace(said, face=face, materials={name: Material(part.color)})
         held = obj.kept(said)

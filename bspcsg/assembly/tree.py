@@ -10,7 +10,7 @@ import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
 from ..above import above
-from ..attributes.material import color_of
+from ..attributes.colours import color_of
 from ..errors import Finding, invalid_parameter
 from ..geometry import transform
 from ..geometry.arrays import axes_of
@@ -72,17 +72,17 @@ class Assembly:
     name : str
     content : Solid or sequence of Solid and Assembly
         Whatever `Solid.from_mesh` takes counts as a solid.
-    color : (3,) or (4,) tuple of float, optional
-        Red, green, blue and opacity, 0 to 1; for everything inside that has none.
+    color : optional
+        For everything inside that has none: ``"orange"``, ``"#ff8800"``, or red, green, blue and
+        perhaps opacity as floats from 0 to 1 or whole numbers from 0 to 255. Whole numbers of which
+        none is above 1 count from 0 to 1. It is kept as four floats.
     density : float, optional
         Mass of a cubic model unit, for everything inside that has none.
 
     Raises
     ------
     InvalidParameterError
-        If assemblies lie more than 64 deep, or the density is negative.
-    InvalidMeshError
-        If the colour is none.
+        If assemblies lie more than 64 deep, the density is negative, or the colour is none.
 
     Examples
     --------
@@ -102,7 +102,7 @@ class Assembly:
         name: str = "",
         content: Content = (),
         *,
-        color: Iterable[float] | None = None,
+        color: Any = None,
         density: Scalar | None = None,
     ) -> None:
         self.name = of_kind(str, name, "name")

@@ -17,6 +17,7 @@ from .._types import BoolArray, FloatArray, IndexArray
 from ..errors import InvalidMeshError
 from .attributes import Attributes, Kind, Values, is_normal
 from .barycentric import weights
+from .colours import opaque
 from .material import Material
 
 #: Doubles of a source, its vertices on the lattice, its faces, and their numbers in the input.
@@ -313,18 +314,12 @@ def colors_alike(name: str, parts: Sequence[Values], depth: int) -> list[Values]
         part / kind.type(_BYTE) if floats and part.dtype.kind == "u" else part for part in parts
     ]
     width = max(part.shape[depth] for part in parts)
-    return [_opaque(part) if part.shape[depth] < width else part for part in found]
+    return [opaque(part) if part.shape[depth] < width else part for part in found]
 
 
 def _is_color(values: Values, depth: int) -> bool:
     is_known = values.dtype == np.uint8 or values.dtype.kind == "f"
     return is_known and values.shape[depth:] in ((3,), (4,))
-
-
-def _opaque(colors: Values) -> Values:
-    """Return colours of three numbers with a fourth, their opacity."""
-    full = _BYTE if colors.dtype.kind == "u" else 1
-    return np.concatenate([colors, np.full_like(colors[..., :1], full)], axis=-1)
 
 
 def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]:

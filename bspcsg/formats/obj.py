@@ -11,12 +11,13 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes, Kind, Values
+from ..attributes.colours import as_floats, is_color
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from . import mtl
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
-from .said import as_floats, chosen, is_color, said_of
+from .said import chosen, said_of
 from .source import Source, as_text, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.

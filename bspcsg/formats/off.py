@@ -7,11 +7,12 @@ from itertools import repeat
 import numpy as np
 
 from ..attributes.attributes import Attributes, Kind, Values
+from ..attributes.colours import as_bytes, is_color
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
-from .said import as_bytes, chosen, is_color, said_of
+from .said import chosen, said_of
 from .source import Source, quoted, whole
 
 _KEYWORD = re.compile(rb"(ST)?C?N?(4?)(n?)(?:OFF|off)")

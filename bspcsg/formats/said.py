@@ -2,19 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
-from .._types import FloatArray
 from ..attributes.attributes import KINDS, Attributes, Kind, Values
 from ..errors import Finding
 from ..mesh.mesh import Mesh
 from .raw import RawMesh
-
-#: Colours in bytes, as most formats have them.
-_BYTE = 255
 
 
 def said_of(mesh: Mesh | RawMesh) -> Attributes | None:
@@ -58,26 +50,3 @@ def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Fi
 
 
 _PLURAL: dict[Kind, str] = {"vertex": "vertices", "corner": "corners", "face": "faces"}
-
-
-def is_color(name: str, values: Values, depth: int) -> bool:
-    """Say whether an attribute is a colour: three or four numbers."""
-    is_number = values.dtype.kind in "uf"
-    return name == "color" and is_number and values.shape[depth:] in ((3,), (4,))
-
-
-def as_bytes(colors: Values) -> npt.NDArray[np.uint8]:
-    """Return colours in bytes, as `as_floats` has them; those beyond 0 and 1 are moved there."""
-    if colors.dtype == np.uint8:
-        return colors
-    scaled: Any = np.clip(as_floats(colors), 0, 1) * _BYTE
-    rounded: npt.NDArray[np.uint8] = np.rint(scaled).astype(np.uint8)
-    return rounded
-
-
-def as_floats(colors: Values) -> FloatArray:
-    """Return colours as floats: whole numbers are parts of their type's largest, NaN is white."""
-    numbers = colors.astype(np.float64)
-    if colors.dtype.kind == "u":
-        return numbers * (1 / np.iinfo(colors.dtype).max)
-    return np.where(np.isnan(numbers), 1.0, numbers)

@@ -427,7 +427,7 @@ def test_bad_assemblies_are_refused() -> None:
     with pytest.raises(b.InvalidParameterError):
         b.Assembly("x", density=-1)
     with pytest.raises(b.InvalidMeshError):
-        b.Assembly("x", color=(1, 2, 3))
+        b.Assembly("x", color=(1, 2, 300))
     with pytest.raises(b.InvalidMeshError):
         b.Assembly("x", [3])
 
