@@ -10,7 +10,7 @@ import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
 from ..above import above
-from ..attributes.colours import color_of
+from ..attributes.colours import AnyColor, color_of
 from ..errors import Finding, invalid_parameter
 from ..geometry import transform
 from ..geometry.arrays import axes_of
@@ -102,7 +102,7 @@ class Assembly:
         name: str = "",
         content: Content = (),
         *,
-        color: Any = None,
+        color: AnyColor | None = None,
         density: Scalar | None = None,
     ) -> None:
         self.name = of_kind(str, name, "name")

@@ -14,8 +14,8 @@ numpy's unsigned types leave no doubt and are parts of the largest number of the
 """
 
 import re
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +27,9 @@ from ..parameters import shown
 
 #: Colours in bytes, as most files have them.
 Bytes = npt.NDArray[np.uint8]
+
+#: Whatever says one colour, as above.
+AnyColor: TypeAlias = str | Iterable[float] | npt.NDArray[Any]
 
 #: The name of the attribute that is a colour.
 COLOR = "color"

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from ..errors import InvalidMeshError
-from .colours import color_of
+from .colours import AnyColor, color_of
 
 #: Beginnings of the pictures that files of meshes may hold.
 _MEDIA = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Material:
     """A colour, and a picture laid over faces by the attribute ``"uv"``.
 
@@ -25,11 +25,13 @@ class Material:
     color: tuple[float, ...] = (1.0, 1.0, 1.0, 1.0)
     texture: bytes | None = None
 
-    def __post_init__(self) -> None:
-        """Take whatever says a colour; refuse what says none."""
-        object.__setattr__(self, "color", color_of(self.color))
-        is_picture = isinstance(self.texture, bytes) and self.media is not None
-        if self.texture is not None and not is_picture:
+    def __init__(
+        self, color: AnyColor = (1.0, 1.0, 1.0, 1.0), texture: bytes | None = None
+    ) -> None:
+        object.__setattr__(self, "color", color_of(color))
+        object.__setattr__(self, "texture", texture)
+        is_picture = isinstance(texture, bytes) and self.media is not None
+        if texture is not None and not is_picture:
             raise InvalidMeshError("A texture is a PNG or JPEG file, as bytes.", "attributes")
 
     @property

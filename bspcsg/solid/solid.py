@@ -213,7 +213,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
         Attributes come along: those of a `Mesh` of this package, of a trimesh (its colours as
         ``"color"``, its texture coordinates as ``"uv"``, its materials), manifold3d's as
-        ``"properties"``, data of points and cells of pyvista and meshio.
+        ``"properties"``, or by their names if `to_manifold` gave them, data of points and cells of
+        pyvista and meshio.
         """
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
