@@ -19,6 +19,7 @@ from ..formats.files import form_of, read_as, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
 from ..formats.registry import Form
+from ..formats.said import not_held
 from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, whole_content
@@ -255,11 +256,7 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
 
 def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
     """Return the finding about attributes of some names, if there are any."""
-    if not lost:
-        return ()
-    told = ", ".join(f"“{name}”" for name in sorted(lost))
-    message = f"{suffix[1:].upper()} has no room for attributes: {told} were left out."
-    return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
+    return not_held([f"“{name}”" for name in sorted(lost)], suffix)
 
 
 def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
@@ -278,6 +275,7 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
             said = replace(said, face=face, materials={name: Material(part.color)})
         held = obj.kept(said)
         lost.update(set(said.names).difference(held.names))
-        own = None if held.is_empty else held
+        # Colours of faces go beside materials of other parts.
+        own = None if held.is_empty else obj.with_materials(held)
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
     return joined(pieces), lost

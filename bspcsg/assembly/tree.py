@@ -11,7 +11,7 @@ import numpy as np
 from .._types import FloatArray, Scalar, Vector
 from ..above import above
 from ..attributes.colours import AnyColor, color_of
-from ..errors import Finding, invalid_parameter
+from ..errors import Finding, invalid_parameter, warn_of_losses
 from ..geometry import transform
 from ..geometry.arrays import axes_of
 from ..geometry.transform import Factors
@@ -291,8 +291,14 @@ class Assembly:
         ------
         FormatError
             If the suffix is another one (code "unknown_format"), or as for `bspcsg.save`.
+
+        Warns
+        -----
+        LossWarning
+            As for `bspcsg.save`.
         """
         findings: tuple[Finding, ...] = above("save_assembly")(self, path)
+        warn_of_losses(findings)
         return findings
 
     @classmethod

@@ -240,6 +240,28 @@ def _turned(values: Values, linear: FloatArray) -> Values:
     return turned
 
 
+def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
+    """Return the attributes, those of corners as ones of faces where all three corners agree.
+
+    Parameters
+    ----------
+    said : Attributes
+    only : str, optional
+        The one name that is to be so.
+    """
+    even = {}
+    for name, values in said.corner.items():
+        if only not in (None, name):
+            continue
+        same = values == values[:, :1]
+        if values.dtype.kind == "f":
+            same |= np.isnan(values) & np.isnan(values[:, :1])
+        if same.all():
+            even[name] = values[:, 0]
+    rest = said.without(even)
+    return Attributes(said.faces, rest.vertex, rest.corner, {**rest.face, **even}, said.materials)
+
+
 @dataclass(frozen=True, eq=False)
 class Given:
     """Attributes as a caller gives them, in any form that numpy understands."""

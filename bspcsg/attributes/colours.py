@@ -180,6 +180,11 @@ def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return np.concatenate([colors, np.full_like(colors[..., :1], full)], axis=-1)
 
 
+def are_same_in_bytes(some: npt.NDArray[Any], others: npt.NDArray[Any]) -> bool:
+    """Say whether colours are the same on a screen, however they are written."""
+    return np.array_equal(opaque(as_bytes(some)), opaque(as_bytes(others)))
+
+
 def is_opaque(colors: npt.NDArray[Any]) -> bool:
     """Say whether no colour lets anything through."""
     return colors.shape[-1] == 3 or bool((as_bytes(colors[..., 3]) == _BYTE).all())

@@ -6,8 +6,8 @@ from itertools import repeat
 
 import numpy as np
 
-from ..attributes.attributes import Attributes, Kind, Values
-from ..attributes.colours import as_bytes, is_color
+from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.colours import COLOR, as_bytes, is_color
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
@@ -125,6 +125,7 @@ def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
 
 def kept(said: Attributes) -> Attributes:
     """Return what OFF holds of attributes: colours of vertices, else of faces, in bytes."""
+    said = with_even_faces(said, COLOR)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         is_held = kind != "corner" and is_color(name, values, 1)

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .._types import IndexArray
-from ..attributes.attributes import Attributes, Kind, Values
+from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
 from ..attributes.colours import COLOR, as_bytes, as_floats, is_color, opaque
 from ..attributes.material import Material
 from ..errors import Finding, InvalidMeshError, warn_of_losses
@@ -63,7 +63,7 @@ class _Dressing:
 
     def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
         self._made = made
-        self._said = _with_even_faces(said)
+        self._said = with_even_faces(said)
         self._is_colored = False
 
     def run(self) -> None:
@@ -143,19 +143,6 @@ class _Dressing:
 
 def _are_places(uv: Values | None) -> bool:
     return uv is not None and uv.dtype.kind == "f" and uv.shape[1:] == (2,)
-
-
-def _with_even_faces(said: Attributes) -> Attributes:
-    """Return the attributes, those of corners as ones of faces where all three corners agree."""
-    even = {}
-    for name, values in said.corner.items():
-        same = values == values[:, :1]
-        if values.dtype.kind == "f":
-            same |= np.isnan(values) & np.isnan(values[:, :1])
-        if same.all():
-            even[name] = values[:, 0]
-    rest = said.without(even)
-    return Attributes(said.faces, rest.vertex, rest.corner, {**rest.face, **even}, said.materials)
 
 
 def mean_colors(values: Values) -> Values:

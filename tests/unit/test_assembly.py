@@ -12,6 +12,10 @@ import pytest
 import bspcsg as b
 from support.pictures import PIXEL
 
+# What is left out is asked of findings here; that it is warned of, test_attribute_matrix.py says.
+pytestmark = pytest.mark.filterwarnings("ignore::bspcsg.LossWarning")
+
+
 RED, GREY = (1.0, 0.0, 0.0, 1.0), (0.2, 0.2, 0.2, 1.0)
 
 #: The findings that files of a format always come with.
@@ -354,8 +358,8 @@ def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     assert [part.name for part in again] == [part.path for part in car()]
     for part, old in zip(again, car(), strict=True):
         assert part.solid == old.solid
-    told = again.parts[4].solid.to_mesh()
-    assert [one.color for one in told.materials.values()] == [RED]
+    told = again.parts[4].solid.to_mesh().attributes.at_corners("color")
+    assert {b.Material(one).color for one in told[:, 0]} == {RED}
     b.cube(2).save(tmp_path / "x.stl")
     assert b.Assembly.load(tmp_path / "x.stl").to_solid().volume == 8
 
