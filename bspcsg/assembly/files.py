@@ -275,7 +275,9 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
             said = replace(said, face=face, materials={name: Material(part.color)})
         held = obj.kept(said)
         lost.update(set(said.names).difference(held.names))
-        # Colours of faces go beside materials of other parts.
-        own = None if held.is_empty else obj.with_materials(held)
+        own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
+    if any(one.attributes and "material" in one.attributes.face for one in pieces):
+        # Colours of faces go beside materials of other parts.
+        pieces = [replace(one, attributes=obj.with_materials(one.attributes)) for one in pieces]
     return joined(pieces), lost

@@ -303,7 +303,7 @@ def kept(said: Attributes) -> Attributes:
     used = set(held.face["material"].tolist()) if "material" in held.face else set()
     named = {names[name]: material for name, material in said.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
-    return _with_colors(Attributes(held.faces, held.vertex, held.corner, held.face, materials))
+    return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
 
 
 def _with_colors_of_vertices(said: Attributes) -> Attributes:
@@ -322,7 +322,7 @@ def _with_colors_of_vertices(said: Attributes) -> Attributes:
 
 
 #: The names of materials that are colours of faces: opacity comes last.
-_COLORED = re.compile("_([0-9a-f]{8})")
+_COLORED = re.compile("color_([0-9a-f]{8})")
 
 
 def _with_colors(said: Attributes) -> Attributes:
@@ -357,7 +357,7 @@ def with_materials(said: Attributes | None) -> Attributes | None:
     if said is None or COLOR not in said.face:
         return said
     kinds, numbers = np.unique(said.face[COLOR], axis=0, return_inverse=True)
-    names = [f"_{bytes(kind).hex()}" for kind in kinds.tolist()]
+    names = [f"color_{bytes(kind).hex()}" for kind in kinds.tolist()]
     materials = {name: Material(kind / _BYTE) for name, kind in zip(names, kinds, strict=True)}
     rest = said.without({COLOR})
     face = {**rest.face, "material": np.array(names)[numbers.ravel()]}
@@ -385,7 +385,9 @@ def _held_names(names: set[str]) -> dict[str, str]:
     taken = {""}
     # Those that can stay as they are come first.
     for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
-        fit = free = called(name) or "_"
+        fit = called(name) or "_"
+        # What is a material stays one.
+        fit = free = f"{fit}_" if _COLORED.fullmatch(fit) else fit
         number = 1
         while free in taken:
             number += 1

@@ -197,11 +197,11 @@ class Column:
 
     @property
     def _is_color(self) -> bool:
-        return self.name == COLOR and self.shape in ((3,), (4,))
+        return self.name == COLOR and self.shape == (4,)
 
     def numbers(self, values: Values) -> Values:
         """Return values as numbers (k, width); colours from 0 to 1, as Manifold has them."""
-        found = as_floats(values) if self._is_color else values.astype(np.float64)
+        found = opaque(as_floats(values)) if self._is_color else values.astype(np.float64)
         return found.reshape(-1, self.width)
 
     def values(self, numbers: Values) -> Values:
@@ -256,7 +256,9 @@ def _in_order(said: Attributes) -> list[str]:
 
 def _column(said: Attributes, name: str) -> Column:
     values = said.at_corners(name, _NONE)
-    return Column(name, said.kind_of(name) or "face", values.dtype, values.shape[2:])
+    # Colours of three numbers and of four have the same columns, so that they can be mixed.
+    shape = (4,) if is_color(name, values, 2) else values.shape[2:]
+    return Column(name, said.kind_of(name) or "face", values.dtype, shape)
 
 
 def _with_properties(

@@ -41,8 +41,8 @@ class Convertible(Measured):
         """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted.
 
         Attributes that are numbers are its properties: those called ``"properties"`` first, then
-        the others in their order, colours from 0 to 1. `Solid.from_mesh` gives them their names
-        back, also after Manifold's operations, if all that it is made of had the same.
+        the others in their order, colours as four numbers from 0 to 1. `Solid.from_mesh` gives them
+        their names back, also after Manifold's operations, if all that it is made of had the same.
 
         Warns
         -----

@@ -352,14 +352,23 @@ def test_parts_without_a_colour_are_white_in_an_obj(tmp_path: Path) -> None:
     assert np.unique(colors, axis=0).tolist() == [[0, 0, 1], [1, 1, 1]]
 
 
+def test_colours_of_parts_and_of_faces_share_an_obj(tmp_path: Path) -> None:
+    halves = b.cube(1).tagged(color="blue") - b.cube(0.5).tagged(color="#ff000080")
+    kinds = [b.Assembly("part", b.cube(1), color="orange"), b.Assembly("faces", halves)]
+    assert not b.Assembly("both", kinds).save(tmp_path / "x.obj")
+    found = b.load(tmp_path / "x.obj").to_mesh().materials.values()
+    told = ("orange", "blue", "#ff000080")
+    assert {one.color for one in found} == {b.Material(one).color for one in told}
+
+
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     car().save(tmp_path / "x.obj")
     again = b.Assembly.load(tmp_path / "x.obj")
     assert [part.name for part in again] == [part.path for part in car()]
     for part, old in zip(again, car(), strict=True):
         assert part.solid == old.solid
-    told = again.parts[4].solid.to_mesh().attributes.at_corners("color")
-    assert {b.Material(one).color for one in told[:, 0]} == {RED}
+    told = again.parts[4].solid.to_mesh()
+    assert [one.color for one in told.materials.values()] == [RED]
     b.cube(2).save(tmp_path / "x.stl")
     assert b.Assembly.load(tmp_path / "x.stl").to_solid().volume == 8
 

@@ -105,13 +105,13 @@ PAIRS = (("x", [255, 0, 0, 255]), ("y", [0, 0, 255, 255]))
 
 
 def test_names_of_properties_survive_manifolds_operations() -> None:
-    red, blue = (b.cube(2).tagged(color=c, layer=k) for k, c in enumerate(["red", "blue"]))
+    red, blue = (b.cube(2).tagged(color=c, layer=k) for k, c in enumerate(["red", "#00f8"]))
     rest = red.to_manifold() - blue.translate(1, 1, 1).to_manifold()
     mesh = b.Solid.from_mesh(rest).to_mesh()
     assert mesh.volume == 7 and sorted(mesh.face_attributes) == ["color", "layer"]
     at_cut = mesh.face_attributes["layer"] == 1
-    assert (mesh.face_attributes["color"][at_cut] == (0, 0, 255)).all() and at_cut.any()
-    assert (mesh.face_attributes["color"][~at_cut] == (255, 0, 0)).all()
+    assert (mesh.face_attributes["color"][at_cut] == (0, 0, 255, 136)).all() and at_cut.any()
+    assert (mesh.face_attributes["color"][~at_cut] == (255, 0, 0, 255)).all()
 
 
 def test_properties_of_manifold_come_back_in_their_columns() -> None:
