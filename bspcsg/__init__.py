@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         InvalidMeshError,
         InvalidParameterError,
         LimitError,
+        LossWarning,
         MissingPartError,
         UnboundedError,
     )
@@ -87,6 +88,7 @@ __all__ = [
     "InvalidMeshError",
     "InvalidParameterError",
     "LimitError",
+    "LossWarning",
     "Material",
     "Mesh",
     "MissingPartError",
@@ -153,7 +155,7 @@ _MODULES = {
     "attributes.material": "Material",
     "verify.check": "CheckReport Verdict validate",
     "errors": "BspcsgError Finding FormatError InternalError InvalidMeshError"
-    " InvalidParameterError LimitError MissingPartError UnboundedError",
+    " InvalidParameterError LimitError LossWarning MissingPartError UnboundedError",
     "io": "load save",
     "mesh.mesh": "Mesh",
     "modelling.bodies.hulls": "hull",

@@ -4,7 +4,9 @@ Every failure is a `BspcsgError` with a stable `code`, the places it concerns in
 sentence that says what is wrong and what to do.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+import sys
+import warnings
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -267,3 +269,32 @@ class Finding:
             tuple(finding["where"]),
             finding["count"],
         )
+
+
+class LossWarning(UserWarning):
+    """An attribute of a solid is not in the file or mesh made of it, which has no place for it."""
+
+
+#: The codes of findings about attributes that are not in what was made.
+_LOSSES = frozenset({"attributes_left_out", "colors_left_out"})
+
+
+def warn_of_losses(findings: Iterable[Finding]) -> None:
+    """Warn the caller of this package about the attributes that did not come along."""
+    for finding in findings:
+        if finding.code in _LOSSES:
+            warnings.warn(finding.message, LossWarning, stacklevel=_levels_to_caller())
+
+
+def _levels_to_caller() -> int:
+    """Return how far up the code is that called this package, seen from the function above."""
+    frame = sys._getframe(1)
+    level = 1
+    while frame.f_back is not None and _is_own(str(frame.f_globals.get("__name__", ""))):
+        frame = frame.f_back
+        level += 1
+    return level
+
+
+def _is_own(module: str) -> bool:
+    return module.partition(".")[0] == __package__

@@ -9,7 +9,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from .errors import Finding, FormatError
+from .errors import Finding, FormatError, warn_of_losses
 from .formats.files import (
     decoded,
     encoded,
@@ -148,6 +148,11 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
         ``"write_mismatch"`` if what was written reads back as another mesh.
     UnboundedError
         If the solid reaches to infinity.
+
+    Warns
+    -----
+    LossWarning
+        If the format has no place for an attribute, or for all of a colour.
     """
     is_text = truth_value(text, "text")
     own = of_kind(Solid, solid, "solid")
@@ -156,6 +161,9 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
         from .csg.from_solid import lost_attributes
 
         csg.dump(own, path)
-        return lost_attributes([own])
-    form_of(path, is_text)
-    return write(own.normalized().to_mesh(), path, text=is_text)
+        findings = lost_attributes([own])
+    else:
+        form_of(path, is_text)
+        findings = write(own.normalized().to_mesh(), path, text=is_text)
+    warn_of_losses(findings)
+    return findings

@@ -90,7 +90,8 @@ def boolean(
     Returns
     -------
     trimesh.Trimesh
-        With float64 vertices; empty if nothing is left.
+        With float64 vertices and the attributes of the operands, such as their colours (see
+        `Solid.to_trimesh`); empty if nothing is left.
 
     Raises
     ------

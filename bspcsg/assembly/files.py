@@ -10,6 +10,7 @@ import numpy as np
 
 from .._types import FloatArray
 from ..attributes.attributes import Attributes
+from ..attributes.colours import hexadecimal
 from ..attributes.material import Material
 from ..errors import Finding, FormatError, format_errors
 from ..formats import obj, single
@@ -18,6 +19,7 @@ from ..formats.files import form_of, read_as, write
 from ..formats.glb import scene as glb
 from ..formats.raw import RawMesh, joined, parts_of
 from ..formats.registry import Form
+from ..formats.said import not_held
 from ..formats.scene import SceneNode, are_alike, say_alike
 from ..formats.solids import solid_of
 from ..formats.source import Source, whole_content
@@ -254,11 +256,7 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
 
 def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
     """Return the finding about attributes of some names, if there are any."""
-    if not lost:
-        return ()
-    told = ", ".join(f"“{name}”" for name in sorted(lost))
-    message = f"{suffix[1:].upper()} has no room for attributes: {told} were left out."
-    return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
+    return not_held([f"“{name}”" for name in sorted(lost)], suffix)
 
 
 def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
@@ -272,11 +270,14 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
         mesh = moved(part.shape, part.factors).normalized().to_mesh()
         said = mesh.attributes.without_empty_material()
         if part.color is not None and not _is_painted(said):
-            name = "#" + bytes(round(value * _BYTE) for value in part.color).hex()
+            name = hexadecimal(part.color)
             face = {**said.face, "material": np.full(len(mesh.faces), name)}
             said = replace(said, face=face, materials={name: Material(part.color)})
         held = obj.kept(said)
         lost.update(set(said.names).difference(held.names))
         own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
+    if any(one.attributes and "material" in one.attributes.face for one in pieces):
+        # Colours of faces go beside materials of other parts.
+        pieces = [replace(one, attributes=obj.with_materials(one.attributes)) for one in pieces]
     return joined(pieces), lost

@@ -5,11 +5,12 @@ from collections.abc import Iterable
 from typing import Any
 
 from .. import csg
+from ..attributes.colours import color_of
 from ..csg import CsgTree, Node
 from ..csg.from_solid import lost_attributes, tree_of
 from ..csg.scope import Scope, inherited
 from ..csg.syntax.tree import Argument
-from ..errors import Finding, InvalidMeshError
+from ..errors import Finding
 from ..solid.solid import Solid
 from .tree import Assembly
 
@@ -58,11 +59,17 @@ class _Reading:
 
 
 def _color(node: Node) -> tuple[float, ...] | None:
-    """Return what colour a node says, if it is one."""
+    """Return what colour a node says, if it is one; a second argument is its opacity."""
+    named = {
+        argument.name or str(place): argument.value for place, argument in enumerate(node.arguments)
+    }
+    given: Any = named.get("c", named.get("0"))
+    alpha: Any = named.get("alpha", named.get("1"))
     try:
-        given: Any = node.arguments[0].value
-        return Assembly("", color=[float(value) for value in given]).color
-    except (IndexError, TypeError, ValueError, InvalidMeshError):
+        # Scripts count from 0 to 1, however a number is written.
+        found = color_of(given if isinstance(given, str) else [float(value) for value in given])
+        return found if alpha is None else color_of([*found[:3], float(alpha)])
+    except (TypeError, ValueError):
         return None
 
 

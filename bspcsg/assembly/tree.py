@@ -10,8 +10,8 @@ import numpy as np
 
 from .._types import FloatArray, Scalar, Vector
 from ..above import above
-from ..attributes.material import color_of
-from ..errors import Finding, invalid_parameter
+from ..attributes.colours import AnyColor, color_of
+from ..errors import Finding, invalid_parameter, warn_of_losses
 from ..geometry import transform
 from ..geometry.arrays import axes_of
 from ..geometry.transform import Factors
@@ -72,17 +72,17 @@ class Assembly:
     name : str
     content : Solid or sequence of Solid and Assembly
         Whatever `Solid.from_mesh` takes counts as a solid.
-    color : (3,) or (4,) tuple of float, optional
-        Red, green, blue and opacity, 0 to 1; for everything inside that has none.
+    color : optional
+        For everything inside that has none: ``"orange"``, ``"#ff8800"``, or red, green, blue and
+        perhaps opacity as floats from 0 to 1 or whole numbers from 0 to 255. Whole numbers of which
+        none is above 1 count from 0 to 1. It is kept as four floats.
     density : float, optional
         Mass of a cubic model unit, for everything inside that has none.
 
     Raises
     ------
     InvalidParameterError
-        If assemblies lie more than 64 deep, or the density is negative.
-    InvalidMeshError
-        If the colour is none.
+        If assemblies lie more than 64 deep, the density is negative, or the colour is none.
 
     Examples
     --------
@@ -102,7 +102,7 @@ class Assembly:
         name: str = "",
         content: Content = (),
         *,
-        color: Iterable[float] | None = None,
+        color: AnyColor | None = None,
         density: Scalar | None = None,
     ) -> None:
         self.name = of_kind(str, name, "name")
@@ -291,8 +291,14 @@ class Assembly:
         ------
         FormatError
             If the suffix is another one (code "unknown_format"), or as for `bspcsg.save`.
+
+        Warns
+        -----
+        LossWarning
+            As for `bspcsg.save`.
         """
         findings: tuple[Finding, ...] = above("save_assembly")(self, path)
+        warn_of_losses(findings)
         return findings
 
     @classmethod

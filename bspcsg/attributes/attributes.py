@@ -11,6 +11,7 @@ import numpy.typing as npt
 from .._types import BoolArray, FloatArray, IndexArray
 from ..errors import InvalidMeshError
 from ..geometry.arrays import is_masked
+from .colours import COLOR, colors_of, in_bytes
 from .material import Material
 
 #: Values of any type, one or an array of them for each element.
@@ -239,6 +240,28 @@ def _turned(values: Values, linear: FloatArray) -> Values:
     return turned
 
 
+def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
+    """Return the attributes, those of corners as ones of faces where all three corners agree.
+
+    Parameters
+    ----------
+    said : Attributes
+    only : str, optional
+        The one name that is to be so.
+    """
+    even = {}
+    for name, values in said.corner.items():
+        if only not in (None, name):
+            continue
+        same = values == values[:, :1]
+        if values.dtype.kind == "f":
+            same |= np.isnan(values) & np.isnan(values[:, :1])
+        if same.all():
+            even[name] = values[:, 0]
+    rest = said.without(even)
+    return Attributes(said.faces, rest.vertex, rest.corner, {**rest.face, **even}, said.materials)
+
+
 @dataclass(frozen=True, eq=False)
 class Given:
     """Attributes as a caller gives them, in any form that numpy understands."""
@@ -301,7 +324,7 @@ def array_of(values: Any, name: str) -> Values:
 
 
 def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values:
-    array = array_of(values, name)
+    array = _colors(values, shape) if name == COLOR else array_of(values, name)
     if array.dtype.kind not in _TYPES:
         allowed = "truth values, whole numbers, floats and text"
         raise _refused(f"“{name}” holds values of type {array.dtype}; there may be {allowed}.")
@@ -312,6 +335,20 @@ def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values
         )
     array.flags.writeable = False
     return array
+
+
+def _colors(given: Any, shape: tuple[int, ...]) -> Values:
+    """Return an array called "color" as colours, if it is any; one of them is that of all."""
+    is_mixed = isinstance(given, (list, tuple)) and any(isinstance(one, str) for one in given)
+    array = colors_of(given) if is_mixed else array_of(given, COLOR)
+    if array.dtype.kind == "U":
+        array = colors_of(array)
+    elif array.dtype.kind == "i" and array.shape[-1:] in ((3,), (4,)):
+        found = in_bytes(array)
+        array = array if found is None else found
+    if array.shape in ((3,), (4,)):
+        array = np.broadcast_to(array, (*shape, *array.shape))
+    return np.array(array, order="C")
 
 
 def _materials(given: Mapping[str, Material] | None) -> Mapping[str, Material]:

@@ -17,13 +17,11 @@ from .._types import BoolArray, FloatArray, IndexArray
 from ..errors import InvalidMeshError
 from .attributes import Attributes, Kind, Values, is_normal
 from .barycentric import weights
+from .colours import is_color, opaque
 from .material import Material
 
 #: Doubles of a source, its vertices on the lattice, its faces, and their numbers in the input.
 SourceArrays: TypeAlias = tuple[FloatArray, FloatArray, IndexArray, IndexArray]
-
-#: The largest value of a colour in bytes.
-_BYTE = 255
 
 #: A weight below minus this is that of a place outside the face: mending moved it there.
 _OUTSIDE = 0.125
@@ -298,33 +296,26 @@ def _filled(
 def colors_alike(name: str, parts: Sequence[Values], depth: int) -> list[Values]:
     """Return colours of several meshes in one form; other values as they are.
 
-    Bytes beside floats become floats from 0 to 1, and three numbers beside four become opaque.
+    Whole numbers of one type stay; beside others all become floats from 0 to 1. Three numbers
+    beside four become opaque.
 
     Parameters
     ----------
     name, parts, depth
         As for `common_type`.
     """
-    if name != "color" or not all(_is_color(part, depth) for part in parts):
+    if not all(is_color(name, part, depth) for part in parts):
         return list(parts)
     floats = [part.dtype for part in parts if part.dtype.kind == "f"]
-    kind = np.result_type(*floats) if floats else np.dtype(np.uint8)
-    found = [
-        part / kind.type(_BYTE) if floats and part.dtype.kind == "u" else part for part in parts
-    ]
+    found = list(parts)
+    if floats or len({part.dtype for part in parts}) > 1:
+        kind = np.result_type(*(floats or [np.dtype(np.float64)]))
+        found = [
+            part / kind.type(np.iinfo(part.dtype).max) if part.dtype.kind == "u" else part
+            for part in parts
+        ]
     width = max(part.shape[depth] for part in parts)
-    return [_opaque(part) if part.shape[depth] < width else part for part in found]
-
-
-def _is_color(values: Values, depth: int) -> bool:
-    is_known = values.dtype == np.uint8 or values.dtype.kind == "f"
-    return is_known and values.shape[depth:] in ((3,), (4,))
-
-
-def _opaque(colors: Values) -> Values:
-    """Return colours of three numbers with a fourth, their opacity."""
-    full = _BYTE if colors.dtype.kind == "u" else 1
-    return np.concatenate([colors, np.full_like(colors[..., :1], full)], axis=-1)
+    return [opaque(part) if part.shape[depth] < width else part for part in found]
 
 
 def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]:

@@ -100,7 +100,7 @@ def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
     if not names:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(names))
-    message = f"scripts have no room for attributes: {told} were left out."
+    message = f"scripts have no place for attributes: {told} were left out."
     return (Finding("attributes_left_out", "warning", message, (), len(names)),)
 
 

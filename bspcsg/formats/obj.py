@@ -4,19 +4,22 @@ Groups, lines and curves are passed by.
 """
 
 import math
+import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..attributes.attributes import Attributes, Kind, Values
+from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.colours import COLOR, as_bytes, as_floats, is_color, is_opaque, opaque
+from ..attributes.material import Material
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from . import mtl
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, on_one_line, parts_of, says_empty_set
-from .said import as_floats, chosen, is_color, said_of
+from .said import chosen, said_of
 from .source import Source, as_text, quoted, whole
 
 #: Statements about what a mesh of triangles has no room for.
@@ -88,7 +91,7 @@ def read(source: Source) -> RawMesh:
         (*_curved(found.surfaces), *_missing(missing)),
         objects=named if len(named) > 1 else (),
         dropped=(*sorted(found.dropped), *polygons.dropped),
-        attributes=None if said.is_empty else said,
+        attributes=None if said.is_empty else _with_colors(said),
     )
 
 
@@ -295,9 +298,10 @@ def called(name: str) -> str:
 def kept(said: Attributes) -> Attributes:
     """Return what OBJ holds of attributes.
 
-    Colours of vertices and materials of faces; texture coordinates and normals of corners.
+    Colours of vertices, without opacity, and materials of faces, or else their colours; texture
+    coordinates and normals of corners.
     """
-    said = said.without_empty_material()
+    said = _with_colors_of_vertices(said.without_empty_material())
     given = _named_materials(said)
     names = _held_names({*np.unique(given).tolist(), *said.materials})
 
@@ -306,8 +310,10 @@ def kept(said: Attributes) -> Attributes:
         if values is given:
             kinds, numbers = np.unique(values, return_inverse=True)
             return np.array([names[one] for one in kinds.tolist()])[numbers]
-        if kind == "vertex" and is_color(name, values, depth) and values.shape[1:] == (3,):
-            return as_floats(values)
+        if kind == "vertex" and is_color(name, values, depth):
+            return as_floats(values)[:, :3]
+        if kind == "face" and is_color(name, values, depth):
+            return None if "material" in said.face else opaque(as_bytes(values))
         width = _CORNERS.get(name)
         if kind != "face" and values.dtype.kind == "f" and values.shape[depth:] == (width,):
             return _whole_rows(values)
@@ -318,6 +324,64 @@ def kept(said: Attributes) -> Attributes:
     named = {names[name]: material for name, material in said.materials.items()}
     materials = {name: material for name, material in named.items() if name in used}
     return Attributes(held.faces, held.vertex, held.corner, held.face, materials)
+
+
+def _with_colors_of_vertices(said: Attributes) -> Attributes:
+    """Return the attributes, opaque colours of faces as ones of vertices if those agree."""
+    said = with_even_faces(said, COLOR)
+    colors = said.face.get(COLOR)
+    if colors is None or not is_color(COLOR, colors, 1) or not is_opaque(colors):
+        return said
+    found = np.zeros((int(said.faces.max(initial=-1)) + 1, 3))
+    shown = as_floats(colors)[:, None, :3]
+    found[said.faces] = shown
+    if not np.array_equal(found[said.faces], np.repeat(shown, 3, axis=1)):
+        return said
+    rest = said.without({COLOR})
+    return replace(rest, vertex={**rest.vertex, COLOR: found})
+
+
+#: The names of materials that are colours of faces: opacity comes last.
+_COLORED = re.compile("color_([0-9a-f]{8})")
+
+
+def _with_colors(said: Attributes) -> Attributes:
+    """Return the attributes with colours for materials, if all are called after theirs."""
+    names = said.face.get("material")
+    if names is None or COLOR in said.names:
+        return said
+    kinds, numbers = np.unique(names, return_inverse=True)
+    colors = [_color_called(kind, said.materials.get(kind)) for kind in kinds.tolist()]
+    if not all(colors):
+        return said
+    table = np.array([list(color) for color in colors], dtype=np.uint8)
+    rest = said.without({"material"})
+    return replace(rest, face={**rest.face, COLOR: table[numbers]}, materials={})
+
+
+def _color_called(name: str, material: Material | None) -> bytes:
+    """Return the colour that a material is called after; none if it is another or has a picture."""
+    match = _COLORED.fullmatch(name)
+    if match is None:
+        return b""
+    color = bytes.fromhex(match[1])
+    is_its = material is None or material == Material(np.frombuffer(color, np.uint8) / _BYTE)
+    return color if is_its else b""
+
+
+_BYTE = 255
+
+
+def with_materials(said: Attributes | None) -> Attributes | None:
+    """Return the attributes with materials for colours of faces, for which OBJ has nothing else."""
+    if said is None or COLOR not in said.face:
+        return said
+    kinds, numbers = np.unique(said.face[COLOR], axis=0, return_inverse=True)
+    names = [f"color_{bytes(kind).hex()}" for kind in kinds.tolist()]
+    materials = {name: Material(kind / _BYTE) for name, kind in zip(names, kinds, strict=True)}
+    rest = said.without({COLOR})
+    face = {**rest.face, "material": np.array(names)[numbers.ravel()]}
+    return replace(rest, face=face, materials=materials)
 
 
 def _named_materials(said: Attributes) -> Values:
@@ -341,7 +405,9 @@ def _held_names(names: set[str]) -> dict[str, str]:
     taken = {""}
     # Those that can stay as they are come first.
     for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
-        fit = free = called(name) or "_"
+        fit = called(name) or "_"
+        # What is a material stays one.
+        fit = free = f"{fit}_" if _COLORED.fullmatch(fit) else fit
         number = 1
         while free in taken:
             number += 1
@@ -357,7 +423,7 @@ _CORNERS = {"uv": 2, "normal": 3}
 
 def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
     """Return the statement that names the library of materials, and the files beside an OBJ."""
-    said = said_of(mesh)
+    said = with_materials(said_of(mesh))
     if said is None or not said.materials:
         return b"", {}
     library, files = mtl.written(said.materials, _as_word(stem))
@@ -377,7 +443,7 @@ def _as_word(stem: str) -> str:
 
 def text(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     """Yield the file; every coordinate reads back as the same double."""
-    said = said_of(mesh)
+    said = with_materials(said_of(mesh))
     if says_empty_set(mesh):
         yield EMPTY_SET
     if said is not None and "color" in said.vertex:

@@ -6,12 +6,13 @@ from itertools import repeat
 
 import numpy as np
 
-from ..attributes.attributes import Attributes, Kind, Values
+from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.colours import COLOR, as_bytes, is_color
 from ..errors import Finding, FormatError
 from ..mesh.mesh import Mesh
 from .blocks import encoded_lines, listed
 from .raw import EMPTY_SET, IndexPolygons, RawMesh, says_empty_set
-from .said import as_bytes, chosen, is_color, said_of
+from .said import chosen, said_of
 from .source import Source, integral, quoted, whole
 
 #: The keyword; the number of vertices may follow it without a blank.
@@ -126,6 +127,7 @@ def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
 
 def kept(said: Attributes) -> Attributes:
     """Return what OFF holds of attributes: colours of vertices, else of faces, in bytes."""
+    said = with_even_faces(said, COLOR)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         is_held = kind != "corner" and is_color(name, values, 1)

@@ -1,20 +1,15 @@
 """The attributes in files besides the shape: those that a format keeps, and those it leaves out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from .._types import FloatArray
 from ..attributes.attributes import KINDS, Attributes, Kind, Values
+from ..attributes.colours import COLOR, as_floats, is_color, is_opaque
 from ..errors import Finding
 from ..mesh.mesh import Mesh
 from .raw import RawMesh
-
-#: Colours in bytes, as most formats have them.
-_BYTE = 255
 
 
 def said_of(mesh: Mesh | RawMesh) -> Attributes | None:
@@ -47,37 +42,42 @@ def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None])
 
 
 def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes that a file does not hold, if there are any."""
-    held = () if kept is None else kept.names
-    lost = [name for name in said.names if name not in held]
-    if not lost:
-        return ()
-    told = ", ".join(f"“{name}” of {_PLURAL[said.kind_of(name) or 'face']}" for name in lost)
-    message = f"{suffix[1:].upper()} has no room for attributes: {told} were left out."
-    return (Finding("attributes_left_out", "warning", message, (), len(lost)),)
+    """Return the findings about what a file does not hold of attributes."""
+    held = Attributes(said.faces) if kept is None else kept
+    lost = [name for name in said.names if name not in held.names]
+    told = [f"“{name}” of {_PLURAL[said.kind_of(name) or 'face']}" for name in lost]
+    if COLOR in lost and "material" in held.names:
+        told[lost.index(COLOR)] += " beside “material”"
+    return (*not_held(told, suffix), *_changed_color(said, held, suffix))
 
+
+def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about attributes in some words that a format has no place for."""
+    if not told:
+        return ()
+    were = "was" if len(told) == 1 else "were"
+    message = f"{suffix[1:].upper()} has no place for {', '.join(told)}, which {were} left out."
+    return (Finding("attributes_left_out", "warning", message, (), len(told)),)
+
+
+def _changed_color(said: Attributes, held: Attributes, suffix: str) -> tuple[Finding, ...]:
+    """Return the finding about colours that are there, but not as they were."""
+    if COLOR not in said.names or COLOR not in held.names:
+        return ()
+    given, kept = said.at_corners(COLOR), held.at_corners(COLOR)
+    if not is_color(COLOR, given, 2):
+        return ()
+    name = suffix[1:].upper()
+    if not is_opaque(given) and kept.shape[2:] == (3,):
+        message = f"{name} has no place for the opacity of “color” here, which was left out."
+        return (Finding("colors_left_out", "warning", message, (), 1),)
+    if np.abs(as_floats(given)[..., :3] - as_floats(kept)[..., :3]).max(initial=0) <= _EQUAL:
+        return ()
+    message = f"{name} holds colours in bytes: those of “color” were rounded."
+    return (Finding("colors_rounded", "note", message, (), 1),)
+
+
+#: Colours that differ by less are the same: single precision moves them so far.
+_EQUAL = 2.0**-22
 
 _PLURAL: dict[Kind, str] = {"vertex": "vertices", "corner": "corners", "face": "faces"}
-
-
-def is_color(name: str, values: Values, depth: int) -> bool:
-    """Say whether an attribute is a colour: three or four numbers."""
-    is_number = values.dtype.kind in "uf"
-    return name == "color" and is_number and values.shape[depth:] in ((3,), (4,))
-
-
-def as_bytes(colors: Values) -> npt.NDArray[np.uint8]:
-    """Return colours in bytes, as `as_floats` has them; those beyond 0 and 1 are moved there."""
-    if colors.dtype == np.uint8:
-        return colors
-    scaled: Any = np.clip(as_floats(colors), 0, 1) * _BYTE
-    rounded: npt.NDArray[np.uint8] = np.rint(scaled).astype(np.uint8)
-    return rounded
-
-
-def as_floats(colors: Values) -> FloatArray:
-    """Return colours as floats: whole numbers are parts of their type's largest, NaN is white."""
-    numbers = colors.astype(np.float64)
-    if colors.dtype.kind == "u":
-        return numbers * (1 / np.iinfo(colors.dtype).max)
-    return np.where(np.isnan(numbers), 1.0, numbers)

@@ -17,7 +17,6 @@ from .mesh import Mesh
 
 if TYPE_CHECKING:
     import manifold3d
-    import trimesh
 
 #: The result of a reader: vertices and faces, in any form that `mesh_arrays` takes.
 AnyArrays: TypeAlias = tuple[Any, Any]
@@ -278,16 +277,8 @@ def optional(name: str, package: str) -> Any:
         ) from error
 
 
-def to_trimesh(mesh: Mesh) -> "trimesh.Trimesh":
-    """Return a `trimesh.Trimesh` with copies of the same arrays."""
-    made: trimesh.Trimesh = optional("trimesh", "trimesh").Trimesh(
-        mesh.vertices.copy(), mesh.faces.copy(), process=False
-    )
-    return made
-
-
 def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":
-    """Return a `manifold3d.Manifold` of the same vertices and faces."""
+    """Return a `manifold3d.Manifold` of the same vertices and faces, without attributes."""
     import manifold3d
 
     # The binding takes writable arrays of these very types only.

@@ -10,7 +10,20 @@ from typing import Any
 
 import numpy as np
 
+from .._types import IndexArray
+from ..attributes.attributes import Values
+from ..attributes.colours import as_bytes, color_of, is_color
 from ..attributes.material import Material
+from .leaving import (
+    CORNER_FACES,
+    CORNERS,
+    MATERIALS,
+    Column,
+    colors_by_materials,
+    layout_of,
+    mean_colors,
+    picture_of,
+)
 from .mesh import Mesh
 
 #: Types of arrays that are carried.
@@ -37,6 +50,9 @@ def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
         for kind, names in _DICTIONARIES.items():
             for name in names:
                 found[kind].update(_arrays_in(getattr(mesh, name, None)))
+        metadata = getattr(mesh, "metadata", None)
+        told = metadata if isinstance(metadata, Mapping) else {}
+        _take_metadata(told, faces, found)
         _take_visual(getattr(mesh, "visual", None), len(faces), found)
         if isinstance(mesh, Mesh):
             found["materials"].update(mesh.materials)
@@ -95,10 +111,43 @@ def _take_properties(mesh: Any, found: dict[str, dict[str, Any]]) -> None:
     properties = np.asarray(mesh.vert_properties)[:, 3:]
     if properties.shape[1] == 0:
         return
-    if len(mesh.merge_from_vert):
-        found["corner"]["properties"] = properties[np.asarray(mesh.tri_verts, dtype=np.int64)]
+    triangles = np.asarray(mesh.tri_verts, dtype=np.int64)
+    layout = layout_of(getattr(mesh, "run_original_id", ())) or ()
+    if sum(column.width for column in layout) != properties.shape[1]:
+        column = Column("properties", "vertex", properties.dtype, properties.shape[1:])
+        layout = (column,)
+    start = 0
+    for column in layout:
+        values = column.values(properties[:, start : start + column.width])
+        start += column.width
+        _take_column(column, values, triangles, bool(len(mesh.merge_from_vert)), found)
+
+
+def _take_column(
+    column: Column,
+    values: Values,
+    triangles: IndexArray,
+    has_seams: bool,
+    found: dict[str, dict[str, Any]],
+) -> None:
+    """Take the values of one attribute at vertices, as what it was of if they still allow that."""
+    corners = values[triangles]
+    if column.kind == "face" and np.array_equal(corners, np.repeat(corners[:, :1], 3, axis=1)):
+        found["face"][column.name] = corners[:, 0]
+    elif has_seams:
+        found["corner"][column.name] = corners
     else:
-        found["vertex"]["properties"] = properties
+        found["vertex"][column.name] = values
+
+
+def _take_metadata(told: Mapping[str, Any], faces: Any, found: dict[str, dict[str, Any]]) -> None:
+    """Take what `leaving` put into the metadata of a trimesh, if its faces are still the same."""
+    materials, corners = told.get(MATERIALS), told.get(CORNERS)
+    if isinstance(materials, Mapping):
+        kept = {name: one for name, one in materials.items() if isinstance(one, Material)}
+        found["materials"].update(kept)
+    if isinstance(corners, Mapping) and np.array_equal(told.get(CORNER_FACES, ()), faces):
+        found["corner"].update(_arrays_in(corners))
 
 
 def _take_visual(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> None:
@@ -106,20 +155,62 @@ def _take_visual(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> N
     if kind == "vertex":
         found["vertex"]["color"] = np.asarray(visual.vertex_colors)
     elif kind == "face":
-        found["face"]["color"] = np.asarray(visual.face_colors)
-    elif kind == "texture" and getattr(visual, "uv", None) is not None:
-        found["vertex"]["uv"] = np.asarray(visual.uv)
-        _take_material(visual.material, count, found)
+        _take_face_colors(np.asarray(visual.face_colors), found)
+    elif kind == "texture":
+        if getattr(visual, "uv", None) is not None:
+            found["vertex"]["uv"] = np.asarray(visual.uv)
+        _take_materials(visual, count, found)
 
 
-def _take_material(material: Any, count: int, found: dict[str, dict[str, Any]]) -> None:
-    """Take the only material of a trimesh, which all faces have."""
+def _take_face_colors(colors: Values, found: dict[str, dict[str, Any]]) -> None:
+    """Take the colours of faces, unless they only show what materials or corners say."""
+    names, corners = found["face"].get("material"), found["corner"].get("color")
+    if found["materials"] and names is not None and len(names) == len(colors):
+        shown = colors_by_materials(names, found["materials"])
+    elif corners is not None and len(corners) == len(colors) and is_color("color", corners, 2):
+        shown = mean_colors(corners)
+    else:
+        shown = np.zeros((0, 4))
+    if not np.array_equal(shown, colors):
+        found["corner"].pop("color", None)
+        found["face"]["color"] = colors
+
+
+def _take_materials(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> None:
+    """Take the materials of a trimesh: one of all faces, or one for each by its number."""
+    numbers = getattr(visual, "face_materials", None)
+    several = list(getattr(visual.material, "materials", None) or ())
+    if several and numbers is not None and len(numbers) == count:
+        names = [_take_material(one, f"material {k}", found) for k, one in enumerate(several)]
+        found["face"]["material"] = np.array(names)[np.asarray(numbers)]
+        return
+    name = _take_material(several[0] if several else visual.material, "material", found)
+    found["face"]["material"] = np.full(count, name)
+
+
+def _take_material(material: Any, usual: str, found: dict[str, dict[str, Any]]) -> str:
+    """Take a material, unless it is one that was here before; return its name."""
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
-    name = getattr(material, "name", None) or "material"
-    color = np.asarray(getattr(material, "main_color", (255, 255, 255, 255)))[:4] / 255
-    texture = None if image is None else _as_png(image)
-    found["materials"][str(name)] = Material(tuple(color.tolist()), texture)
-    found["face"]["material"] = np.full(count, str(name))
+    name = str(getattr(material, "name", None) or usual)
+    color = np.asarray(getattr(material, "main_color", (255, 255, 255, 255)))[:4]
+    known = found["materials"].get(name)
+    if known is None or not _is_same(known, color, image):
+        texture = None if image is None else _as_png(image)
+        found["materials"][name] = Material(color_of(color), texture)
+    return name
+
+
+def _is_same(known: Material, color: Values, image: Any) -> bool:
+    """Say whether a material looks as one of trimesh does."""
+    if as_bytes(np.array(known.color)).tolist() != color.tolist():
+        return False
+    if known.texture is None or image is None:
+        return known.texture is None and image is None
+    picture = picture_of(known.texture)
+    return bool(
+        picture.size == image.size
+        and picture.convert("RGBA").tobytes() == image.convert("RGBA").tobytes()
+    )
 
 
 def _as_png(image: Any) -> bytes:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from .._types import Scalar, Vector
 from ..above import above
-from ..mesh import interop
+from ..mesh import leaving
 from .counting import uncounted
 from .measure import Measured, deprecated
 
@@ -23,12 +23,33 @@ class Convertible(Measured):
     __slots__ = ()
 
     def to_trimesh(self) -> "trimesh.Trimesh":
-        """Return a `trimesh.Trimesh` with the same vertices and faces."""
-        return interop.to_trimesh(self.normalized().to_mesh())
+        """Return a `trimesh.Trimesh` with the same vertices and faces, and the attributes.
+
+        ``"color"`` is its visual, so is the only material with texture coordinates ``"uv"`` of
+        vertices; else faces show the colours of their materials. All other arrays of vertices and
+        of faces have their names there, and the metadata have the materials and the values of
+        corners. `Solid.from_mesh` takes all of that back.
+
+        Warns
+        -----
+        LossWarning
+            If a trimesh cannot show it: colours of corners, pictures of several materials.
+        """
+        return leaving.trimesh_of(self.normalized().to_mesh())
 
     def to_manifold(self) -> "manifold3d.Manifold":
-        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted."""
-        return interop.to_manifold(self.normalized().to_mesh())
+        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted.
+
+        Attributes that are numbers are its properties: those called ``"properties"`` first, then
+        the others in their order, colours as four numbers from 0 to 1. `Solid.from_mesh` gives them
+        their names back, also after Manifold's operations, if all that it is made of had the same.
+
+        Warns
+        -----
+        LossWarning
+            If an attribute is text, as materials are, or not finite.
+        """
+        return leaving.manifold_of(self.normalized().to_mesh())
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""

@@ -17,6 +17,7 @@ import numpy as np
 from .._core import Tree
 from .._types import FloatArray, IndexArray, ProgramLine, WindingRule
 from ..attributes.attributes import Attributes
+from ..attributes.colours import COLOR, one_color
 from ..errors import InvalidMeshError, LimitError, UnboundedError, core_errors
 from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
@@ -473,6 +474,8 @@ def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf
 
     Its sources have identities of their own, as others of the same leaf may say something else.
     """
+    if COLOR in values:
+        values = {**values, COLOR: one_color(values[COLOR])}
     if not values or isinstance(leaf, (PlaneLeaf, ConstantLeaf)):
         return leaf
     with core_errors():

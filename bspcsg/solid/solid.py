@@ -106,10 +106,12 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     (`Mesh.vertex_attributes`, `corner_attributes`, `face_attributes`). Values of faces are copied;
     values of vertices and corners are copied where the corner is one of the source, and
     interpolated in the source's triangle everywhere else: whole numbers are rounded, truth values
-    and text are those of the nearest corner. Faces of one plane with different values are not
-    joined. An operand that lacks a name has NaN there, or 0, False or no text. Attributes called
-    ``"normal"`` or ``"normals"``, three floats, turn with the solid, keep their length, and point
-    the other way where the solid was subtracted. `simplify` lets attributes go.
+    and text are those of the nearest corner. ``"color"`` takes what says a colour (texts, whole
+    numbers from 0 to 255, floats from 0 to 1), one for each or one for all. Faces of one plane with
+    different values are not joined. An operand that lacks a name has NaN there, or 0, False or no
+    text. Attributes called ``"normal"`` or ``"normals"``, three floats, turn with the solid, keep
+    their length, and point the other way where the solid was subtracted. `simplify` lets attributes
+    go.
 
     Examples
     --------
@@ -211,7 +213,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
         Attributes come along: those of a `Mesh` of this package, of a trimesh (its colours as
         ``"color"``, its texture coordinates as ``"uv"``, its materials), manifold3d's as
-        ``"properties"``, data of points and cells of pyvista and meshio.
+        ``"properties"``, or by their names if `to_manifold` gave them, data of points and cells of
+        pyvista and meshio.
         """
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
@@ -367,8 +370,14 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         Parameters
         ----------
         **values : number, text or array
-            By the names of the attributes; what had such a name before is replaced. Half-spaces
-            have no faces that could say anything.
+            By the names of the attributes; what had such a name before is replaced. ``color`` is
+            one colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
+            255. Half-spaces have no faces that could say anything.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the colour is none.
 
         Examples
         --------

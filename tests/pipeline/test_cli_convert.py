@@ -4,6 +4,7 @@ import json
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import bspcsg as b
@@ -169,3 +170,25 @@ def test_an_input_that_is_not_read_yet_stays(folder: Path, capsys: Capture) -> N
     assert code == 2 and "is an input, too" in err
     # A file may take its own place.
     assert ran(capsys, "convert", "a.off", "x-a.off", "-o", "%.off")[0] == 0
+
+
+# Found: opaque colours of four numbers, which many programs write, were lost in OBJ.
+def test_opaque_colours_lose_nothing_in_an_obj(folder: Path, capsys: Capture) -> None:
+    vertices, faces = b.cube(1).to_mesh()
+    colors = np.full((8, 4), (9, 8, 7, 255), np.uint8)
+    b.Solid(vertices, faces, vertex_attributes={"color": colors}).save("ball.glb")
+    code, out, err = ran(capsys, "convert", "ball.glb", "-o", "ball.obj", "--fail-on-loss")
+    assert code == 0 and "nothing lost" in out, err
+    colors[:, 3] = 128
+    b.Solid(vertices, faces, vertex_attributes={"color": colors}).save("ball.glb")
+    code, out, err = ran(capsys, "convert", "ball.glb", "-o", "ball.obj", "--fail-on-loss")
+    assert code == 1 and "lost: attributes: “color”" in out
+    assert "OBJ has no place for the opacity of “color”" in err
+
+
+# Found: 3MF, which holds colours, was said to have no room for attributes.
+def test_what_is_lost_is_told_in_true_words(folder: Path, capsys: Capture) -> None:
+    b.cube(1).tagged(color="red", layer=3).save("x.ply")
+    code, out, err = ran(capsys, "convert", "x.ply", "-o", "x.3mf")
+    assert code == 0 and "lost: attributes: “layer”" in out
+    assert "3MF has no place for “layer” of faces, which was left out." in err

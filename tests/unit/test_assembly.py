@@ -12,6 +12,10 @@ import pytest
 import bspcsg as b
 from support.pictures import PIXEL
 
+# What is left out is asked of findings here; that it is warned of, test_attribute_matrix.py says.
+pytestmark = pytest.mark.filterwarnings("ignore::bspcsg.LossWarning")
+
+
 RED, GREY = (1.0, 0.0, 0.0, 1.0), (0.2, 0.2, 0.2, 1.0)
 
 #: The findings that files of a format always come with.
@@ -348,6 +352,15 @@ def test_parts_without_a_colour_are_white_in_an_obj(tmp_path: Path) -> None:
     assert np.unique(colors, axis=0).tolist() == [[0, 0, 1], [1, 1, 1]]
 
 
+def test_colours_of_parts_and_of_faces_share_an_obj(tmp_path: Path) -> None:
+    halves = b.cube(1).tagged(color="blue") - b.cube(0.5).tagged(color="#ff000080")
+    kinds = [b.Assembly("part", b.cube(1), color="orange"), b.Assembly("faces", halves)]
+    assert not b.Assembly("both", kinds).save(tmp_path / "x.obj")
+    found = b.load(tmp_path / "x.obj").to_mesh().materials.values()
+    told = ("orange", "blue", "#ff000080")
+    assert {one.color for one in found} == {b.Material(one).color for one in told}
+
+
 def test_objects_of_obj_are_parts_in_their_places(tmp_path: Path) -> None:
     car().save(tmp_path / "x.obj")
     again = b.Assembly.load(tmp_path / "x.obj")
@@ -427,7 +440,7 @@ def test_bad_assemblies_are_refused() -> None:
     with pytest.raises(b.InvalidParameterError):
         b.Assembly("x", density=-1)
     with pytest.raises(b.InvalidMeshError):
-        b.Assembly("x", color=(1, 2, 3))
+        b.Assembly("x", color=(1, 2, 300))
     with pytest.raises(b.InvalidMeshError):
         b.Assembly("x", [3])
 

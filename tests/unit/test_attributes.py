@@ -269,7 +269,7 @@ def test_what_is_no_array_over_the_mesh_is_refused(options: dict[str, Any]) -> N
 def test_materials_check_what_they_are_given() -> None:
     assert b.Material((1, 0, 0)).color == (1, 0, 0, 1)
     assert b.Material(texture=PIXEL).media == "image/png"
-    for wrong in ({"color": (2, 0, 0)}, {"color": (1, 0)}, {"texture": b"GIF89a"}):
+    for wrong in ({"color": (2.0, 0, 0)}, {"color": (1, 0)}, {"texture": b"GIF89a"}):
         with pytest.raises(b.InvalidMeshError):
             b.Material(**wrong)
 

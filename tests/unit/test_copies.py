@@ -65,6 +65,7 @@ EXAMPLES: dict[type, Callable[[], Any]] = {
     b.Finding: lambda: b.Finding("code", "note", "A sentence.", (1, 2), 5),
     b.Assembly: lambda: b.Assembly("a", [b.cube(1)], color=(1, 0, 0)),
     b.Material: lambda: b.Material((1, 0.5, 0)),
+    b.LossWarning: lambda: b.LossWarning("something"),
     b.Mesh: SHAPE.to_mesh,
     b.Solid: lambda: SHAPE.rotate(30),
     b.Verdict: lambda: next(iter(b.Verdict)),

@@ -355,3 +355,16 @@ def test_bytes_have_nothing_beside_them(tmp_path: Path, monkeypatch: pytest.Monk
 def test_names_of_objects_that_are_no_utf_8_stay_apart() -> None:
     text = f"{SQUARE}o \xe4\nf 1 2 3\no \xf6\nf 1 3 4\n".encode("latin-1")
     assert decoded("x.obj", text, ".obj").objects == (("ä", 1), ("ö", 1))
+
+
+def test_a_material_that_is_called_like_a_colour_stays_one(tmp_path: Path) -> None:
+    vertices, faces = b.cube(1).to_mesh()
+    name = "color_ff0000ff"
+    red = b.Solid(
+        vertices,
+        faces,
+        face_attributes={"material": [name] * 12},
+        materials={name: b.Material("red")},
+    )
+    red.save(tmp_path / "x.obj")
+    assert b.load(tmp_path / "x.obj").to_mesh().materials == {"color_ff0000ff_": b.Material("red")}

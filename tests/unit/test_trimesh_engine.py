@@ -42,6 +42,29 @@ def test_methods_of_trimesh(operation: str, volume: float) -> None:
     assert made.vertices.dtype == np.float64
 
 
+@pytest.mark.parametrize("kind", ["face", "vertex"])
+def test_results_are_coloured(kind: str) -> None:
+    red, blue = box(), box((1, 1, 4))
+    for mesh, color in ((red, (200, 40, 40, 255)), (blue, (40, 40, 200, 255))):
+        setattr(mesh.visual, f"{kind}_colors", color)
+    made = red.difference(blue, engine="bspcsg")
+    assert made.visual.kind == "face" and made.is_volume
+    is_cut = (np.abs(made.triangles_center[:, :2]) < 0.75).all(axis=1) & (
+        np.abs(made.face_normals[:, 2]) < 0.5
+    )
+    assert is_cut.any() and not is_cut.all()
+    assert (made.visual.face_colors[is_cut] == (40, 40, 200, 255)).all()
+    assert (made.visual.face_colors[~is_cut] == (200, 40, 40, 255)).all()
+
+
+def test_attributes_that_do_not_go_together_are_told() -> None:
+    one, other = box(), box(at=(1, 1, 1))
+    one.face_attributes["what"] = np.zeros(12)
+    other.face_attributes["what"] = np.array(["x"] * 12)
+    with pytest.warns(b.LossWarning, match="“what” is text in one operand"):
+        assert one.union(other, engine="bspcsg").volume == 15
+
+
 def test_more_than_two_meshes() -> None:
     pins = [box((1, 1, 4), (x, 0, 0)) for x in (-1, 1)]
     engine: Any = "bspcsg"  # trimesh types the names of its own engines only

@@ -139,8 +139,9 @@ def picture(
     crease : float
         Degrees between the normals of two facets.
     colors : optional
-        One colour, or one for each facet (for a mesh: face): "#rrggbb", or red, green and blue from
-        0 to 1, then of shape (3,) or (n, 3). Only for the style "shaded".
+        One colour, or one for each facet (for a mesh: face): "orange", "#ff8800", or red, green and
+        blue as floats from 0 to 1 or whole numbers from 0 to 255, then of shape (3,) or (n, 3).
+        Only for the style "shaded".
     background : optional
         A colour, or None for transparent.
     cull : bool, optional

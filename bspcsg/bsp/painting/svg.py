@@ -5,8 +5,9 @@ from itertools import groupby, pairwise
 import numpy as np
 
 from ..._types import FloatArray
+from ...attributes.colours import hexadecimal
 from .clip import following
-from .colours import ColourArray, hexadecimal
+from .colours import ColourArray
 from .outline import Spot, Step, outlines, polylines, straightened
 from .painting import Painting
 
@@ -41,8 +42,12 @@ def svg(painting: Painting, background: ColourArray | None, line: float) -> str:
     )
     lines = [head, f"<style>{rules}</style>"]
     if background is not None:
-        lines.append(f'<rect width="100%" height="100%" fill="{hexadecimal(background)}"/>')
+        lines.append(f'<rect width="100%" height="100%" fill="{_hex(background)}"/>')
     return "\n".join([*lines, *_paths(painting), "</svg>", ""])
+
+
+def _hex(value: ColourArray) -> str:
+    return hexadecimal((value / 255).tolist())
 
 
 def _paths(painting: Painting) -> list[str]:
@@ -55,7 +60,7 @@ def _paths(painting: Painting) -> list[str]:
         group = list(members)
         if painting.fills is not None:
             pieces = [_turned(spots[starts[i] : starts[i + 1]]) for i in group]
-            paths += _filled(pieces, hexadecimal(painting.fills[group[0]]))
+            paths += _filled(pieces, _hex(painting.fills[group[0]]))
         corners = (corner for i in group for corner in range(starts[i], starts[i + 1]))
         paths += _drawn([(spots[c], spots[after[c]]) for c in corners if marked[c]])
     ends = _spots(painting.lines.reshape(-1, 2))

@@ -67,21 +67,36 @@ def _as_colour(context: click.Context, option: click.Parameter, value: str) -> s
     try:
         colour(value)
     except BspcsgError:
-        wanted = f"white, black, {_TRANSPARENT} or a colour like '#3070b0'"
+        wanted = f"{_TRANSPARENT} or a colour like orange or '#3070b0'"
         raise click.BadParameter(f"{value!r} is not {wanted}.", context, option) from None
     return value
 
 
 def _as_colours(context: click.Context, option: click.Parameter, value: str | None) -> str | None:
-    """Return the name of a way to colour, or a colour as hexadecimal digits."""
-    from ...bsp.painting.colours import colour, hexadecimal
+    """Return the name of a way to colour, or a colour."""
+    from ...bsp.painting.colours import colour
 
     if value is None or not value.startswith("#"):
         return value
     try:
-        return hexadecimal(colour(value))
+        colour(value)
+        return value
     except BspcsgError as error:
         raise click.BadParameter(error.message, context, option) from None
+
+
+def _is_colour(word: str) -> bool:
+    from ...bsp.painting.colours import colour
+
+    try:
+        colour(word)
+    except BspcsgError:
+        return False
+    return True
+
+
+def _is_paint(word: str, layers: "list[Layer]") -> bool:
+    return any(paint.name == word for layer in layers for paint in layer.paints)
 
 
 @click.command("render", short_help="Write a picture of meshes.", epilog=_EPILOG)
@@ -110,7 +125,7 @@ def _as_colours(context: click.Context, option: click.Parameter, value: str | No
     metavar="WHAT",
     callback=_as_colours,
     help="part, origin (which operand of a script), the name of an attribute, or a colour like"
-    " '#3070b0'; by default the file's own.",
+    " orange or '#3070b0'; by default the file's own.",
 )
 @click.option(
     "--section",
@@ -124,7 +139,7 @@ def _as_colours(context: click.Context, option: click.Parameter, value: str | No
     default="white",
     show_default=True,
     callback=_as_colour,
-    help="white, black, a colour like '#3070b0', or none for transparent.",
+    help="A colour like orange or '#3070b0', or none for transparent.",
 )
 @click.option(
     "--frames",
@@ -198,6 +213,8 @@ class _Rendering(Drawing):
 
         given = self.settings["colours"]
         if given is not None and given.startswith("#"):
+            return given
+        if given is not None and _is_colour(given) and not _is_paint(given, layers):
             return given
         if given is None and len(layers) == 1 and not layers[0].paints:
             return None

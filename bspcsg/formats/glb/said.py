@@ -13,9 +13,10 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Kind, Values, is_normal
+from ...attributes.colours import as_bytes, is_color, opaque
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
-from ..said import as_bytes, chosen, is_color
+from ..said import chosen
 from .accessors import fractions, numbers, stored
 from .container import Container, picture_of, uv_of
 from .light import as_read, color_of, shown, to_light, words_of
@@ -91,10 +92,7 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
 
 def _color(values: Values) -> Values:
     """Return colours as files hold them: four bytes, for a row of bytes is a multiple of four."""
-    colors = as_bytes(values)
-    if colors.shape[-1] == 4:
-        return colors
-    return np.concatenate([colors, np.full_like(colors[..., :1], 255)], axis=-1)
+    return opaque(as_bytes(values))
 
 
 def _upright(uv: Values) -> Values:

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...attributes.attributes import Attributes
+from ...attributes.colours import hexadecimal
 from ...attributes.material import Material
 from ..raw import RawMesh
 from ..scene import SceneNode
@@ -129,7 +130,7 @@ def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
     names = np.unique(said.face["material"]).tolist()
     material = said.materials.get(names[0], Material())
     # Colours that are the same in bytes have names that differ in a number behind them.
-    is_named = len(names) == 1 and names[0].partition(" ")[0] == _name_of(material.color)
+    is_named = len(names) == 1 and names[0].partition(" ")[0] == hexadecimal(material.color)
     if not is_named or material.texture is not None:
         return mesh, None
     rest = replace(said.without({"material"}), materials={})
@@ -170,10 +171,5 @@ def _said(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
     said = Attributes(mesh.faces) if mesh.attributes is None else mesh.attributes
     if color is None or {"color", "material"}.intersection(said.names):
         return said
-    names = np.full(len(mesh.faces), _name_of(color))
-    return replace(said, face={"material": names}, materials={_name_of(color): Material(color)})
-
-
-def _name_of(color: tuple[float, ...]) -> str:
-    """Return what the material of a colour is called."""
-    return "#" + bytes(round(value * 255) for value in color).hex()
+    names = np.full(len(mesh.faces), hexadecimal(color))
+    return replace(said, face={"material": names}, materials={hexadecimal(color): Material(color)})

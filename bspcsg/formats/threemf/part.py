@@ -8,6 +8,7 @@ from xml.parsers import expat
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
+from ...attributes.colours import one_color, opaque
 from ...errors import FormatError, words_of
 from ..source import Source, quoted
 
@@ -370,11 +371,9 @@ class PartReader:
 
 
 def _color(text: str) -> tuple[int, ...]:
-    """Return red, green, blue and opacity of ``#RRGGBB`` or ``#RRGGBBAA``."""
-    data = bytes.fromhex(text.removeprefix("#"))
-    if len(data) not in (3, 4) or not text.startswith("#"):
-        raise ValueError(f"{text} is no colour")
-    return tuple(data) if len(data) == 4 else (*data, 255)
+    """Return red, green, blue and opacity in bytes."""
+    found: list[int] = opaque(one_color(text)).tolist()
+    return tuple(found)
 
 
 def _point(attributes: dict[str, str]) -> tuple[float, float, float]:

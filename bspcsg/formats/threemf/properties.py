@@ -12,9 +12,10 @@ import numpy as np
 
 from ..._types import IndexArray
 from ...attributes.attributes import Attributes, Kind, Values
+from ...attributes.colours import as_bytes, is_color, opaque
 from ...attributes.material import Material
 from ...errors import InvalidMeshError
-from ..said import as_bytes, chosen, is_color
+from ..said import chosen
 from .part import Base, ModelPart, Object
 from .textures import fit_for_parts, named_after
 from .write import called
@@ -153,10 +154,7 @@ def kept(said: Attributes) -> Attributes:
     def keep(kind: Kind, name: str, values: Values) -> Values | None:
         if not is_color(name, values, 2 if kind == "corner" else 1):
             return None
-        colors = as_bytes(values)
-        if colors.shape[-1] == 4:
-            return colors
-        return np.concatenate([colors, np.full_like(colors[..., :1], 255)], axis=-1)
+        return opaque(as_bytes(values))
 
     return Attributes(said.faces, *_kinds(chosen(said, keep)))
 

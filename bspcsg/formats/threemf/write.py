@@ -15,6 +15,7 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
+from ...attributes.colours import hexadecimal
 from ...attributes.material import Material
 from ...errors import Finding
 from ...mesh.mesh import Mesh
@@ -147,7 +148,7 @@ def mesh_object(
 
 def hex_of(color: Sequence[float]) -> str:
     """Return a colour as 3MF writes it."""
-    return "#" + bytes(round(value * 255) for value in color).hex().upper()
+    return hexadecimal(color).upper()
 
 
 def properties(said: Attributes, resources: Resources) -> tuple[list[str], Values]:

@@ -6,8 +6,8 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...attributes.attributes import NORMALS, Attributes, Values
+from ...attributes.colours import as_bytes, hexadecimal, is_color, opaque
 from ...attributes.material import Material
-from ...formats.said import as_bytes, is_color
 from .paint import DISTANCE, PALETTE, Colours, Labels, Paint, Scale
 
 #: Attributes that a page offers; more are of no use to somebody who looks.
@@ -37,7 +37,7 @@ def _each(said: Attributes) -> Iterator[Paint | None]:
         if name == "material" or name == "uv" or name in NORMALS:
             continue
         if is_color(name, values, depth):
-            yield Colours(name, _with_opacity(as_bytes(values)))
+            yield Colours(name, opaque(as_bytes(values)))
         elif values.ndim == depth:
             yield _labels(name, values) if depth == 1 else _scale(name, values)
 
@@ -45,7 +45,7 @@ def _each(said: Attributes) -> Iterator[Paint | None]:
 def _materials(said: Attributes) -> Labels:
     names, numbers = np.unique(said.face["material"], return_inverse=True)
     used = [said.materials.get(name, _PLAIN) for name in names.tolist()]
-    colours = [hexadecimal(material.color) for material in used]
+    colours = [_told(material.color) for material in used]
     labels = [name or "no material" for name in names.tolist()]
     has_images = said.kind_of("uv") not in (None, "face") and any(one.texture for one in used)
     if not has_images:
@@ -73,13 +73,6 @@ def _scale(name: str, values: Values) -> Paint | None:
     return Scale(name, numbers, DISTANCE)
 
 
-def _with_opacity(colours: Values) -> Values:
-    if colours.shape[-1] == 4:
-        return colours
-    return np.concatenate([colours, np.full_like(colours[..., :1], 255)], axis=-1)
-
-
-def hexadecimal(colour: tuple[float, ...]) -> str:
-    """Return a colour from 0 to 1 as ``"#rrggbb"``, or ``"#rrggbbaa"`` if it is not opaque."""
-    digits = "".join(f"{round(value * 255):02x}" for value in colour)
-    return f"#{digits.removesuffix('ff') if len(digits) == 8 else digits}"
+def _told(colour: tuple[float, ...]) -> str:
+    """Return a colour of four numbers as ``"#rrggbb"``, or ``"#rrggbbaa"`` if it is not opaque."""
+    return hexadecimal(colour[:3] if round(colour[3] * 255) == 255 else colour)

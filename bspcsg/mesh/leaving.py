@@ -1,0 +1,299 @@
+"""Meshes with their attributes as other libraries have them, and what those have no place for.
+
+`visuals` is the way back: what left here comes in again under its name.
+"""
+
+import io
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .._types import IndexArray
+from ..attributes.attributes import Attributes, Kind, Values, with_even_faces
+from ..attributes.colours import COLOR, as_bytes, as_floats, is_color, opaque
+from ..attributes.material import Material
+from ..errors import Finding, InvalidMeshError, warn_of_losses
+from .interop import optional, to_manifold
+from .mesh import Mesh
+
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+#: The keys in the metadata of a trimesh: the values of corners, the faces that they are of, and the
+#: materials that faces name.
+CORNERS, CORNER_FACES, MATERIALS = "corner_attributes", "corner_faces", "materials"
+
+#: The colour that trimesh has for faces that say none.
+_PLAIN = (102, 102, 102, 255)
+
+
+def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
+    """Return a `trimesh.Trimesh` of copies of the same arrays, with the attributes."""
+    made: trimesh.Trimesh = optional("trimesh", "trimesh").Trimesh(
+        mesh.vertices.copy(), mesh.faces.copy(), process=False
+    )
+    said = _said_of(mesh, "trimesh")
+    if said is not None:
+        _Dressing(made, said).run()
+    return made
+
+
+def _said_of(mesh: Mesh, library: str) -> Attributes | None:
+    """Return what is said of a mesh, or None and a warning if that does not go together."""
+    if mesh.carried is None:
+        return None
+    try:
+        said = mesh.attributes.without_empty_material()
+    except InvalidMeshError as error:
+        _tell(f"{library} gets no attributes: {error.message}", 1)
+        return None
+    return None if said.is_empty or not len(mesh.faces) else said
+
+
+def _tell(message: str, count: int) -> None:
+    warn_of_losses([Finding("attributes_left_out", "warning", message, (), count)])
+
+
+class _Dressing:
+    """The attributes of a trimesh: its visual, arrays by names, and the rest in its metadata."""
+
+    def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
+        self._made = made
+        self._said = with_even_faces(said)
+        self._is_colored = False
+
+    def run(self) -> None:
+        """Give the mesh all that is said."""
+        said, made = self._said, self._made
+        names = set(said.names)
+        if said.materials:
+            made.metadata[MATERIALS] = dict(said.materials)
+        color = said.at_corners(COLOR, np.zeros(0, np.int64)) if COLOR in names else None
+        if color is not None and is_color(COLOR, color, 2):
+            self._color()
+            names.discard(COLOR)
+        self._materials()
+        made.vertex_attributes.update({n: v.copy() for n, v in said.vertex.items() if n in names})
+        made.face_attributes.update({n: v.copy() for n, v in said.face.items() if n in names})
+        self._corners()
+
+    def _color(self) -> None:
+        """Show the colours; of those that faces at a vertex have not in common a mean for each."""
+        said, self._is_colored = self._said, True
+        kind = said.kind_of(COLOR) or "face"
+        values = said.of(kind)[COLOR]
+        if kind == "vertex":
+            self._show(vertex_colors=opaque(as_bytes(values)))
+            return
+        if kind == "corner":
+            _tell(
+                "trimesh has no colours of corners: each face shows the mean of its own, and"
+                f" metadata[{CORNERS!r}] has them.",
+                1,
+            )
+            self._show(face_colors=mean_colors(values))
+            return
+        self._show(face_colors=opaque(as_bytes(values)))
+
+    def _show(self, **colors: Values) -> None:
+        visual = optional("trimesh.visual", "trimesh").ColorVisuals
+        self._made.visual = visual(self._made, **colors)
+
+    def _materials(self) -> None:
+        """Show the only material with its picture, or the colours of all."""
+        said = self._said
+        if "material" not in said.face or not said.materials:
+            return
+        names = np.unique(said.face["material"]).tolist()
+        has_picture = any(one.texture for one in said.materials.values())
+        material = said.materials.get(names[0]) if len(names) == 1 else None
+        uv = said.vertex.get("uv")
+        if material is not None and _are_places(uv) and not (self._is_colored and not has_picture):
+            visual = optional("trimesh.visual", "trimesh").TextureVisuals
+            self._made.visual = visual(uv=np.array(uv), material=_material(names[0], material))
+            self._color_as_array()
+            return
+        if has_picture:
+            _tell(
+                "trimesh shows a picture if one material has all faces and texture coordinates are"
+                " of vertices: the pictures are in its metadata only.",
+                1,
+            )
+        if not self._is_colored:
+            self._show(face_colors=colors_by_materials(said.face["material"], said.materials))
+
+    def _color_as_array(self) -> None:
+        """Keep colours beside a picture, as a trimesh shows one of the two."""
+        said = self._said
+        if COLOR in said.vertex:
+            self._made.vertex_attributes[COLOR] = said.vertex[COLOR].copy()
+        if COLOR in said.face:
+            self._made.face_attributes[COLOR] = said.face[COLOR].copy()
+
+    def _corners(self) -> None:
+        if self._said.corner:
+            kept = {name: values.copy() for name, values in self._said.corner.items()}
+            self._made.metadata[CORNERS] = kept
+            self._made.metadata[CORNER_FACES] = self._said.faces.copy()
+
+
+def _are_places(uv: Values | None) -> bool:
+    return uv is not None and uv.dtype.kind == "f" and uv.shape[1:] == (2,)
+
+
+def mean_colors(values: Values) -> Values:
+    """Return the mean colour of each face's corners in bytes, (m, 4)."""
+    return opaque(as_bytes(as_floats(values).mean(axis=1)))
+
+
+def colors_by_materials(names: Values, materials: Mapping[str, Material]) -> Values:
+    """Return the colour of each face's material in bytes, (m, 4)."""
+    kinds, numbers = np.unique(names, return_inverse=True)
+    found = [materials[kind].color if kind in materials else None for kind in kinds.tolist()]
+    table = [_PLAIN if one is None else as_bytes(np.array(one)) for one in found]
+    colors: Values = np.array(table, dtype=np.uint8)[numbers]
+    return colors
+
+
+def _material(name: str, material: Material) -> Any:
+    """Return a material as trimesh has it."""
+    kind = optional("trimesh.visual.material", "trimesh").PBRMaterial
+    picture = None if material.texture is None else picture_of(material.texture)
+    color = as_bytes(np.array(material.color))
+    mode = "BLEND" if material.color[3] < 1 else None
+    return kind(name=name, baseColorFactor=color, baseColorTexture=picture, alphaMode=mode)
+
+
+def picture_of(data: bytes) -> Any:
+    """Return a picture as Pillow has it."""
+    return optional("PIL.Image", "pillow").open(io.BytesIO(data))
+
+
+@dataclass(frozen=True)
+class Column:
+    """Some of the numbers of manifold3d's vertices: the attribute that they are.
+
+    Parameters
+    ----------
+    name, kind, dtype
+        Of the attribute.
+    shape : tuple of int
+        Of each value.
+    """
+
+    name: str
+    kind: Kind
+    dtype: np.dtype[Any]
+    shape: tuple[int, ...]
+
+    @property
+    def width(self) -> int:
+        """How many numbers they are."""
+        return int(np.prod(self.shape, dtype=np.int64))
+
+    @property
+    def _is_color(self) -> bool:
+        return self.name == COLOR and self.shape == (4,)
+
+    def numbers(self, values: Values) -> Values:
+        """Return values as numbers (k, width); colours from 0 to 1, as Manifold has them."""
+        found = opaque(as_floats(values)) if self._is_color else values.astype(np.float64)
+        return found.reshape(-1, self.width)
+
+    def values(self, numbers: Values) -> Values:
+        """Return numbers (…, width) as values."""
+        values = numbers.reshape(*numbers.shape[:-1], *self.shape)
+        if self._is_color and self.dtype.kind == "u":
+            values = np.clip(values, 0, 1) * np.iinfo(self.dtype).max
+        if self.dtype.kind == "b":
+            return np.asarray(values > 0.5)
+        rounded = np.rint(values) if self.dtype.kind in "iu" else values
+        return np.asarray(rounded.astype(self.dtype))
+
+
+#: The columns of meshes that went to manifold3d, by the numbers that it tells their faces apart by.
+_LAYOUTS: dict[int, tuple[Column, ...]] = {}
+
+#: More meshes than these are not remembered.
+_MOST_LAYOUTS = 1 << 16
+
+
+def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
+    """Return the columns of what some originals were made into, if all have the same."""
+    found = {_LAYOUTS.get(int(number)) for number in ids}
+    return found.pop() if len(found) == 1 else None
+
+
+def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
+    """Return a `manifold3d.Manifold` whose vertices have the attributes that are numbers."""
+    said = _said_of(mesh, "manifold3d")
+    if said is None:
+        return to_manifold(mesh)
+    others = [name for name in said.names if not _are_finite(said, name)]
+    if others:
+        told = ", ".join(f"“{name}”" for name in others)
+        _tell(f"manifold3d holds finite numbers only: {told} were left out.", len(others))
+    columns = tuple(_column(said, name) for name in _in_order(said) if name not in others)
+    return _with_properties(mesh, said, columns) if columns else to_manifold(mesh)
+
+
+def _are_finite(said: Attributes, name: str) -> bool:
+    values = said.of(said.kind_of(name) or "face")[name]
+    return values.dtype.kind != "U" and bool(np.isfinite(values).all())
+
+
+_NONE: IndexArray = np.zeros(0, dtype=np.int64)
+
+
+def _in_order(said: Attributes) -> list[str]:
+    """Return the names, first that of what came from manifold3d, whose columns have numbers."""
+    return sorted(said.names, key=lambda name: name != "properties")
+
+
+def _column(said: Attributes, name: str) -> Column:
+    values = said.at_corners(name, _NONE)
+    # Colours of three numbers and of four have the same columns, so that they can be mixed.
+    shape = (4,) if is_color(name, values, 2) else values.shape[2:]
+    return Column(name, said.kind_of(name) or "face", values.dtype, shape)
+
+
+def _with_properties(
+    mesh: Mesh, said: Attributes, columns: tuple[Column, ...]
+) -> "manifold3d.Manifold":
+    import manifold3d
+
+    table = np.hstack([column.numbers(said.at_corners(column.name)) for column in columns])
+    corners = mesh.faces.ravel()
+    chosen, numbers = _distinct(corners, table)
+    vertices = np.hstack([mesh.vertices[corners[chosen]], table[chosen]])
+    # Vertices in one place with different values are one to the topology: the first.
+    same, first = np.unique(corners[chosen], return_index=True)
+    target = first[np.searchsorted(same, corners[chosen])]
+    source = np.flatnonzero(target != np.arange(len(chosen)))
+    original = manifold3d.Manifold.reserve_ids(1)
+    made = manifold3d.Mesh64(
+        np.ascontiguousarray(vertices),
+        np.ascontiguousarray(numbers.reshape(-1, 3), dtype=np.uint64),
+        source.astype(np.uint64),
+        target[source].astype(np.uint64),
+        np.array([0, len(corners)], dtype=np.uint64),
+        np.array([original], dtype=np.uint32),
+    )
+    while len(_LAYOUTS) >= _MOST_LAYOUTS:
+        _LAYOUTS.pop(next(iter(_LAYOUTS)), None)
+    _LAYOUTS[original] = columns
+    return manifold3d.Manifold(made)
+
+
+def _distinct(corners: IndexArray, table: Values) -> tuple[IndexArray, IndexArray]:
+    """Return corners of which no two have one vertex and the same values, and which each is."""
+    # Bytes in this order compare as the numbers of vertices do, so that these keep their order.
+    keys = corners.astype(">u8")[:, None].view(np.uint8)
+    rows: npt.NDArray[np.uint8] = np.hstack([keys, np.ascontiguousarray(table).view(np.uint8)])
+    words = np.ascontiguousarray(rows).view(f"V{rows.shape[1]}").ravel()
+    _, chosen, numbers = np.unique(words, return_index=True, return_inverse=True)
+    return chosen, numbers.ravel()
