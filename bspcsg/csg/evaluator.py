@@ -113,7 +113,10 @@ def evaluate(
     try:
         result, done = _polished(tree, run)
     except BspcsgError as error:
-        raise tree.explained(error) from error
+        explained = tree.explained(error)
+        if explained is error:
+            raise
+        raise explained from error
     if polishes and on_polish is not None:
         on_polish(done)
     return result

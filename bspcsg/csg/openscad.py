@@ -57,7 +57,10 @@ def read_scad(
     try:
         tree = parse(text, made.name, Path(name).parent)
     except FormatError as error:
-        raise made.explained(error) from error
+        explained = made.explained(error)
+        if explained is error:
+            raise
+        raise explained from error
     return replace(tree, name=name, intermediate=made)
 
 

@@ -251,3 +251,15 @@ def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:
     alone = csg.loads("sphere(1, $fn = 4);")
     for one in (tree, csg.simplified(tree)):
         assert csg.loads(csg.dumps(one)).equals(alone)
+
+
+# Found: errors of scripts were their own cause, which a scheduler of other machines could not send.
+def test_no_error_is_its_own_cause() -> None:
+    with pytest.raises(b.BspcsgError) as caught:
+        csg.loads("polyhedron(points = [[0,0,0],[1,0,0],[0,1,0]], faces = [[0,1,2]]);")
+    chain: list[BaseException] = []
+    cause: BaseException | None = caught.value
+    while cause is not None:
+        assert cause not in chain
+        chain.append(cause)
+        cause = cause.__cause__ or cause.__context__
