@@ -326,10 +326,10 @@ def test_blends_count_once_in_a_block() -> None:
 @pytest.mark.parametrize(
     ("call", "word"),
     [
-        (lambda: BOX.chamfer(BOX.edges(), 1), r"no room at \("),
+        (lambda: BOX.chamfer(BOX.edges(), 1.01), r"no room at \("),
         (lambda: BOX.chamfer(BOX.edges(), 5), "no room"),
-        (lambda: BOX.chamfer(BOX.edges().parallel("x"), 1), "no room"),
-        (lambda: BOX.fillet(BOX.edges(), 1), "no room"),
+        (lambda: BOX.chamfer(BOX.edges().parallel("x"), 1.01), "no room"),
+        (lambda: BOX.fillet(BOX.edges(), 1.01), "no room"),
         (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "no room"),
         (lambda: STAR.chamfer(STAR.edges(), 0.1), "convex and concave edges meet, and more than"),
         (lambda: FLUSH.fillet(FLUSH.edges(), 0.25), r"no room at \(1\.82222, 2\.01192, 4\)"),
@@ -386,3 +386,36 @@ def test_attributes_follow_edges_that_are_blended_in_two_stages(turn: float) -> 
     part = (b.box(4, 4, 4) - b.box(2, 2, 5).translate(2, 2, 2)).tagged(layer=1)
     turned = part.rotate(turn, (1, 2, 3))
     assert 1 in turned.chamfer(turned.edges(), 0.2).to_mesh().face_attributes["layer"]
+
+
+# Found: blends that leave nothing of a face were refused.
+@pytest.mark.parametrize("verb", ["fillet", "chamfer"])
+@pytest.mark.parametrize("share", [1, 1 - 1e-10])
+def test_blends_may_take_all_of_a_face(verb: str, share: float) -> None:
+    for sides in (3, 4, 6):
+        body, room = b.cylinder(h=5, r=2, segments=sides), 2 * math.cos(math.pi / sides)
+        rim = body.edges().where(lambda e: (e.middle[:, 2] > 5 - 1e-9) & (e.direction[:, 2] < 0.5))
+        full = getattr(body, verb)(rim, room * share)
+        nearly = getattr(body, verb)(rim, room * (1 - 1e-6))
+        assert full.volume == pytest.approx(nearly.volume, rel=1e-5)
+        assert full.components == 1 and full.to_mesh().certificate.ok
+        with pytest.raises(b.InvalidParameterError, match="no room"):
+            getattr(body, verb)(rim, room * 1.001)
+
+
+def test_a_bar_of_full_rounds() -> None:
+    bar = b.cube(4)
+    upright = bar.edges().parallel("z")
+    assert bar.chamfer(upright, 2).volume == pytest.approx(32)
+    assert bar.fillet(upright, 2, segments=64).volume == pytest.approx(
+        4 * 32 * 4 * math.sin(math.pi / 32), rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("size", [(2, 2, 2), (2, 3, 4), (2, 2, 5)])
+@pytest.mark.parametrize("verb", ["fillet", "chamfer"])
+def test_blends_of_all_edges_may_take_all_of_some_faces(verb: str, size: tuple[int, ...]) -> None:
+    body = b.box(*size).rotate((10, 20, 30))
+    full, nearly = (getattr(body, verb)(body.edges(), room) for room in (1, 1 - 1e-6))
+    assert full.volume == pytest.approx(nearly.volume, rel=1e-5)
+    assert full.components == 1 and full.to_mesh().certificate.ok

@@ -32,6 +32,9 @@ from .stages import carried, ready, refused
 #: Edges of one call: each is a mesh and four half-spaces of one expression.
 _MOST_EDGES = 10_000
 
+#: A share of the size; stations that are nearer to each other do not tell the edge's direction.
+_SHORTEST = 1e-6
+
 #: The least sine between an edge and a plane at its end: the cutter must reach a hundred times as
 #: far beyond the end as it is wide.
 _FLATTEST = 0.01
@@ -238,6 +241,9 @@ class _Blend:
     def _prism(self, edge: int) -> Solid:
         arcs = [self._snapped(self._station(edge, place)) for place in (0, 1)]
         rings = np.array([self._ring(edge, arc) for arc in arcs])
+        if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _SHORTEST * self.profile.size:
+            # Nothing is left between the balls at both ends.
+            rings[1] = rings[0] + self.profile.size * self.skeleton.directions[edge]
         step = rings[1] - rings[0]
         times = max(self._reach(edge, rings, place) for place in (0, 1))
         rings = np.array([rings[0] - times * step, *rings, rings[1] + times * step])

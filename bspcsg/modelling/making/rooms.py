@@ -32,10 +32,11 @@ def refuse_no_room(skeleton: Skeleton, widths: FloatArray) -> None:
     """
     for face in np.unique(skeleton.sides[widths > 0]).tolist():
         loops = _loops(skeleton, face)
+        outer = [skeleton.vertices[_ends(skeleton, face, loop)[:, 0]] for loop in loops]
         inner = [_inset(skeleton, face, loop, widths) for loop in loops]
         for loop, corners in zip(loops, inner, strict=True):
             _refuse_reversed(skeleton, face, loop, corners)
-        _refuse_overlapping(skeleton, face, inner, widths)
+        _refuse_overlapping(skeleton, face, outer, inner, widths)
 
 
 def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
@@ -101,26 +102,33 @@ def _refuse_reversed(skeleton: Skeleton, face: int, loop: IndexArray, corners: F
     ends = skeleton.vertices[_ends(skeleton, face, loop)]
     along = ends[:, 1] - ends[:, 0]
     left = np.einsum("ij,ij->i", corners[:, 1] - corners[:, 0], along)
-    gone = np.flatnonzero(left <= _PARALLEL * np.einsum("ij,ij->i", along, along))
+    gone = np.flatnonzero(left < -_PARALLEL * np.einsum("ij,ij->i", along, along))
     if len(gone):
         raise no_room(skeleton, ends[gone[0]].mean(axis=0), [face])
 
 
 def _refuse_overlapping(
-    skeleton: Skeleton, face: int, loops: Sequence[FloatArray], widths: FloatArray
+    skeleton: Skeleton,
+    face: int,
+    outer: Sequence[FloatArray],
+    inner: Sequence[FloatArray],
+    widths: FloatArray,
 ) -> None:
     """Raise an error if what is left of a face crosses itself."""
-    normal = skeleton.normals[face]
-    axis = int(np.abs(normal).argmax())
-    plane = [(1, 2), (2, 0), (0, 1)][axis]
-    flat = [corners.reshape(-1, 3)[:, plane] for corners in loops]
-    if normal[axis] < 0:
-        flat = [points[:, ::-1] for points in flat]
-    signed = sum(_area(points) for points in flat)
-    if abs(Region(flat).area - signed) > _SAME * sum(abs(_area(points)) for points in flat):
+    whole, left = (_flat(skeleton.normals[face], loops) for loops in (outer, inner))
+    signed = sum(map(_area, left))
+    if abs(Region(left).area - signed) > _SAME * sum(abs(_area(points)) for points in whole):
         edges = np.flatnonzero((skeleton.sides == face).any(axis=1) & (widths > 0))
         widest = edges[widths[edges].argmax()]
         raise no_room(skeleton, skeleton.vertices[skeleton.ends[widest]].mean(axis=0), [face])
+
+
+def _flat(normal: FloatArray, loops: Sequence[FloatArray]) -> list[FloatArray]:
+    """Return loops of a plane without the axis that its normal is nearest to, counter-clockwise."""
+    axis = int(np.abs(normal).argmax())
+    plane = [(1, 2), (2, 0), (0, 1)][axis]
+    flat = [corners.reshape(-1, 3)[:, plane] for corners in loops]
+    return [points[:, ::-1] for points in flat] if normal[axis] < 0 else flat
 
 
 def _area(points: FloatArray) -> float:
