@@ -6,6 +6,7 @@ import os
 import resource
 import signal
 import subprocess
+import tempfile
 import time
 from pathlib import Path
 from typing import Any
@@ -22,9 +23,10 @@ POSIX = pytest.mark.skipif(os.name != "posix", reason="as POSIX has it")
 
 
 def volume_of(data: bytes, suffix: str) -> float:
-    path = Path(f"read-back.{suffix}")
-    path.write_bytes(data)
-    return b.load(path).volume
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, f"read-back.{suffix}")
+        path.write_bytes(data)
+        return b.load(path).volume
 
 
 @pytest.mark.parametrize("suffix", ["stl", "ply", "3mf", "glb"])
