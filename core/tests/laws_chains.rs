@@ -112,7 +112,7 @@ fn results_of_simple_meshes_are_reduced_once_these_are_checked() {
 fn results_are_reduced_where_a_visited_cell_shows_the_overlap() {
     let solid = Shape::cuboid([0; 3], [60; 3]).unchecked();
     normalized(&solid, Rule::Positive);
-    let twice = Shape::cuboid([1; 3], [20; 3]).with(Shape::cuboid([10; 3], [30; 3]));
+    let twice = Shape::cuboid([1; 3], [80; 3]).with(Shape::cuboid([10; 3], [90; 3]));
     let result = applied(SetOp::Difference, &solid, &twice.unchecked());
     assert!(result.is_reduced());
     let expected = applied(SetOp::Difference, &solid, &twice.united());

@@ -2,6 +2,7 @@
 
 mod arith;
 mod arith_bounds;
+mod arrangements;
 mod booleans;
 mod boxes;
 mod crowds;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::arrangement::{arranged, POOL};
 use super::descent::counters::Counters;
 use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
@@ -66,6 +67,9 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let merged = without_twins(expression, solids);
     let expression = merged.as_ref().unwrap_or(expression);
     let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
+    if let Some(done) = fresh_pair(expression, &operands, pitch) {
+        return Ok(done);
+    }
     let mut is_first = true;
     loop {
         let sources = Sources::new(joint_table(&operands));
@@ -97,6 +101,35 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             operands[k] = normalize(&operands[k], Rule::Positive)?;
         }
     }
+}
+
+/// The value for two meshes as they were given, where the arrangement of their faces has one.
+fn fresh_pair(
+    expression: &Expression,
+    operands: &[Solid],
+    pitch: Pitch,
+) -> Option<(Solid, Counters)> {
+    let sources = Sources::new(joint_table(operands));
+    let faces: usize = operands
+        .iter()
+        .filter_map(Solid::whole_mesh)
+        .map(|s| s.face_count())
+        .sum();
+    let run = |()| arranged(expression, operands, &sources);
+    let found = if faces >= POOL {
+        handed_over((), run).unwrap_or_else(run)
+    } else {
+        run(())
+    }?;
+    let counters = Counters::default();
+    counters.count_leaf(found.compared);
+    let named = operands.iter().map(Solid::named).max().unwrap_or(0);
+    let solid = Solid::new(found.root, pitch, sources.table().clone(), false);
+    let solid = solid
+        .outgrowing(named)
+        .made_of(operands)
+        .by_effort(counters.taken());
+    Some((solid, counters))
 }
 
 /// The solid, or nothing if it is a mesh in one plane, which bounds nothing.

@@ -1,5 +1,6 @@
 //! Set operations: one descent over trees and deferred leaves, and generic tree merging.
 
+pub mod arrangement;
 pub mod descent;
 pub mod evaluate;
 pub mod expression;

@@ -55,6 +55,13 @@ impl Counters {
         }
     }
 
+    /// Counts a cell that a kernel took, and its elements.
+    pub(in crate::merge) fn count_leaf(&self, elements: usize) {
+        self.leaves.fetch_add(1, Ordering::Relaxed);
+        self.leaf_elements
+            .fetch_add(elements as u64, Ordering::Relaxed);
+    }
+
     /// The number of elements in cells that kernels took.
     pub fn taken(&self) -> u64 {
         self.leaf_elements.load(Ordering::Relaxed)

@@ -409,13 +409,6 @@ impl<'a> Descent<'a> {
         Ok(join::branch(cell, cut, minus, plus, self.sources))
     }
 
-    fn count_leaf(&self, total: usize) {
-        self.counters.leaves.fetch_add(1, Ordering::Relaxed);
-        self.counters
-            .leaf_elements
-            .fetch_add(total as u64, Ordering::Relaxed);
-    }
-
     /// All operands' elements as lists of the cell, if they can be.
     fn listed<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<Listed<'s>>> {
         let listed = |(number, state): &'s (u32, State)| {
@@ -475,7 +468,7 @@ impl<'a> Descent<'a> {
         let node = problem.solve_by(kernels, &mut overlapping);
         self.note_overlaps(&overlapping)?;
         Ok(node.map(|node| {
-            self.count_leaf(total);
+            self.counters.count_leaf(total);
             Branch::of_node(cell, node)
         }))
     }

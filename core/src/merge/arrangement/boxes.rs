@@ -1,0 +1,336 @@
+//! A tree of boxes around triangles, and the pairs of two such trees that may meet.
+//!
+//! Boxes are sorted along a space-filling curve and joined by fours, level by level. At the leaves six
+//! diagonal slabs tell apart what boxes along the axes do not.
+//!
+//! # Source
+//! Morton 1966 (the curve); Klosowski et al. 1998 (slabs).
+
+use crate::arith::convert::as_number;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::{Point, Triangle};
+use crate::interrupt::{poll, spend};
+use crate::mesh::tasks::{each, Worth};
+
+/// Children of a node.
+const FAN: usize = 4;
+
+/// Steps of the curve along each axis, numbered by ten bits.
+const STEPS: u16 = 1 << 10;
+
+/// Pairs of nodes at which the search for pairs is parted into tasks.
+const TASKS: usize = 64;
+
+/// A box in single precision, rounded outwards.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bounds {
+    pub(super) low: [f32; 3],
+    pub(super) high: [f32; 3],
+}
+
+/// What a triangle covers along six diagonals, rounded outwards.
+#[derive(Clone, Copy, Debug)]
+struct Slabs {
+    low: [f32; 6],
+    high: [f32; 6],
+}
+
+/// Boxes in the order of the curve, and levels of boxes around each four of the level below.
+#[derive(Debug)]
+pub(super) struct BoxTree {
+    bounds: Vec<Bounds>,
+    slabs: Vec<Slabs>,
+    /// The root's level comes last.
+    levels: Vec<Vec<Bounds>>,
+}
+
+/// A node: its level, and its place there.
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    level: usize,
+    place: usize,
+}
+
+/// A number in single precision that is not larger: rounding takes less than is taken off before.
+#[allow(clippy::cast_possible_truncation, reason = "rounded down on purpose")]
+fn down(x: f64) -> f32 {
+    (x - x.abs() * f64::from(f32::EPSILON)) as f32
+}
+
+fn up(x: f64) -> f32 {
+    -down(-x)
+}
+
+impl Bounds {
+    const NOTHING: Self = Self {
+        low: [f32::INFINITY; 3],
+        high: [f32::NEG_INFINITY; 3],
+    };
+
+    /// The box around two points, the first of which is the lower one.
+    pub(super) fn between(low: &Point, high: &Point) -> Self {
+        Self {
+            low: low.map(down),
+            high: high.map(up),
+        }
+    }
+
+    /// The box around a triangle.
+    pub(super) fn around([a, b, c]: &Triangle) -> Self {
+        let low = each_axis(|i| a[i].min(b[i]).min(c[i]));
+        Self::between(&low, &each_axis(|i| a[i].max(b[i]).max(c[i])))
+    }
+
+    #[inline]
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let along = |i: usize| self.low[i] <= other.high[i] && other.low[i] <= self.high[i];
+        along(0) & along(1) & along(2)
+    }
+
+    fn joined(&self, other: &Self) -> Self {
+        Self {
+            low: each_axis(|i| self.low[i].min(other.low[i])),
+            high: each_axis(|i| self.high[i].max(other.high[i])),
+        }
+    }
+
+    fn around_all(some: &[Self]) -> Self {
+        some.iter().fold(Self::NOTHING, |all, one| all.joined(one))
+    }
+
+    fn girth(&self) -> f32 {
+        (0..3).map(|i| self.high[i] - self.low[i]).sum()
+    }
+}
+
+impl Slabs {
+    fn of(triangle: &Triangle) -> Self {
+        let [a, b, c] = triangle.map(|[x, y, z]| [x + y, x - y, y + z, y - z, z + x, z - x]);
+        Self {
+            low: std::array::from_fn(|i| down(a[i].min(b[i]).min(c[i]))),
+            high: std::array::from_fn(|i| up(a[i].max(b[i]).max(c[i]))),
+        }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        let along = |i: usize| self.low[i] <= other.high[i] && other.low[i] <= self.high[i];
+        (0..6).fold(true, |all, i| all & along(i))
+    }
+}
+
+/// For each place in the order of the curve the number of the triangle there.
+pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
+    let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
+    let all = Bounds::around_all(&bounds);
+    let scale = each_axis(|i| {
+        let width = 2.0 * (all.high[i] - all.low[i]);
+        f32::from(STEPS - 1) / width.max(f32::MIN_POSITIVE)
+    });
+    spend(triangles.len());
+    let number = |b: &Bounds| {
+        let step = |i: usize| (b.low[i] + b.high[i] - 2.0 * all.low[i]) * scale[i];
+        (0..3).fold(0, |all, i| all | spread(along_curve(step(i))) << i)
+    };
+    let mut keys: Vec<u64> = (0u64..)
+        .zip(&bounds)
+        .map(|(i, b)| u64::from(number(b)) << 32 | i)
+        .collect();
+    keys.sort_unstable();
+    keys.into_iter().map(low_half).collect()
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a step along the curve, clamped"
+)]
+fn along_curve(step: f32) -> u32 {
+    (step as u32).min(u32::from(STEPS) - 1)
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+fn low_half(key: u64) -> u32 {
+    key as u32
+}
+
+/// The bits of a number of ten bits, two zeros after each.
+fn spread(x: u32) -> u32 {
+    let x = (x | x << 16) & 0x0300_00ff;
+    let x = (x | x << 8) & 0x0300_f00f;
+    let x = (x | x << 4) & 0x030c_30c3;
+    (x | x << 2) & 0x0924_9249
+}
+
+impl BoxTree {
+    /// The tree of triangles that stand in the order of the curve.
+    pub(super) fn new(triangles: &[Triangle]) -> Self {
+        spend(triangles.len());
+        let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
+        let mut levels = Vec::new();
+        let mut below = &bounds;
+        while below.len() > 1 || levels.is_empty() {
+            levels.push(below.chunks(FAN).map(Bounds::around_all).collect());
+            below = &levels[levels.len() - 1];
+        }
+        Self {
+            bounds,
+            slabs: Vec::new(),
+            levels,
+        }
+    }
+
+    /// The tree, to be asked for pairs.
+    pub(super) fn with_slabs(self, triangles: &[Triangle]) -> Self {
+        let slabs = triangles.iter().map(Slabs::of).collect();
+        Self { slabs, ..self }
+    }
+
+    fn root(&self) -> Node {
+        let level = self.levels.len() - 1;
+        Node { level, place: 0 }
+    }
+
+    fn at(&self, node: Node) -> &Bounds {
+        &self.levels[node.level][node.place]
+    }
+
+    fn children(&self, node: Node) -> impl Iterator<Item = Node> + use<> {
+        let level = node.level - 1;
+        let end = (FAN * (node.place + 1)).min(self.levels[level].len());
+        (FAN * node.place..end).map(move |place| Node { level, place })
+    }
+
+    /// The places of a lowest node's boxes.
+    fn leaves(&self, node: Node) -> std::ops::Range<usize> {
+        FAN * node.place..(FAN * (node.place + 1)).min(self.bounds.len())
+    }
+
+    /// Calls `visit` with the places of all boxes that meet another one.
+    pub(super) fn each_meeting(&self, bounds: &Bounds, mut visit: impl FnMut(usize)) {
+        let mut open = if self.bounds.is_empty() {
+            Vec::new()
+        } else {
+            vec![self.root()]
+        };
+        while let Some(node) = open.pop() {
+            poll();
+            if node.level == 0 {
+                let met = |i: &usize| self.bounds[*i].meets(bounds);
+                self.leaves(node).filter(met).for_each(&mut visit);
+            } else {
+                let met = |n: &Node| self.at(*n).meets(bounds);
+                open.extend(self.children(node).filter(met));
+            }
+        }
+    }
+
+    /// The pairs of places at which boxes and slabs of two trees meet, in an order that depends on
+    /// the trees only.
+    pub(super) fn pairs(&self, other: &Self, worth: Worth) -> Vec<[u32; 2]> {
+        if self.bounds.is_empty() || other.bounds.is_empty() {
+            return Vec::new();
+        }
+        let found = each(worth, self.starts(other), |start| {
+            self.pairs_below(other, start)
+        });
+        found.concat()
+    }
+
+    /// Pairs of nodes below which all pairs are: about as many as tasks are wanted.
+    fn starts(&self, other: &Self) -> Vec<[Node; 2]> {
+        let mut open = vec![[self.root(), other.root()]];
+        while open.len() < TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
+            let mut next = Vec::with_capacity(FAN * open.len());
+            for pair in open {
+                self.descend(other, pair, &mut next);
+            }
+            if next.is_empty() {
+                return next;
+            }
+            open = next;
+        }
+        open
+    }
+
+    /// Adds the meeting pairs one level below a pair, of which the larger node is opened.
+    fn descend(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
+        let (ours, theirs) = (self.at(a), other.at(b));
+        if a.level == 0 && b.level == 0 {
+            found.push([a, b]);
+        } else if b.level > a.level || b.level == a.level && theirs.girth() > ours.girth() {
+            let met = other.children(b).filter(|n| ours.meets(other.at(*n)));
+            found.extend(met.map(|n| [a, n]));
+        } else {
+            let met = self.children(a).filter(|n| theirs.meets(self.at(*n)));
+            found.extend(met.map(|n| [n, b]));
+        }
+    }
+
+    fn pairs_below(&self, other: &Self, start: [Node; 2]) -> Vec<[u32; 2]> {
+        let (mut open, mut found) = (vec![start], Vec::new());
+        while let Some([a, b]) = open.pop() {
+            poll();
+            if a.level == 0 && b.level == 0 {
+                self.pairs_of_leaves(other, [a, b], &mut found);
+            } else {
+                self.descend(other, [a, b], &mut open);
+            }
+        }
+        found
+    }
+
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "there are less than 2^32 faces"
+    )]
+    fn pairs_of_leaves(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[u32; 2]>) {
+        let theirs = other.at(b);
+        for i in self.leaves(a).filter(|i| self.bounds[*i].meets(theirs)) {
+            for j in other.leaves(b) {
+                if self.bounds[i].meets(&other.bounds[j]) && self.slabs[i].meets(&other.slabs[j]) {
+                    found.push([as_number(i), as_number(j)]);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangles(count: u32, seed: u32) -> Vec<Triangle> {
+        let next = |k: u32| f64::from((seed + k).wrapping_mul(2_654_435_761) >> 20);
+        let triangle = |t: u32| {
+            let at = [next(12 * t), next(12 * t + 1), next(12 * t + 2)];
+            [0, 1, 2].map(|c| each_axis(|i| at[i] + next(12 * t + 3 + 3 * c + as_number(i)) / 9.0))
+        };
+        let given: Vec<Triangle> = (0..count).map(triangle).collect();
+        order(&given).iter().map(|i| given[*i as usize]).collect()
+    }
+
+    #[test]
+    fn pairs_are_those_that_comparing_all_finds() {
+        for (count, others) in [(0, 3), (1, 1), (3, 70), (200, 300)] {
+            let (a, b) = (triangles(count, 1), triangles(others, 77));
+            let [ours, theirs] = [&a, &b].map(|t| BoxTree::new(t).with_slabs(t));
+            let mut found = ours.pairs(&theirs, Worth::Nothing);
+            found.sort_unstable();
+            let met = |i: usize, j: usize| {
+                let boxes = ours.bounds[i].meets(&theirs.bounds[j]);
+                boxes && ours.slabs[i].meets(&theirs.slabs[j])
+            };
+            let all = (0..a.len()).flat_map(|i| (0..b.len()).map(move |j| (i, j)));
+            let all = all.filter(|(i, j)| met(*i, *j));
+            let all: Vec<[u32; 2]> = all.map(|(i, j)| [as_number(i), as_number(j)]).collect();
+            assert_eq!(found, all);
+        }
+    }
+
+    #[test]
+    fn boxes_are_rounded_outwards() {
+        let x = f64::from(1 << 30) + 0.5;
+        let bounds = Bounds::between(&[x; 3], &[x; 3]);
+        assert!(f64::from(bounds.low[0]) < x && f64::from(bounds.high[0]) > x);
+    }
+}

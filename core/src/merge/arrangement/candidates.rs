@@ -1,0 +1,166 @@
+//! The faces of two meshes that may meet: those that reach into the box that both meshes fill.
+
+use std::sync::Arc;
+
+use super::boxes::{order, Bounds, BoxTree};
+use super::occupancy::Occupancy;
+use crate::arith::convert::{as_double, as_number};
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::{Point, Triangle};
+use crate::geometry::plane::Lattice;
+use crate::geometry::winding::crossing::{triangle_change, Segment};
+use crate::mesh::handle::{FaceId, Slot, VertexId};
+use crate::mesh::source::Source;
+use crate::mesh::tasks::each_chunk;
+use crate::mesh::triangles::TriangleMesh;
+
+/// A mesh that is an operand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Operand<'a> {
+    pub(super) slot: Slot,
+    pub(super) source: &'a Arc<Source>,
+    pub(super) mesh: &'a TriangleMesh,
+    /// The lattice box around all vertices.
+    pub(super) bounds: [Lattice; 2],
+}
+
+/// Faces of an operand in the window, and the boxes around them.
+#[derive(Debug, Default)]
+pub(super) struct Within {
+    pub(super) faces: Vec<FaceId>,
+    pub(super) boxes: Vec<Bounds>,
+}
+
+/// The faces of an operand that may meet the other one, in the order of their places in space.
+#[derive(Debug)]
+pub(super) struct Candidates {
+    pub(super) faces: Vec<FaceId>,
+    pub(super) triangles: Vec<Triangle>,
+    pub(super) tree: BoxTree,
+}
+
+impl<'a> Operand<'a> {
+    /// The operand of a source; `None` if that is no mesh, or has no vertices.
+    pub(super) fn new(slot: Slot, source: &'a Arc<Source>) -> Option<Self> {
+        let mesh = source.mesh()?;
+        let (low, high) = mesh.bounds()?;
+        Some(Self {
+            slot,
+            source,
+            mesh,
+            bounds: [low, high],
+        })
+    }
+
+    /// The corners of a face.
+    pub(super) fn triangle(&self, face: FaceId) -> Triangle {
+        self.mesh.corners(face).map(|corner| corner.map(as_double))
+    }
+
+    /// The faces that reach into a window, ascending, with the boxes around them.
+    pub(super) fn within(&self, [low, high]: &[Point; 2]) -> Within {
+        let found = each_chunk(&self.mesh.faces, |first, chunk| {
+            let mut some = Within::default();
+            for id in (first..first + chunk.len()).map(|i| FaceId(as_number(i))) {
+                let [a, b, c] = self.triangle(id);
+                let least = each_axis(|i| a[i].min(b[i]).min(c[i]));
+                let most = each_axis(|i| a[i].max(b[i]).max(c[i]));
+                if (0..3).all(|i| least[i] <= high[i] && most[i] >= low[i]) {
+                    some.faces.push(id);
+                    some.boxes.push(Bounds::between(&least, &most));
+                }
+            }
+            some
+        });
+        found.into_iter().reduce(Within::with).unwrap_or_default()
+    }
+
+    /// Those of some faces that may meet others.
+    pub(super) fn candidates(&self, within: &Within, others: &Occupancy) -> Candidates {
+        let both = within.faces.iter().zip(&within.boxes);
+        let faces = both.filter(|(_, bounds)| others.meets(bounds));
+        let faces: Vec<FaceId> = faces.map(|(id, _)| *id).collect();
+        let mut made = Candidates::of(self, &faces);
+        made.tree = made.tree.with_slabs(&made.triangles);
+        made
+    }
+
+    /// All faces, by their places.
+    fn tree(&self) -> Candidates {
+        Candidates::of(self, &self.mesh.face_ids().collect::<Vec<_>>())
+    }
+}
+
+impl Within {
+    fn with(mut self, mut other: Self) -> Self {
+        self.faces.append(&mut other.faces);
+        self.boxes.append(&mut other.boxes);
+        self
+    }
+}
+
+impl Candidates {
+    fn of(operand: &Operand, given: &[FaceId]) -> Self {
+        let triangles: Vec<Triangle> = given.iter().map(|id| operand.triangle(*id)).collect();
+        let order = order(&triangles);
+        let faces = order.iter().map(|i| given[*i as usize]).collect();
+        let triangles: Vec<Triangle> = order.iter().map(|i| triangles[*i as usize]).collect();
+        let tree = BoxTree::new(&triangles);
+        Self {
+            faces,
+            triangles,
+            tree,
+        }
+    }
+
+    /// The corners of a candidate.
+    pub(super) fn corners(&self, mesh: &TriangleMesh, candidate: u32) -> [VertexId; 3] {
+        mesh.vertices_of(self.faces[candidate as usize])
+    }
+}
+
+/// How often a mesh winds around points: its faces by their places, once somebody asks.
+#[derive(Debug)]
+pub(super) struct Windings<'a> {
+    operand: Operand<'a>,
+    faces: Option<Candidates>,
+}
+
+impl<'a> Windings<'a> {
+    pub(super) fn of(operand: Operand<'a>) -> Self {
+        Self {
+            operand,
+            faces: None,
+        }
+    }
+
+    /// Return whether a point lies outside of the box around the mesh.
+    pub(super) fn are_zero_at(&self, place: &Lattice) -> bool {
+        let [low, high] = &self.operand.bounds;
+        (0..3).any(|i| place[i] < low[i] || place[i] > high[i])
+    }
+
+    /// The winding number around a lattice point that lies on no face.
+    pub(super) fn around(&mut self, place: &Lattice) -> i32 {
+        let Operand { mesh, bounds, .. } = self.operand;
+        let way = Segment {
+            from: place.map(|x| 2 * x),
+            axis: 0,
+            to: 2 * bounds[1][0] + 2,
+        };
+        let faces = self.faces.get_or_insert_with(|| self.operand.tree());
+        let from: Point = place.map(as_double);
+        let to = each_axis(|i| {
+            if i == 0 {
+                as_double(bounds[1][0])
+            } else {
+                from[i]
+            }
+        });
+        let mut change = 0;
+        faces.tree.each_meeting(&Bounds::between(&from, &to), |i| {
+            change += triangle_change(&mesh.corners(faces.faces[i]), &way);
+        });
+        -change
+    }
+}

@@ -1,0 +1,95 @@
+//! The winding numbers of each operand around the vertices of the other.
+//!
+//! A number is the same at all corners of a face that nothing cuts, and known in its differences where
+//! something does. So one question settles all vertices that hang together.
+
+use super::candidates::{Operand, Windings};
+use super::triangulation::Special;
+use crate::arith::convert::as_number;
+use crate::mesh::handle::VertexId;
+
+/// The winding numbers around the vertices of one mesh, as far as they are known: classes of vertices
+/// with the differences between them.
+#[derive(Debug)]
+pub(super) struct Labels<'a> {
+    of: Operand<'a>,
+    windings: Windings<'a>,
+    parents: Vec<u32>,
+    /// By how much the number at a vertex exceeds that at its parent.
+    above: Vec<i32>,
+    /// The number at the root of a class.
+    known: Vec<Option<i32>>,
+}
+
+impl<'a> Labels<'a> {
+    /// The numbers of one operand around the vertices of another: nothing is known.
+    pub(super) fn new(of: Operand<'a>, around: Operand<'a>) -> Self {
+        let vertices = of.mesh.vertices.len();
+        Self {
+            of,
+            windings: Windings::of(around),
+            parents: (0..as_number(vertices)).collect(),
+            above: vec![0; vertices],
+            known: vec![None; vertices],
+        }
+    }
+
+    /// The root of a vertex's class, and by how much the number at the vertex exceeds that there.
+    fn root(&mut self, vertex: VertexId) -> (usize, i32) {
+        let (mut at, mut sum) = (vertex.place(), 0);
+        loop {
+            let parent = self.parents[at] as usize;
+            if parent == at {
+                return (at, sum);
+            }
+            // Each second vertex on the way becomes a child of its parent's parent; a root has nothing above.
+            self.above[at] += self.above[parent];
+            self.parents[at] = self.parents[parent];
+            sum += self.above[at];
+            at = self.parents[at] as usize;
+        }
+    }
+
+    /// Notes by how much the number at one vertex exceeds that at another.
+    ///
+    /// # Errors
+    /// `Special` if that contradicts what is known: the mesh that is wound around overlaps itself.
+    pub(super) fn join(&mut self, a: VertexId, b: VertexId, more: i32) -> Result<(), Special> {
+        let ((a, above_a), (b, above_b)) = (self.root(a), self.root(b));
+        // The number at a's root is that at b's root and this.
+        let between = above_b + more - above_a;
+        if a == b {
+            return if between == 0 { Ok(()) } else { Err(Special) };
+        }
+        if a > b {
+            self.parents[a] = as_number(b);
+            self.above[a] = between;
+        } else {
+            self.parents[b] = as_number(a);
+            self.above[b] = -between;
+        }
+        Ok(())
+    }
+
+    /// Notes that the number at a vertex is zero if it lies outside of the box around the other operand.
+    pub(super) fn note_beyond(&mut self, vertex: VertexId) {
+        if self
+            .windings
+            .are_zero_at(&self.of.mesh.vertices[vertex.place()])
+        {
+            let (root, above) = self.root(vertex);
+            self.known[root].get_or_insert(-above);
+        }
+    }
+
+    /// The number at a vertex; for the first of its class it is counted.
+    pub(super) fn at(&mut self, vertex: VertexId) -> i32 {
+        let (root, above) = self.root(vertex);
+        if let Some(known) = self.known[root] {
+            return known + above;
+        }
+        let number = self.windings.around(&self.of.mesh.vertices[vertex.place()]);
+        self.known[root] = Some(number - above);
+        number
+    }
+}

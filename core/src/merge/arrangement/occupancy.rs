@@ -1,0 +1,240 @@
+//! The cells of a coarse grid that faces reach into: faces of two meshes meet only where both do.
+
+use super::boxes::Bounds;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::{Point, Triangle};
+use crate::interrupt::poll;
+
+/// Cells along each axis, at most: a row of them is one word.
+const MOST_CELLS: usize = 64;
+
+/// With fewer cells along each axis hardly a face is told apart from others.
+const FEWEST_CELLS: usize = 8;
+
+/// Rows that marking may take for each face of both meshes: a row costs up to two hundred instructions,
+/// and a face that is left out of the search for pairs saves a thousand.
+const ROWS: usize = 8;
+
+/// A face that reaches through more cells than this on all axes is clipped to its plane.
+const BLOCK: usize = 2;
+
+/// The cells of a window that faces may reach into.
+#[derive(Debug)]
+pub(super) struct Occupancy {
+    /// Cells along each axis.
+    cells: usize,
+    low: Point,
+    /// Cells for each step of the lattice.
+    scale: Point,
+    /// For each row along the first axis the bits of its cells; empty if all count as occupied.
+    rows: Vec<u64>,
+}
+
+/// The first and the last cell on each axis.
+type Cells = [[usize; 2]; 3];
+
+/// A plane through a corner of a face, in coordinates relative to that corner.
+struct Plane {
+    corner: Point,
+    normal: Point,
+    /// By how much the value at a point of the window may be off.
+    error: f64,
+}
+
+impl Occupancy {
+    /// The cells that faces with these boxes around them reach into; `faces` are compared in all.
+    pub(super) fn of(
+        window: &[Point; 2],
+        boxes: &[Bounds],
+        triangle: impl Fn(usize) -> Triangle,
+        faces: usize,
+    ) -> Self {
+        let mut budget = ROWS * faces;
+        let mut made = Self::new(window, faces);
+        for (i, bounds) in boxes.iter().enumerate() {
+            let around = made.cells(bounds);
+            let count = |axis: usize| around[axis][1] - around[axis][0] + 1;
+            let rows = count(1) * count(2);
+            if rows > budget || made.rows.is_empty() {
+                made.rows.clear();
+                return made;
+            }
+            budget -= rows;
+            let is_large = (0..3).all(|axis| count(axis) > BLOCK);
+            let plane = is_large.then(|| Plane::of(&triangle(i), window));
+            made.mark(&around, plane.as_ref());
+        }
+        made
+    }
+
+    /// A grid as fine as so many faces pay for: a large face reaches into as many rows as there are.
+    fn new(window: &[Point; 2], faces: usize) -> Self {
+        let mut cells = MOST_CELLS;
+        while cells >= FEWEST_CELLS && 2 * cells * cells > faces {
+            cells /= 2;
+        }
+        let rows = if cells < FEWEST_CELLS {
+            0
+        } else {
+            cells * cells
+        };
+        #[allow(clippy::cast_precision_loss, reason = "a power of two")]
+        let scale = |i: usize| cells as f64 / (window[1][i] - window[0][i]).max(1.0);
+        Self {
+            cells,
+            low: window[0],
+            scale: each_axis(scale),
+            rows: vec![0; rows],
+        }
+    }
+
+    /// Marks the cells of a box, or those of them that a plane may meet.
+    fn mark(&mut self, around: &Cells, plane: Option<&Plane>) {
+        poll();
+        let [x, y, z] = *around;
+        for k in z[0]..=z[1] {
+            for j in y[0]..=y[1] {
+                let met = plane
+                    .as_ref()
+                    .map_or(Some(x), |plane| self.met(plane, x, [j, k]));
+                if let Some(met) = met {
+                    self.rows[self.cells * k + j] |= mask(met);
+                }
+            }
+        }
+    }
+
+    /// The cells of a row that a plane may meet: a cell's middle is no farther from the plane than the
+    /// cell's corners are from the middle.
+    fn met(
+        &self,
+        plane: &Plane,
+        [first, last]: [usize; 2],
+        [j, k]: [usize; 2],
+    ) -> Option<[usize; 2]> {
+        #[allow(clippy::cast_precision_loss, reason = "a small number")]
+        let middle = |cell: usize, i: usize| {
+            self.low[i] + (cell as f64 + 0.5) / self.scale[i] - plane.corner[i]
+        };
+        let n = &plane.normal;
+        let value = n[1] * middle(j, 1) + n[2] * middle(k, 2);
+        let reach: f64 = (0..3).map(|i| n[i].abs() * 0.5 / self.scale[i]).sum();
+        let reach = reach + plane.error;
+        if n[0] == 0.0 {
+            return (value.abs() <= reach).then_some([first, last]);
+        }
+        let at = |value: f64| (value / n[0] - middle(0, 0)) * self.scale[0];
+        let ends = [at(-value - reach), at(-value + reach)];
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        // One cell more on each side: division may round across a cell's border.
+        let (low, high) = (
+            self.clamped(low - 1.0).max(first),
+            self.clamped(high + 2.0).min(last),
+        );
+        (low <= high).then_some([low, high])
+    }
+
+    /// Return whether a box may reach into an occupied cell.
+    pub(super) fn meets(&self, bounds: &Bounds) -> bool {
+        if self.rows.is_empty() {
+            return true;
+        }
+        let [x, y, z] = self.cells(bounds);
+        let bits = mask(x);
+        (z[0]..=z[1]).any(|k| {
+            let row = self.cells * k;
+            let mut rows = self.rows[row + y[0]..=row + y[1]].iter();
+            rows.any(|r| r & bits != 0)
+        })
+    }
+
+    /// The cells that a box reaches into.
+    ///
+    /// The same rounding takes all numbers to cells, and keeps their order: boxes that meet share a cell.
+    fn cells(&self, bounds: &Bounds) -> Cells {
+        let cell = |x: f32, i: usize| self.clamped((f64::from(x) - self.low[i]) * self.scale[i]);
+        each_axis(|i| [cell(bounds.low[i], i), cell(bounds.high[i], i)])
+    }
+
+    /// The cell at a coordinate, or the one at the grid's end.
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped to the cells"
+    )]
+    fn clamped(&self, x: f64) -> usize {
+        (x as usize).min(self.cells - 1)
+    }
+}
+
+impl Plane {
+    fn of([a, b, c]: &Triangle, [low, high]: &[Point; 2]) -> Self {
+        let [u, v] = [b, c].map(|p| each_axis(|i| p[i] - a[i]));
+        let product = |i: usize, j: usize| (u[i] * v[j], u[j] * v[i]);
+        let minors = [product(1, 2), product(2, 0), product(0, 1)];
+        let size: f64 = minors.iter().map(|(p, q)| p.abs() + q.abs()).sum();
+        let reach: f64 = (0..3)
+            .map(|i| high[i] - low[i] + (a[i] - low[i]).abs())
+            .sum();
+        Self {
+            corner: *a,
+            normal: minors.map(|(p, q)| p - q),
+            // Some ten roundings, each below an epsilon of the sizes.
+            error: 16.0 * f64::EPSILON * size * reach,
+        }
+    }
+}
+
+/// The bits of the cells from one to another.
+fn mask([first, last]: [usize; 2]) -> u64 {
+    (u64::MAX >> (MOST_CELLS - 1 - (last - first))) << first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arith::convert::as_number;
+
+    const WINDOW: [Point; 2] = [[0.0; 3], [100.0, 7.0, 1e6]];
+
+    fn next(k: u32) -> f64 {
+        f64::from(k.wrapping_mul(2_654_435_761) >> 20) / 4096.0
+    }
+
+    /// A triangle somewhere in the window, and a little out of it.
+    fn triangle(k: u32, size: f64) -> Triangle {
+        let at = |c: u32, i: usize| next(12 * k + 3 * c + as_number(i));
+        [1, 2, 3]
+            .map(|c| each_axis(|i| WINDOW[1][i] * (at(0, i) * 1.2 - 0.1 + size * (at(c, i) - 0.5))))
+    }
+
+    #[test]
+    fn faces_that_meet_share_a_cell() {
+        for k in 0..3000 {
+            let [large, small] = [triangle(k, 1.0), triangle(k + 5000, 0.02)];
+            let bounds = Bounds::around(&large);
+            let cells = Occupancy::of(&WINDOW, &[bounds], |_| large, 10_000);
+            // Corners of the triangle, and points inside it.
+            for [s, t] in [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.3, 0.3], [0.1, 0.7]] {
+                let [a, b, c] = large;
+                let p = each_axis(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]));
+                let inside = (0..3).all(|i| (WINDOW[0][i]..=WINDOW[1][i]).contains(&p[i]));
+                assert!(
+                    !inside || cells.meets(&Bounds::between(&p, &p)),
+                    "{k} {p:?}"
+                );
+            }
+            let bounds = Bounds::around(&small);
+            let far = Occupancy::of(&WINDOW, &[bounds], |_| small, 10_000);
+            assert!(far.meets(&bounds));
+        }
+    }
+
+    #[test]
+    fn large_faces_reach_into_few_cells() {
+        let slanted = [[0.0, 0.0, 0.0], [100.0, 0.0, 1e6], [0.0, 7.0, 1e6]];
+        let cells = Occupancy::of(&WINDOW, &[Bounds::around(&slanted)], |_| slanted, 10_000);
+        let count: u32 = cells.rows.iter().map(|row| row.count_ones()).sum();
+        assert!(count < 6 * 64 * 64, "{count}");
+    }
+}

@@ -1,0 +1,132 @@
+//! The arrangement of two meshes against the descent: two ways to one set.
+
+use bspcsg::merge::arrangement::arranged;
+use bspcsg::merge::descent::descend::Descent;
+use bspcsg::merge::expression::{Expression, Term};
+use bspcsg::merge::lists::list::Sources;
+use bspcsg::merge::rule::Rule;
+use bspcsg::tree::node::Branch;
+use bspcsg::tree::solid::Solid;
+
+use super::support::{assert_same_set, manifold_mesh, volume, Numbers, Shape};
+
+const REACH: i64 = 60;
+
+/// The ways to combine two operands.
+fn terms() -> [Vec<Term>; 4] {
+    let with = |more: Vec<Term>| [vec![Term::Operand(0), Term::Operand(1)], more].concat();
+    [
+        with(vec![Term::Or(vec![0, 1])]),
+        with(vec![Term::And(vec![0, 1])]),
+        with(vec![Term::Not(1), Term::And(vec![0, 2])]),
+        with(vec![Term::Xor(vec![0, 1])]),
+    ]
+}
+
+/// The values by the arrangement, where it has one, and by the descent.
+fn both_ways(terms: Vec<Term>, solids: &[Solid; 2]) -> Option<[Solid; 2]> {
+    let expression = Expression::new(terms).expect("well formed");
+    let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
+    let found = arranged(&expression, solids, &sources)?;
+    let roots = solids.iter().map(|s| s.root().clone()).collect();
+    let descent = Descent::new(&sources, Rule::Positive, true, 2);
+    let expected = descent.run(expression, roots).expect("not stopped");
+    let solid = |root: Branch| {
+        let reduced = solids.iter().all(Solid::is_reduced);
+        Solid::new(root, solids[0].pitch(), sources.table().clone(), reduced)
+    };
+    Some([found.root, expected].map(solid))
+}
+
+/// Compares both ways for pairs of shapes; returns how many pairs the arrangement took.
+fn compared(count: usize, mut pair: impl FnMut() -> [Solid; 2]) -> usize {
+    let mut taken = 0;
+    for k in 0..count {
+        let solids = pair();
+        for terms in terms() {
+            let Some([found, expected]) = both_ways(terms, &solids) else {
+                continue;
+            };
+            taken += 1;
+            assert_same_set(&found, &expected);
+            if found.is_reduced() {
+                assert_eq!(volume(&found), volume(&expected), "{k}");
+                manifold_mesh(&found, "arranged");
+            }
+        }
+    }
+    taken
+}
+
+#[test]
+fn tetrahedra_are_combined_as_by_the_descent() {
+    let mut numbers = Numbers::new(1);
+    let taken = compared(150, || {
+        [0; 2].map(|_| Shape::any_tetrahedron(&mut numbers, REACH).solid())
+    });
+    assert!(taken > 300, "{taken}");
+}
+
+#[test]
+fn spheres_are_combined_as_by_the_descent() {
+    let mut numbers = Numbers::new(2);
+    let taken = compared(12, || {
+        [0; 2].map(|_| Shape::sphere(numbers.point(3000), 2500.0, 2).solid())
+    });
+    assert!(taken > 30, "{taken}");
+}
+
+/// Meshes that overlap themselves, and such as are inside out in part.
+#[test]
+fn overlapping_meshes_are_combined_as_by_the_descent() {
+    let mut numbers = Numbers::new(3);
+    let taken = compared(200, || {
+        [0; 2].map(|_| {
+            let one = Shape::any_tetrahedron(&mut numbers, REACH);
+            let other = Shape::any_tetrahedron(&mut numbers, REACH);
+            let other = if numbers.below(3) == 0 {
+                other.inverted()
+            } else {
+                other
+            };
+            one.with(other).unchecked()
+        })
+    });
+    assert!(taken > 100, "{taken}");
+}
+
+/// Small coordinates: corners in faces, edges in planes, faces in one plane.
+#[test]
+fn touching_meshes_are_combined_as_by_the_descent() {
+    let mut numbers = Numbers::new(4);
+    let taken = compared(300, || {
+        [0; 2].map(|_| match numbers.below(2) {
+            0 => Shape::any_cuboid(&mut numbers, 6).solid(),
+            _ => Shape::any_tetrahedron(&mut numbers, 6).solid(),
+        })
+    });
+    assert!(taken > 50, "{taken}");
+}
+
+/// A face with many holes, islands in holes, and curves from border to border.
+#[test]
+fn a_face_with_many_segments_is_divided_as_by_the_descent() {
+    let mut numbers = Numbers::new(5);
+    let plate = Shape::tetrahedron([
+        [-999, -998, 0],
+        [5003, -997, 7],
+        [-1001, 5009, 11],
+        [500, 600, 900],
+    ]);
+    let plate = plate.expect("a tetrahedron").solid();
+    let taken = compared(6, || {
+        let ball = |numbers: &mut Numbers| {
+            let at = [numbers.below(9), numbers.below(9), 0].map(|x| 400 * x);
+            Shape::sphere(at, 90.0, 2)
+        };
+        let first = ball(&mut numbers);
+        let all = (0..9).fold(first, |all, _| all.with(ball(&mut numbers)));
+        [plate.clone(), all.unchecked()]
+    });
+    assert!(taken > 8, "{taken}");
+}
