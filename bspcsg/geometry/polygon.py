@@ -72,18 +72,55 @@ def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
     the input; triangles overlap only if the contours cross.
     """
     edges = directed_edges(contours)
-    many = outline_triangles(np.concatenate(contours), edges) if len(edges) > _FEW else None
-    triangles = many if many is not None else _few_triangles(contours)
+    many = len(edges) > _FEW
+    triangles = _many_triangles(contours, edges) if many else _few_triangles(contours)
     return triangles if _has_border(triangles, edges) else _fans(contours)
 
 
 #: Corners up to which manifold3d is quick; beyond, it takes the square of their number, and needles
-#: that import takes the square of, too.
+#: that import takes the square of, too. It calls itself for each of many corners on one line.
 _FEW = 200
 
 
 def _few_triangles(contours: Sequence[FloatArray]) -> IndexArray:
     return np.asarray(manifold3d.triangulate(list(contours)), dtype=np.int64).reshape(-1, 3)
+
+
+def _many_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> IndexArray:
+    """Return the triangles of a region, or of pieces of contours that bound none.
+
+    A piece of many corners that crosses itself is cut between two of them. Its halves have the cut
+    in both directions, so it cancels wherever it runs.
+    """
+    points = np.concatenate(contours)
+    whole = outline_triangles(points, edges)
+    if whole is not None:
+        return whole
+    waiting = np.split(np.arange(len(points)), np.cumsum([len(one) for one in contours])[:-1])
+    done = []
+    while waiting:
+        piece = waiting.pop()
+        triangles = _piece_triangles(points[piece])
+        if triangles is None:
+            middle = len(piece) // 2
+            waiting += [piece[: middle + 1], np.append(piece[middle:], piece[0])]
+        else:
+            done.append(piece[triangles])
+    return np.concatenate(done)
+
+
+def _piece_triangles(corners: FloatArray) -> IndexArray | None:
+    """Return the triangles of one contour; None if it is too long for one that crosses itself."""
+    is_turned = signed_area(corners) < 0
+    contour = np.ascontiguousarray(corners[::-1]) if is_turned else corners
+    if len(contour) <= _FEW:
+        triangles = _few_triangles([contour])
+    else:
+        found = outline_triangles(contour, directed_edges([contour]))
+        if found is None:
+            return None
+        triangles = found
+    return len(contour) - 1 - triangles[:, ::-1] if is_turned else triangles
 
 
 def triangulate_face(corners: FloatArray) -> IndexArray:

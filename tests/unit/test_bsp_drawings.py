@@ -13,7 +13,6 @@ import pytest
 import bspcsg as b
 from bspcsg import bsp
 from bspcsg.bsp.drawings.dxf import dxf_data
-from bspcsg.bsp.drawings.svg import curve_of
 
 R = bsp.Region
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9" width="90mm">{}</svg>'
@@ -237,14 +236,3 @@ def test_margins_without_a_page_are_refused(tmp_path: Path, margin: float) -> No
     with pytest.raises(b.InvalidParameterError, match="margin"):
         bsp.save_svg(R.rectangle(4), tmp_path / "x.svg", margin=margin)
     assert not (tmp_path / "x.svg").exists()
-
-
-# An arc is measured once, and its points are those of svgelements, which measures it at each call.
-@pytest.mark.parametrize("radii", ["5 3 30", "4 4 0", "0.5 9 -200", "7 7 90"])
-@pytest.mark.parametrize("flags", ["0 0", "0 1", "1 0", "1 1"])
-def test_points_of_arcs_are_those_of_svgelements(radii: str, flags: str) -> None:
-    elements = pytest.importorskip("svgelements")
-    (arc,) = elements.Path(f"M1 2 A {radii} {flags} 4 -3")[1:]
-    parameters = np.arange(1, 40) / 40
-    found, expected = curve_of(arc)(parameters), np.asarray(arc.npoint(parameters))
-    assert np.allclose(np.column_stack([found.real, found.imag]), expected, rtol=0, atol=1e-12)

@@ -16,6 +16,7 @@ import support
 from bspcsg import BspcsgError, FormatError, InvalidParameterError, Solid, csg
 from bspcsg.csg import Argument, CsgTree, Node
 from bspcsg.csg.syntax.json_form import DEEPEST_NODE
+from support.timing import seconds
 
 #: Levels: more than Python can go down by calls.
 DEEP = 100_000 if support.DEEP else 5_000
@@ -45,6 +46,8 @@ def values(text: str) -> list[object]:
         ("[]", ()),
         ("[ 0, [1,2] ,[ ] , undef]", (0.0, (1.0, 2.0), (), None)),
         ("[1, 2, ]", (1.0, 2.0)),
+        ("[[1, .5], [-0.5, 1e+05], [+2, 03]]", ((1.0, 0.5), (-0.5, 1e5), (2.0, 3.0))),
+        ("[[1, 2], [inf, /* one */ 3]]", ((1.0, 2.0), (math.inf, 3.0))),
     ],
 )
 def test_values(text: str, value: object) -> None:
@@ -97,6 +100,13 @@ def test_byte_order_mark_and_line_ends() -> None:
         ("cube 1;", [1, 6], "expected “(” after cube"),
         ("cube(1);\n@", [2, 1], "cannot read “@”"),
         ("#", [1, 2], "expected a node"),
+        ("cube([[1, 2],\n [3, 4 5]]);", [2, 8], "expected “]” to close a vector, found “5”"),
+        ("cube([[1, 2], [3, -1e999]]);", [1, 20], "the number “1e999” is too large"),
+        ("cube([1, NaN]);", [1, 10], "expected a value, found “NaN”"),
+        ("cube([1, -Infinity]);", [1, 11], "expected a value, found “Infinity”"),
+        ("cube([1, null]);", [1, 10], "expected a value, found “null”"),
+        ('cube([1, {"a": 2}]);', [1, 10], "expected a value, found “{”"),
+        ("cube([1, 2.]]);", [1, 13], "expected “,” or “)”, found “]”"),
     ],
 )
 def test_errors_name_line_and_column(text: str, where: list[int], says: str) -> None:
@@ -123,8 +133,11 @@ def test_a_long_text_without_its_end_is_found_at_once() -> None:
 
 
 def test_vectors_do_not() -> None:
-    with pytest.raises(FormatError, match="nested deeper than 64"):
-        csg.parse("cube(" + "[" * DEEP)
+    for inside in ("[" * DEEP, "[" * 65 + "1" + "]" * 65):
+        with pytest.raises(FormatError, match="nested deeper than 64") as caught:
+            csg.parse("cube(" + inside)
+        assert list(caught.value.where) == [1, 71]
+    assert str(values("[" * 64 + "1" + "]" * 64)[0]).count("(") == 64
 
 
 # Found: trees of scripts 3 000 levels deep, which the parser takes, could not be compared,
@@ -196,6 +209,27 @@ _nodes = st.recursive(
 def test_any_tree_survives_both_forms(tree: CsgTree) -> None:
     assert csg.parse(csg.dumps(tree)) == tree
     assert csg.from_json(csg.to_json(tree)) == tree
+
+
+_vectors = st.recursive(
+    st.one_of(_numbers, st.sampled_from(["undef", "1.", "- 2", "true"])),
+    lambda inner: st.lists(inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@given(st.lists(_vectors, min_size=1))
+def test_vectors_are_what_their_words_say(vector: list[Any]) -> None:
+    text = str(vector).replace("'", "")
+    # Comments let no part of it pass as JSON.
+    assert values(text) == values(text.replace("[", "[/**/").replace("]", "/**/]"))
+
+
+# Found: 400 000 numbers took more than two seconds, word by word.
+def test_long_lists_of_numbers_are_read_at_once() -> None:
+    points = [[k, 0.5, -1e-3] for k in range(100_000)]
+    text = f"polyhedron(points = {points}, faces = [{list(range(100_000))}]);"
+    assert seconds(lambda: csg.parse(text), 2) < 1
 
 
 @given(st.text(st.sampled_from('abc(){}[],;=-+."\\/*#%! 0123456789e\n'), max_size=60))

@@ -58,13 +58,34 @@ def test_outlines_of_many_corners_that_touch_or_cross_keep_their_edges() -> None
     pentagram = np.column_stack([np.cos(turns), np.sin(turns)])
     touching = [ring(300, 1), ring(300, 1, 2.0)]
     touching[1][150] = touching[0][0]
-    for contours in ([pentagram], touching, [ring(300, 2), ring(300, 2, 1)]):
+    crossed = [ring(300, 2), ring(300, 1)[::-1], ring(300, 2, 1)]
+    for contours in ([pentagram], touching, [ring(300, 2), ring(300, 2, 1)], crossed):
         triangles = triangulate(contours)
-        corners = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
-        left = Counter(map(tuple, corners)) - Counter((b, a) for a, b in corners)
-        assert left == Counter(map(tuple, directed_edges(contours).tolist()))
+        assert keeps_edges(contours, triangles)
         found = areas(contours, triangles).sum()
         assert found == pytest.approx(sum(signed_area(contour) for contour in contours))
+
+
+def keeps_edges(contours: list[FloatArray], triangles: IndexArray) -> bool:
+    """Say whether the edges of triangles cancel but for those of the contours."""
+    corners = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
+    left = Counter(map(tuple, corners)) - Counter((b, a) for a, b in corners)
+    return left == Counter(map(tuple, directed_edges(contours).tolist()))
+
+
+def test_a_crossing_spoils_few_of_many_triangles() -> None:
+    contour = ring(2000, 1)
+    contour[[700, 701]] = contour[[701, 700]]
+    found = areas([contour], triangulate([contour]))
+    assert np.count_nonzero(found <= 0) < 5
+    # With needles alone, import takes the square of their number.
+    assert np.count_nonzero(found > 0.1) > 1
+
+
+# Found: rounding folds a line, and the process ended where manifold3d ran out of stack.
+def test_any_number_of_corners_on_a_line_become_triangles() -> None:
+    line = np.arange(50_000)[:, None] * np.array([0.3, 0.7])
+    assert keeps_edges([line], triangulate([line]))
 
 
 # Found: outlines of thousands of holes or teeth cost their square where they become triangles,

@@ -3,8 +3,8 @@
 import io
 import math
 import os
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 from xml.etree import ElementTree
 from xml.parsers import expat
 from xml.sax.saxutils import quoteattr
@@ -20,6 +20,8 @@ from ...parameters import file_path, not_negative, of_kind, positive, shown, win
 from ..sets.region import Region
 from ..trees.facets import chosen_pitch
 from .left_out import LeftOut
+from .svg_curves import Steps, outlines, within
+from .svg_paths import Segments, path_segments, shape_segments
 from .svg_tree import NO_SHAPES, make_plain, name_of
 
 
@@ -63,31 +65,46 @@ def load_svg(
     lost = LeftOut()
     chord = positive(tolerance, "tolerance")
     rule = None if winding is None else winding_rule(winding)
+    shapes = shown_shapes(path, make_plain, lost)
+    filled = [shape for shape in shapes if _is_filled(shape.element)]
+    with format_errors(os.fspath(path), "SVG"):
+        found_loops = iter(outlines_of(filled, within(_own_lengths(filled, chord))))
     found: list[tuple[list[FloatArray], WindingRule]] = []
-    for shape in shown_shapes(path, make_plain, lost):
+    for shape in shapes:
         loops: list[FloatArray] = []
-        if _is_filled(shape):
-            with format_errors(os.fspath(path), "SVG"):
-                outlines = outlines_of(shape, _within(shape, chord))
-                loops = [corners for corners, _ in outlines if len(corners) >= 3]
-            found.append((loops, rule or _rule(shape)))
-        if not loops and _keyword(shape, "stroke") not in ("", "none"):
+        if _is_filled(shape.element):
+            loops = [corners for corners, _ in next(found_loops) if len(corners) >= 3]
+            found.append((loops, rule or _rule(shape.element)))
+        if not loops and _keyword(shape.element, "stroke") not in ("", "none"):
             lost.add("stroke")
         lost.outlines += len(loops)
     points = [np.zeros((0, 2)), *(corners for loops, _ in found for corners in loops)]
     common = chosen_pitch(pitch, np.concatenate(points))
-    shapes = (Region(loops, winding=kind, pitch=common) for loops, kind in found)
-    region = Region.compose([Region(pitch=common), *shapes])
+    regions = (Region(loops, winding=kind, pitch=common) for loops, kind in found)
+    region = Region.compose([Region(pitch=common), *regions])
     lost.tell(path, region)
     return region
 
 
+class Shape(NamedTuple):
+    """A shape of a drawing.
+
+    Parameters
+    ----------
+    element : object
+        That of svgelements, with a transform to user units: svgelements skews arcs in a wrong way.
+    path : Segments or None
+        What a path's data say, if these are without a fault; svgelements then has not seen them.
+    """
+
+    element: Any
+    path: Segments | None
+
+
 def shown_shapes(
     path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None], lost: LeftOut
-) -> list[Any]:
-    """Return svgelements' shapes of a file, but for those that are not shown.
-
-    Each has a transform to user units of its own: svgelements skews arcs in a wrong way.
+) -> list[Shape]:
+    """Return the shapes of a file, but for those that are not shown.
 
     Parameters
     ----------
@@ -109,17 +126,40 @@ def shown_shapes(
         if name_of(root) != "svg":
             raise ValueError("the outermost element is not svg")
         prepare(root)
+        paths = _set_aside(root)
         plain = io.BytesIO(ElementTree.tostring(root))
         drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
         # svgelements makes nothing of a drawing that is not displayed.
         found = [] if drawing is None else [one for one in drawing.elements() if _is_shown(one)]
-        shapes = [shape for shape in found if isinstance(shape, elements.Shape)]
+        shapes = [
+            # Others have the data of a path that they stand in.
+            Shape(
+                shape,
+                paths.get(shape.values.get("d")) if isinstance(shape, elements.Path) else None,
+            )
+            for shape in found
+            if isinstance(shape, elements.Shape)
+        ]
         for element in found:
             lost.add(*_no_shape(element))
     except Exception as error:  # what svgelements raises is of any kind
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
         raise FormatError(message, "syntax") from error
     return shapes
+
+
+def _set_aside(root: ElementTree.Element) -> dict[str, Segments]:
+    """Return the paths of a drawing by the data that stand for them in it from now on.
+
+    svgelements takes ten times as long to read path data.
+    """
+    paths: dict[str, Segments] = {}
+    for element in root.iter():
+        segments = path_segments(element.get("d", "")) if name_of(element) == "path" else None
+        if segments is not None:
+            element.attrib["d"] = f"M{len(paths)},0"
+            paths[element.attrib["d"]] = segments
+    return paths
 
 
 def _no_shape(element: Any) -> tuple[str, int]:
@@ -229,115 +269,29 @@ def _keyword(shape: Any, name: str) -> str:
     return str(shape.values.get(name) or "").partition("!")[0].strip().lower()
 
 
-def outlines_of(shape: Any, steps: Callable[[Any], int]) -> Iterator[tuple[FloatArray, bool]]:
-    """Yield the corners of each subpath of a shape, y upwards, and whether it is closed.
+def outlines_of(shapes: Sequence[Shape], steps: Steps) -> list[list[tuple[FloatArray, bool]]]:
+    """Return the subpaths of each shape: their corners, y upwards, and whether they are closed.
 
     Parameters
     ----------
-    shape : object
-        One of `shown_shapes`.
+    shapes : sequence of Shape
     steps : callable
-        Says of an arc or a curve of svgelements how many chords replace it.
+        Says how many chords replace each of some curves.
     """
-    elements = optional("svgelements", "svgelements")
-    matrix = shape.transform
-    linear = np.array([(matrix.a, matrix.c), (matrix.b, matrix.d)], dtype=np.float64)
-    for subpath in elements.Path(shape).as_subpaths():
-        segments = list(subpath)
-        points = [point for segment in segments for point in _points_of(elements, segment, steps)]
-        local = np.array([(p.real, p.imag) for p in points]).reshape(-1, 2)
-        with np.errstate(invalid="ignore"):  # what is not finite is refused with the outline
-            corners = (local @ linear.T + (matrix.e, matrix.f)) * (1, -1) + 0.0
-        different = np.any(corners != np.roll(corners, 1, axis=0), axis=1)
-        yield corners[different], any(isinstance(one, elements.Close) for one in segments)
+    segments = [shape.path or shape_segments(shape.element) for shape in shapes]
+    return outlines(segments, _matrices(shapes), steps)
 
 
-def _points_of(elements: Any, segment: Any, steps: Callable[[Any], int]) -> list[complex]:
-    """Return the end of a segment, after points between for a curve."""
-    if segment.end is None:
-        return []
-    if isinstance(segment, (elements.Move, elements.Line, elements.Close)):
-        return [_complex(segment.end)]
-    count = steps(segment)
-    inner = curve_of(segment)(np.arange(1, count) / count)
-    return [*inner.tolist(), _complex(segment.end)]
+def _matrices(shapes: Sequence[Shape]) -> FloatArray:
+    found = [shape.element.transform for shape in shapes]
+    rows = [(one.a, one.b, one.c, one.d, one.e, one.f) for one in found]
+    return np.array(rows, dtype=np.float64).reshape(-1, 6)
 
 
-def curve_of(segment: Any) -> Callable[[FloatArray], Any]:
-    """Return what gives the points of an arc or a curve, as complex numbers, by its parameters."""
-    elements = optional("svgelements", "svgelements")
-    if isinstance(segment, elements.Arc) and segment.sweep:
-        ends = (segment.start, segment.center, segment.prx, segment.pry)
-        start, center, across, along = map(_complex, ends)
-        if across != center and along != center:
-            return _arc_of(
-                start - center, center, across - center, abs(along - center), float(segment.sweep)
-            )
-
-    def curve(parameters: FloatArray) -> Any:
-        points = np.asarray(segment.npoint(parameters), dtype=np.float64).reshape(-1, 2)
-        return points[:, 0] + 1j * points[:, 1]
-
-    return curve
-
-
-def _arc_of(
-    first: complex, center: complex, wide: complex, height: float, sweep: float
-) -> Callable[[FloatArray], Any]:
-    """Return the points of an arc by its parameters.
-
-    svgelements measures the arc again at each call, which takes ten times as long as the points.
-
-    Parameters
-    ----------
-    first, wide : complex
-        Its beginning and the end of its first axis, seen from its center.
-    center : complex
-    height : float
-        Half of its other axis.
-    sweep : float
-        How far it goes.
-    """
-    width = abs(wide)
-    high = 1j * height * wide / width
-    begins = first / wide
-    start = math.atan2(begins.imag * width / height, begins.real)
-
-    def curve(parameters: FloatArray) -> Any:
-        angles = start + sweep * parameters
-        return center + wide * np.cos(angles) + high * np.sin(angles)
-
-    return curve
-
-
-def _complex(point: Any) -> complex:
-    return complex(float(point.x), float(point.y))
-
-
-def _within(shape: Any, chord: float) -> Callable[[Any], int]:
-    """Return how many chords stay within a tolerance, which is given in user units."""
-    matrix = shape.transform
-    linear = np.array([(matrix.a, matrix.c), (matrix.b, matrix.d)], dtype=np.float64)
-    stretch = float(np.linalg.norm(linear, 2))
-    return lambda segment: _steps(segment, chord / stretch if stretch else chord)
-
-
-def _steps(segment: Any, chord: float) -> int:
-    """Return how many chords stay within the tolerance, tried at points between."""
-    curve, steps = curve_of(segment), 2
-    while steps < 1 << 12:
-        points = curve(np.arange(4 * steps + 1) / (4 * steps))
-        inner = points[:-1].reshape(-1, 4)[:, 1:]
-        if _distance(inner, points[:-4:4, None], points[4::4, None]) <= chord:
-            break
-        steps *= 2
-    return steps
-
-
-def _distance(points: Any, start: Any, end: Any) -> float:
-    """Return the largest distance of points from the chords below them."""
-    offset, along = points - start, end - start
-    length = np.abs(along)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        height = np.abs((offset * np.conj(along)).imag) / length
-    return float(np.where(length > 0, height, np.abs(offset)).max())
+def _own_lengths(shapes: Sequence[Shape], length: float) -> FloatArray:
+    """Return what a length in user units is at least in the coordinates of each shape."""
+    a, b, c, d = _matrices(shapes)[:, :4].T
+    # Half the axes of the ellipse that the matrix makes of the unit circle, as sum and difference.
+    with np.errstate(all="ignore"):
+        stretch = (np.hypot(a + d, b - c) + np.hypot(a - d, b + c)) / 2
+    return length / np.where(stretch > 0, stretch, 1.0)

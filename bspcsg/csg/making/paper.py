@@ -1,8 +1,7 @@
 """SVG drawings as OpenSCAD imports them: in millimetres on their page, y upwards."""
 
-import math
 import re
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,10 +9,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..._types import FloatArray
+from ..._types import FloatArray, IndexArray
 from ...bsp import Region
 from ...bsp.drawings.left_out import LeftOut
-from ...bsp.drawings.svg import outlines_of, shown_shapes
+from ...bsp.drawings.svg import Shape, outlines_of, shown_shapes
+from ...bsp.drawings.svg_curves import Cubics, Curves, Steps
 from ...bsp.drawings.svg_tree import HREF, name_of
 from ...errors import format_errors
 from ...mesh.interop import optional
@@ -24,6 +24,9 @@ _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
 
 #: Chords of a Bézier curve, and of a quarter of a circle or an ellipse.
 _CURVE_STEPS, _QUARTER_STEPS = 20, 10
+
+#: Chords of half a turn of another arc, which has four more.
+_TURN_STEPS = 10
 
 #: The rest that rounding leaves of a whole number of steps.
 _ROUNDING = 1e-6
@@ -74,16 +77,17 @@ def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
 
 def _drawn(path: Path, lost: LeftOut) -> Region:
     region = Region()
-    for shape in shown_shapes(path, _prepare, lost):
-        with format_errors(str(path), "SVG"):
-            outlines = list(outlines_of(shape, _steps_of(shape)))
+    shapes = shown_shapes(path, _prepare, lost)
+    with format_errors(str(path), "SVG"):
+        found = outlines_of(shapes, _steps_of(shapes))
+    for shape, outlines in zip(shapes, found, strict=True):
         closed = [corners for corners, is_closed in outlines if is_closed or _meets(corners)]
         loops = [corners for corners in closed if len(corners) >= 3]
         lost.outlines += len(loops)
         region = region | Region(loops, winding="even-odd")
         for corners, is_closed in outlines:
             if not is_closed and not _meets(corners) and len(corners) >= 2:
-                region = region | _stroke(shape, corners)
+                region = region | _stroke(shape.element, corners)
     return region
 
 
@@ -101,16 +105,18 @@ def _prepare(root: ElementTree.Element) -> None:
         root.attrib.pop(name, None)
 
 
-def _steps_of(shape: Any) -> Callable[[Any], int]:
-    """Return how many chords OpenSCAD gives the arcs and curves of a shape."""
+def _steps_of(shapes: Sequence[Shape]) -> Steps:
+    """Return how many chords OpenSCAD gives the arcs and curves of shapes."""
     elements = optional("svgelements", "svgelements")
-    if isinstance(shape, (elements.Circle, elements.Ellipse)):
-        return lambda _: _QUARTER_STEPS
+    round_ones = (elements.Circle, elements.Ellipse)
+    is_round = np.array([isinstance(shape.element, round_ones) for shape in shapes], dtype=bool)
 
-    def steps(segment: Any) -> int:
-        if isinstance(segment, elements.Arc):
-            return math.floor(abs(float(segment.sweep)) * 10 / math.pi + _ROUNDING) + 4
-        return _CURVE_STEPS
+    def steps(curves: Curves) -> IndexArray:
+        if isinstance(curves, Cubics):
+            return np.full(len(curves.owner), _CURVE_STEPS)
+        turns = np.nan_to_num(np.abs(curves.sweep) * _TURN_STEPS / np.pi)
+        counts = np.floor(turns + _ROUNDING).astype(np.int64) + 4
+        return np.where(is_round[curves.owner], _QUARTER_STEPS, counts)
 
     return steps
 

@@ -12,6 +12,9 @@ from .writer import value_text
 #: Larger numbers stand for no length or angle; products of three still are doubles.
 LARGEST = 1e100
 
+#: The type of the numbers in trees and of defaults; that of true and false is another.
+_FLOAT = frozenset({float})
+
 #: Most characters of a value that an error shows.
 _QUOTED = 40
 
@@ -100,7 +103,7 @@ class Arguments:
         for number, point in enumerate(value):
             if not isinstance(point, tuple) or len(point) != size or not _all_usable(point):
                 raise self._wrong(f"{name}[{number}]", f"{size} numbers within ±1e100", point)
-        return [tuple(map(float, point)) for point in value]
+        return list(value)
 
     def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
         """Return lists of whole numbers from 0 up to below `count`; maybe a `single` one alone."""
@@ -114,10 +117,10 @@ class Arguments:
     def _indices(self, name: str, value: Any, count: int) -> list[int]:
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of point numbers", value)
-        for entry in value:
-            if not is_number(entry) or not 0 <= entry < count or entry != int(entry):
-                raise self._wrong(name, f"whole numbers from 0 to {count - 1}", value)
-        return [int(entry) for entry in value]
+        is_whole = _FLOAT.issuperset(map(type, value)) and all(map(float.is_integer, value))
+        if value and not (is_whole and min(value) >= 0 and max(value) < count):
+            raise self._wrong(name, f"whole numbers from 0 to {count - 1}", value)
+        return list(map(int, value))
 
     def limited(self, count: float, what: str) -> int:
         """Return a number of corners, or raise an error if it would not fit into memory."""
@@ -168,4 +171,5 @@ def _is_usable(value: float) -> bool:
 
 
 def _all_usable(values: tuple[Any, ...]) -> bool:
-    return all(is_number(value) and _is_usable(value) for value in values)
+    # Long lists are looked at by functions written in C alone.
+    return _FLOAT.issuperset(map(type, values)) and all(map(LARGEST.__ge__, map(abs, values)))

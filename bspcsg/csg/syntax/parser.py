@@ -13,14 +13,13 @@ Nodes nest to any depth: the parser keeps its own stack.
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...errors import FormatError
 from ...parameters import file_path, text_value
 from .source import Script
-from .tokens import Token, tokens, unquoted
+from .tokens import Token, Words, unquoted
 from .tree import DEEPEST_VECTOR, WORDS, Argument, CsgTree, Node, Place, Value
 
 
@@ -83,8 +82,8 @@ class _Parser:
     def __init__(self, script: Script) -> None:
         self._script = script
         self._places = script.places()
-        self._words: Iterator[Token] = tokens(script)
-        self._next = next(self._words)
+        self._words = Words(script)
+        self._next = self._words.next()
 
     def value(self) -> Value:
         found = self._value()
@@ -171,7 +170,11 @@ class _Parser:
         vectors: list[list[Value]] = []
         while True:
             value: Value
-            if self._next.text == "[" and self._next.kind == "mark":
+            if self._next.text != "[" or self._next.kind != "mark":
+                value = self._scalar()
+            elif (numbers := self._numbers(DEEPEST_VECTOR - len(vectors))) is not None:
+                value = numbers
+            else:
                 self._take()
                 vectors.append([])
                 if len(vectors) > DEEPEST_VECTOR:
@@ -179,8 +182,6 @@ class _Parser:
                 if self._next.text != "]":
                     continue
                 value = self._end_of(vectors)
-            else:
-                value = self._scalar()
             while vectors:
                 vectors[-1].append(value)
                 if self._comma_before_value():
@@ -188,6 +189,13 @@ class _Parser:
                 value = self._end_of(vectors)
             if not vectors:
                 return value
+
+    def _numbers(self, deepest: int) -> Value:
+        """Pass a vector of plain numbers; None if it has to be read word by word."""
+        found = self._words.numbers(self._next.offset, deepest)
+        if found is not None:
+            self._next = self._words.next()
+        return found
 
     def _comma_before_value(self) -> bool:
         """Pass a comma and say whether another value follows it."""
@@ -230,7 +238,7 @@ class _Parser:
     def _take(self) -> Token:
         taken = self._next
         if taken.kind != "end":
-            self._next = next(self._words)
+            self._next = self._words.next()
         return taken
 
     def _error(self, message: str, at: Token | None = None) -> FormatError:

@@ -1,19 +1,22 @@
 """Words of a script."""
 
+import json
+import math
 import re
-from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 from .source import Script
 
-WORD = re.compile(
-    r"""
-      (?P<space>[\s\ufeff]+ | //[^\n]* | /\*.*?\*/)
-    | (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
+_SPACE = r"(?:[\s\ufeff]+ | //[^\n]* | /\*.*?\*/)*+"
+_GAP = re.compile(_SPACE, re.VERBOSE | re.DOTALL)
+_WORD = re.compile(
+    _SPACE
+    + r"""(?:
+      (?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![\w.]))
     | (?P<name>\$?[A-Za-z_]\w*)
     | (?P<string>"(?:[^"\\]++|\\.)*+")
     | (?P<mark>[\#%!*(){}\[\],;=+\-])
-    """,
+    )""",
     re.VERBOSE | re.DOTALL,
 )
 
@@ -41,24 +44,88 @@ class Token(NamedTuple):
         return f"“{text}{'…' if len(self.text) > _QUOTED else ''}”"
 
 
-def tokens(script: Script) -> Iterator[Token]:
-    """Yield the words of a script, and an "end" after the last.
+class Words:
+    """The words of a script, from its beginning.
 
-    Raises
-    ------
-    FormatError
-        If something is no word, such as a text without its closing quote.
+    Parameters
+    ----------
+    script : Script
     """
-    text, position = script.text, 0
-    while position < len(text):
-        match = WORD.match(text, position)
-        if match is None:
-            raise _unreadable(script, position)
-        kind = str(match.lastgroup)
-        if kind != "space":
-            yield Token(kind, match.group(), position)
-        position = match.end()
-    yield Token("end", "", len(text))
+
+    def __init__(self, script: Script) -> None:
+        self._script = script
+        self._position = 0
+
+    def next(self) -> Token:
+        """Pass the next word and return it: an "end" after the last.
+
+        Raises
+        ------
+        FormatError
+            If something is no word, such as a text without its closing quote.
+        """
+        text = self._script.text
+        match = _WORD.match(text, self._position)
+        if match is not None:
+            kind = match.lastgroup or ""
+            self._position = match.end()
+            return Token(kind, match.group(kind), match.start(kind))
+        gap = _GAP.match(text, self._position)
+        self._position = gap.end() if gap else self._position
+        if self._position < len(text):
+            raise _unreadable(self._script, self._position)
+        return Token("end", "", self._position)
+
+    def numbers(self, start: int, deepest: int) -> "Numbers | None":
+        """Pass a whole vector of numbers and of such vectors, and return it.
+
+        It is read as JSON, ten times as fast as word by word.
+
+        Parameters
+        ----------
+        start : int
+            The offset of its opening bracket.
+        deepest : int
+            Most vectors within each other.
+
+        Returns
+        -------
+        tuple or None
+            None, without passing anything, for a vector that JSON writes in another way, that
+            holds something else or too much, or that is wrong.
+        """
+        try:
+            found, end = _JSON.raw_decode(self._script.text, start)
+            numbers = _numbers(found, deepest)
+        except (ValueError, RecursionError):
+            return None
+        self._position = end
+        return numbers
+
+
+#: Numbers and vectors of them.
+Numbers = tuple["float | Numbers", ...]
+
+
+def _no_number(text: str) -> NoReturn:
+    raise ValueError(text)
+
+
+_JSON = json.JSONDecoder(parse_int=float, parse_constant=_no_number)
+
+
+def _numbers(found: list[Any], deepest: int) -> Numbers:
+    """Return lists as tuples; raise a ValueError for anything but finite numbers in them."""
+    if deepest < 1:
+        raise ValueError("too deep")
+    kinds = set(map(type, found))
+    if kinds <= {float}:
+        if math.inf in found or -math.inf in found:
+            raise ValueError("too large")
+        return tuple(found)
+    if kinds != {list}:
+        raise ValueError("no vector of numbers, or of vectors")
+    return tuple([_numbers(one, deepest - 1) for one in found])
 
 
 def _unreadable(script: Script, position: int) -> Exception:

@@ -56,12 +56,12 @@ def _plain(value: Any, depth: int = 0) -> "Value":
     """Return a value as trees hold it: numbers as doubles, vectors as tuples."""
     if type(value) in _SCALAR:
         return value  # type: ignore[no-any-return]
-    if hasattr(value, "tolist"):  # NumPy's
-        return _plain(value.tolist(), depth)
     if isinstance(value, (tuple, list)) and depth < DEEPEST_VECTOR:
         if isinstance(value, tuple) and _SCALAR.issuperset(map(type, value)):
             return value
-        return tuple(_plain(entry, depth + 1) for entry in value)
+        return tuple([_plain(entry, depth + 1) for entry in value])
+    if hasattr(value, "tolist"):  # NumPy's
+        return _plain(value.tolist(), depth)
     if isinstance(value, str):
         return str(value)
     with suppress(OverflowError):
