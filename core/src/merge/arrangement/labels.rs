@@ -3,6 +3,8 @@
 //! A number is the same at all corners of a face that nothing cuts, and known in its differences where
 //! something does. So one question settles all vertices that hang together.
 
+use std::cmp::Ordering;
+
 use super::candidates::{Operand, Windings};
 use super::triangulation::Special;
 use crate::arith::convert::as_number;
@@ -55,30 +57,59 @@ impl<'a> Labels<'a> {
     /// # Errors
     /// `Special` if that contradicts what is known: the mesh that is wound around overlaps itself.
     pub(super) fn join(&mut self, a: VertexId, b: VertexId, more: i32) -> Result<(), Special> {
-        let ((a, above_a), (b, above_b)) = (self.root(a), self.root(b));
-        // The number at a's root is that at b's root and this.
-        let between = above_b + more - above_a;
-        if a == b {
-            return if between == 0 { Ok(()) } else { Err(Special) };
-        }
-        if a > b {
-            self.parents[a] = as_number(b);
-            self.above[a] = between;
-        } else {
-            self.parents[b] = as_number(a);
-            self.above[b] = -between;
-        }
-        Ok(())
+        let (of_a, of_b) = (self.root(a), self.root(b));
+        self.join_roots(of_a, of_b, more).map(|_| ())
     }
 
-    /// Notes that the number at a vertex is zero if it lies outside of the box around the other operand.
-    pub(super) fn note_beyond(&mut self, vertex: VertexId) {
-        if self
-            .windings
-            .are_zero_at(&self.of.mesh.vertices[vertex.place()])
-        {
-            let (root, above) = self.root(vertex);
-            self.known[root].get_or_insert(-above);
+    /// Notes that the number is the same at the corners of a face.
+    ///
+    /// # Errors
+    /// As for [`Self::join`].
+    pub(super) fn join_corners(&mut self, corners: [VertexId; 3]) -> Result<(), Special> {
+        let [a, b, c] = corners.map(|v| self.root(v));
+        let joined = self.join_roots(a, b, 0)?;
+        // What was c's root may be the root that has just got a parent.
+        let c = if c.0 == a.0 || c.0 == b.0 {
+            self.root(corners[2])
+        } else {
+            c
+        };
+        self.join_roots(joined, c, 0).map(|_| ())
+    }
+
+    /// Joins two classes, given as roots and what vertices have above them; returns that of the first
+    /// vertex.
+    fn join_roots(
+        &mut self,
+        (a, above_a): (usize, i32),
+        (b, above_b): (usize, i32),
+        more: i32,
+    ) -> Result<(usize, i32), Special> {
+        // The number at a's root is that at b's root and this.
+        let between = above_b + more - above_a;
+        match a.cmp(&b) {
+            Ordering::Equal if between != 0 => Err(Special),
+            Ordering::Equal => Ok((a, above_a)),
+            Ordering::Greater => {
+                self.parents[a] = as_number(b);
+                self.above[a] = between;
+                Ok((b, above_b + more))
+            }
+            Ordering::Less => {
+                self.parents[b] = as_number(a);
+                self.above[b] = -between;
+                Ok((a, above_a))
+            }
+        }
+    }
+
+    /// Notes the vertices outside of the box around the other operand: their number is zero.
+    pub(super) fn note_beyond(&mut self) {
+        for (vertex, place) in VertexId::all().zip(&self.of.mesh.vertices) {
+            if self.windings.are_zero_at(place) {
+                let (root, above) = self.root(vertex);
+                self.known[root].get_or_insert(-above);
+            }
         }
     }
 

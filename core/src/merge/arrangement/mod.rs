@@ -357,15 +357,9 @@ impl Scene<'_> {
             .iter()
             .filter(|id| !is_cut[id.place()])
         {
-            let [a, b, c] = mesh.vertices_of(*id);
-            labels.join(a, b, 0)?;
-            labels.join(a, c, 0)?;
+            labels.join_corners(mesh.vertices_of(*id))?;
         }
-        for id in &self.within[operand].faces {
-            mesh.vertices_of(*id)
-                .into_iter()
-                .for_each(|v| labels.note_beyond(v));
-        }
+        labels.note_beyond();
         Ok(labels)
     }
 
