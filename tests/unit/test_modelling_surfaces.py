@@ -9,6 +9,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.mesh.crossing import crossings
+from bspcsg.modelling.bodies.refining import halved, least_halved
 from support.checks import assert_closed, assert_sound
 
 BOX = [(-1.5, -1.5, -1.5), (1.5, 1.5, 1.5)]
@@ -64,13 +65,38 @@ def test_no_edge_is_longer_than_asked(length: float) -> None:
         ({"edge_length": 1e-6}, b.LimitError),
     ],
 )
-def test_refining_refuses(
-    given: dict[str, Any], kind: type[Exception], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # Edges are halved until there are too many: seconds for those of the real limit.
-    monkeypatch.setattr("bspcsg.modelling.bodies.refining._MOST_TRIANGLES", 10_000)
+def test_refining_refuses(given: dict[str, Any], kind: type[Exception]) -> None:
+    began = process_time()
     with pytest.raises(kind):
         b.cube(1).refine(**given)
+    assert process_time() - began < 1
+
+
+# Found: edges were halved until there were too many triangles, for some seconds.
+@pytest.mark.parametrize(
+    ("body", "length", "least"),
+    [
+        (b.cube(1), 1e-3, "25,165,824"),  # four times as many ten times, and those in two
+        (b.box((1e6, 1e-6, 1e-6)), 1e-2, "533,333,3"),
+        (b.cube(1), 1e-320, "far too many"),
+    ],
+)
+def test_triangles_are_counted_before_edges_are_halved(
+    body: b.Solid, length: float, least: str
+) -> None:
+    began = process_time()
+    with pytest.raises(b.LimitError, match=least):
+        body.refine(edge_length=length)
+    assert process_time() - began < 1
+
+
+def test_halving_makes_no_fewer_triangles_than_are_counted() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(60):
+        vertices = rng.random((9, 3)) * 10 ** rng.uniform(-2, 2, 3)
+        length = np.abs(vertices).max() * 10 ** rng.uniform(-2, 0)
+        faces = np.arange(9).reshape(3, 3)
+        assert least_halved(vertices, faces, length) <= len(halved(vertices, faces, length)[1])
 
 
 def test_nothing_stays_nothing() -> None:
