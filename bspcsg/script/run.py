@@ -212,14 +212,19 @@ def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
 
 def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
     result = variables.get("result")
-    if isinstance(result, (list, tuple)) and all(isinstance(one, Solid) for one in result):
-        return union(result)
+    if isinstance(result, (list, tuple)) and (not result or _has_solids(result)):
+        return union([Solid.from_mesh(one) for one in result])
     if result is not None:
         return Solid.from_mesh(result)
     if not _shown:
         message = f"{name}: the script left no variable “result” and called no bspcsg.show(solid)."
         return FormatError(message, "no_result")
     return union(_shown)
+
+
+def _has_solids(values: Sequence[Any]) -> bool:
+    """Say whether values are a row of solids, and not the vertices and faces of one."""
+    return any(isinstance(one, Solid) for one in values)
 
 
 def _with_operation(result: Solid) -> _Made:
