@@ -2,10 +2,7 @@
 
 import os
 import platform
-import select
-import signal
 import sys
-import threading
 from pathlib import Path
 from typing import TypedDict
 
@@ -105,34 +102,3 @@ def limit_memory(size: int | None) -> None:
     _, hard = resource.getrlimit(resource.RLIMIT_AS)
     least = size if hard == resource.RLIM_INFINITY else min(size, hard)
     resource.setrlimit(resource.RLIMIT_AS, (least, hard))
-
-
-#: Linux: the signal that a process gets when the thread that started it ends (prctl(2)).
-_PARENT_DEATH_SIGNAL = 1
-
-
-def end_with_parent(pipe: int | None = None) -> None:
-    """Have this process killed when its parent ends in any way, or at once if it has ended.
-
-    Parameters
-    ----------
-    pipe : int, optional
-        The end to be read of a pipe to which the parent alone can write; without it nothing is
-        done. On Linux the thread that started this process must wait for its end.
-    """
-    if pipe is None:
-        return
-    if sys.platform == "linux":
-        import ctypes
-
-        ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
-    else:
-        threading.Thread(target=_end_without_writer, args=(pipe, None), daemon=True).start()
-    _end_without_writer(pipe, 0)
-
-
-def _end_without_writer(pipe: int, patience: int | None) -> None:
-    waiting = select.poll()
-    waiting.register(pipe, 0)
-    if waiting.poll(patience):
-        os.kill(os.getpid(), signal.SIGKILL)

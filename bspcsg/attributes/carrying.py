@@ -275,7 +275,7 @@ def _joined(name: str, lots: list[_Lot], surface: Surface) -> tuple[Kind, Values
     parts = [lot.values(name) for lot in lots]
     values = _filled(name, lots, parts, (len(surface.faces), 3), 2)
     if kinds == {"vertex"}:
-        common = _of_vertices(values, lots, surface)
+        common = _of_vertices(name, values, lots, surface)
         if common is not None:
             return "vertex", common
     return "corner", values
@@ -287,7 +287,8 @@ def _filled(
     """Return the values of all triangles; those of sources that lack the name get the default."""
     parts = colors_alike(name, parts, depth)
     kind = common_type(name, parts, depth)
-    filled = np.full(shape + parts[0].shape[depth:], default_of(kind), dtype=kind)
+    blank = default_of(name, parts[0].astype(kind, copy=False), depth)
+    filled = np.full(shape + parts[0].shape[depth:], blank, dtype=kind)
     for lot, part in zip(lots, parts, strict=True):
         filled[lot.rows] = part
     return filled
@@ -348,12 +349,18 @@ def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]
     return np.result_type(*(part.dtype for part in parts))
 
 
-def default_of(kind: np.dtype[Any]) -> Any:
-    """Return what stands where a source has no values: NaN, 0, False, or no text."""
+def default_of(name: str, values: Values, depth: int) -> Any:
+    """Return what stands where a source lacks values like these: NaN, 0, False, or no text.
+
+    A colour in whole numbers is an opaque white there, as every picture shows one that is NaN.
+    """
+    kind = values.dtype
+    if kind.kind == "u" and is_color(name, values, depth):
+        return np.iinfo(kind).max
     return np.nan if kind.kind == "f" else np.zeros((), kind)[()]
 
 
-def _of_vertices(values: Values, lots: list[_Lot], surface: Surface) -> Values | None:
+def _of_vertices(name: str, values: Values, lots: list[_Lot], surface: Surface) -> Values | None:
     """Return the values of vertices if all corners at each agree, else None."""
     count = len(surface.vertices)
     flat = values.reshape(3 * len(surface.faces), math.prod(values.shape[2:]))
@@ -363,7 +370,7 @@ def _of_vertices(values: Values, lots: list[_Lot], surface: Surface) -> Values |
     for lot in lots:
         is_given[lot.rows] = lot.corners >= 0
     order = np.argsort(is_given.ravel(), kind="stable")
-    common = np.full((count, flat.shape[1]), default_of(values.dtype), dtype=values.dtype)
+    common = np.full((count, flat.shape[1]), default_of(name, values, 2), dtype=values.dtype)
     common[vertices[order]] = flat[order]
     if not _agree(common[vertices], flat):
         return None

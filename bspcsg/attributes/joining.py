@@ -56,8 +56,9 @@ def _values(name: str, kind: Kind, parts: Sequence[MeshPart]) -> Values:
     given = iter(known)
     dtype = common_type(name, known, depth)
     shape = known[0].shape[depth:]
+    blank = default_of(name, known[0].astype(dtype, copy=False), depth)
     blocks = [
-        np.full(rows(part) + shape, default_of(dtype), dtype) if values is None else next(given)
+        np.full(rows(part) + shape, blank, dtype) if values is None else next(given)
         for part, values in zip(parts, held, strict=True)
     ]
     whole: Values = np.concatenate(blocks).astype(dtype, copy=False)

@@ -11,6 +11,7 @@ from typing import Any
 
 from ..errors import FormatError, invalid_parameter
 from ..parameters import file_path, seconds, shown, values_by_name
+from ..processes import run_program
 from .syntax.arguments import is_number
 from .syntax.intermediate import Intermediate
 from .syntax.parser import parse
@@ -76,15 +77,7 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
     # A shape to be kept is no preview, which scripts can ask for.
     command = [program, "--render", "-o", str(output), *options, "--", str(path.absolute())]
     try:
-        done = subprocess.run(
-            command,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=timeout,
-            env={**os.environ, "QT_QPA_PLATFORM": "offscreen"},
-            check=False,
-        )
+        done = run_program(command, timeout, {**os.environ, "QT_QPA_PLATFORM": "offscreen"})
     except subprocess.TimeoutExpired as error:
         message = f"{path}: openscad took longer than {timeout:g} seconds."
         raise FormatError(message, "timeout") from error

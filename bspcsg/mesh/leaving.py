@@ -242,7 +242,9 @@ def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
 
 
 def _are_finite(said: Attributes, name: str) -> bool:
-    values = said.of(said.kind_of(name) or "face")[name]
+    values = said.at_corners(name)
+    if is_color(name, values, 2):
+        values = as_floats(values)
     return values.dtype.kind != "U" and bool(np.isfinite(values).all())
 
 

@@ -17,6 +17,7 @@ from ..formats.raw import RawMesh
 from ..mesh.boxes import boxes_around, boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..mesh.weld import welded
+from ..processes import run_program
 
 #: The steps in the order in which they are taken.
 STEPS = ("weld", "dedup", "split", "orient", "fill")
@@ -142,7 +143,7 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, str]:
     # Without -P, this package's own folder would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
-        done = subprocess.run(command, capture_output=True, timeout=timeout, check=False)
+        done = run_program(command, timeout)
     except subprocess.TimeoutExpired as error:
         message = f"the repair took longer than {timeout:g} s and was stopped."
         raise BspcsgError(message, "timed_out") from error
@@ -151,7 +152,7 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, str]:
     if done.returncode == _MISSING and "missing" in said:
         raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
     if done.returncode != 0:
-        last = done.stderr.decode("utf-8", "replace").strip().splitlines()[-1:] or ["no word"]
+        last = done.stderr.strip().splitlines()[-1:] or ["no word"]
         message = f"pymeshlab failed with exit code {done.returncode}: {last[0]}"
         raise BspcsgError(message, "repair_failed")
     failed: dict[str, str] = said["failed"]

@@ -24,6 +24,7 @@ from ..errors import BspcsgError, FormatError, invalid_parameter, words_of
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
 from ..parameters import file_path, seconds, texts, values_by_name
+from ..processes import watched
 from ..solid.counting import counted, uncounted
 from ..solid.solid import LastOperation, Solid, expression_of, with_record
 from .values import VALUES, compiled
@@ -42,7 +43,7 @@ _HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
 _SERVE = (
     f"import os, signal, sys; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
     f" {_HOLDS_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
-    " from bspcsg.machine import end_with_parent; end_with_parent(*map(int, sys.argv[1:]));"
+    " from bspcsg.processes import end_with_parent; end_with_parent(*map(int, sys.argv[1:]));"
     " from bspcsg.script.run import serve; serve()"
 )
 
@@ -123,20 +124,6 @@ def _pickled(task: tuple[str, list[str], dict[str, Any], str]) -> bytes:
         raise invalid_parameter(message) from error
 
 
-@contextlib.contextmanager
-def _watched() -> Iterator[tuple[int, ...]]:
-    """Yield what tells a child of the end of this process, where a child can be told."""
-    if os.name != "posix":
-        yield ()
-        return
-    reader, writer = os.pipe()
-    try:
-        yield (reader,)
-    finally:
-        os.close(reader)
-        os.close(writer)
-
-
 def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     # -P keeps modules in the current folder from shadowing this package and what it needs.
     command = [sys.executable, "-P", "-c", _SERVE]
@@ -146,7 +133,7 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
     with contextlib.ExitStack() as start:
         start.enter_context(_interrupts_held())
         with (
-            _watched() as read_by_child,
+            watched() as read_by_child,
             subprocess.Popen(
                 [*command, *map(str, read_by_child)],
                 stdin=subprocess.PIPE,
@@ -225,14 +212,19 @@ def _run(program: ModuleType, name: str, defines: dict[str, Any]) -> None:
 
 def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
     result = variables.get("result")
-    if isinstance(result, (list, tuple)) and all(isinstance(one, Solid) for one in result):
-        return union(result)
+    if isinstance(result, (list, tuple)) and (not result or _has_solids(result)):
+        return union([Solid.from_mesh(one) for one in result])
     if result is not None:
         return Solid.from_mesh(result)
     if not _shown:
         message = f"{name}: the script left no variable “result” and called no bspcsg.show(solid)."
         return FormatError(message, "no_result")
     return union(_shown)
+
+
+def _has_solids(values: Sequence[Any]) -> bool:
+    """Say whether values are a row of solids, and not the vertices and faces of one."""
+    return any(isinstance(one, Solid) for one in values)
 
 
 def _with_operation(result: Solid) -> _Made:

@@ -225,7 +225,7 @@ class Modelled:
         Raises
         ------
         InvalidMeshError
-            If faces cross or overlap afterwards ("self_crossing"; `where` lists them), nothing is
+            If faces cross or overlap afterwards ("self_crossing"; `where` lists some), nothing is
             left of any face ("empty_mesh"), or `f` returns another shape or numbers that are not
             finite.
         UnboundedError

@@ -109,9 +109,9 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     and text are those of the nearest corner. ``"color"`` takes what says a colour (texts, whole
     numbers from 0 to 255, floats from 0 to 1), one for each or one for all. Faces of one plane with
     different values are not joined. An operand that lacks a name has NaN there, or 0, False or no
-    text. Attributes called ``"normal"`` or ``"normals"``, three floats, turn with the solid, keep
-    their length, and point the other way where the solid was subtracted. `simplify` lets attributes
-    go.
+    text; a ``"color"`` in whole numbers is opaque white there, and one that is NaN is shown so.
+    Attributes called ``"normal"`` or ``"normals"``, three floats, turn with the solid, keep their
+    length, and point the other way where the solid was subtracted. `simplify` lets attributes go.
 
     Examples
     --------

@@ -73,6 +73,15 @@ def test_what_a_script_leaves_out_is_told(folder: Path, capsys: Capture) -> None
     assert code == 0 and "none.stl" in err and json.loads(out)["files"][0]["triangles"] == 12
 
 
+def test_what_a_script_leaves_out_is_told_though_it_is_refused(
+    folder: Path, capsys: Capture
+) -> None:
+    Path("mixed.csg").write_text("union() { square(size = [1, 1]); cube(size = [1, 1, 1]); }")
+    code, _, err = ran(capsys, "run", "mixed.csg", "-o", "x.stl")
+    assert code == 3 and "the model is a plane figure" in err
+    assert "the solids among them are ignored" in err
+
+
 def test_scripts_that_fail_name_their_place(folder: Path, capsys: Capture) -> None:
     Path("bad.csg").write_text("cube(;")
     code, _, err = ran(capsys, "union", "plate.csg", "bad.csg", "-o", "x.ply")

@@ -79,6 +79,30 @@ def test_files_without_a_suffix_are_refused_before_they_are_read(
     assert code == 3 and "first: the name needs a suffix that says the format" in err
 
 
+# Found: an empty name was the current folder, which `validate` then took its cases from, and one of
+# results ended in an internal error.
+@pytest.mark.parametrize(
+    "line",
+    [
+        ["info", ""],
+        ["union", "a.stl", "a.stl", "-o", ""],
+        ["validate", ""],
+        ["validate", "a.stl", "--results", ""],
+        ["check", "a.stl", "--html", ""],
+        ["convert", "a.stl", "--outdir", "", "--to", "off"],
+        ["run", "a.py", "-o", "x.stl", "--allow-path", ""],
+        ["lecture", "-o", ""],
+        ["bench", "-o", ""],
+    ],
+)
+def test_names_are_not_empty(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture, line: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, _, err = ran(capsys, *line)
+    assert code == 2 and "the name is empty" in err
+
+
 def test_names_too_long_for_any_file_are_an_error(tmp_path: Path) -> None:
     with pytest.raises(b.FormatError) as caught:
         b.save(b.cube(1), tmp_path / f"{'x' * 252}.stl")

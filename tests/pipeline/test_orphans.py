@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -84,5 +85,31 @@ def test_scripts_end_with_the_command_that_runs_them(folder: Path, begins: bool)
     Path("endless.py").write_text(ENDLESS)
     running = process("run", "endless.py", "-o", "x.ply", **QUIET)
     while not psutil.Process(running.pid).children() or not (begins or Path("started").exists()):
+        time.sleep(0.01)
+    assert killed(running)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems cannot do this to any program")
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("openscad", ["run", "part.scad", "-o", "x.ply"]),
+        ("pymeshlab.py", ["repair", "a.off", "-o", "x.ply"]),
+    ],
+)
+def test_programs_end_with_the_command_that_asks_them(
+    folder: Path, name: str, line: "list[str]"
+) -> None:
+    Path("part.scad").write_text("cube(1);")
+    Path(name).write_text(f"#!{sys.executable}\n{ENDLESS}")
+    Path(name).chmod(0o755)
+    home = str(Path(b.__file__).parents[1])
+    more = {
+        "PATH": f"{folder}{os.pathsep}{os.environ['PATH']}",
+        "PYTHONPATH": f"{folder}{os.pathsep}{home}",
+    }
+    running = process(*line, more=more, **QUIET)
+    while not Path("started").exists():
+        assert running.poll() is None
         time.sleep(0.01)
     assert killed(running)

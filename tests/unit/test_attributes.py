@@ -12,6 +12,8 @@ import pytest
 import bspcsg as b
 from bspcsg._types import FloatArray, WindingRule
 from bspcsg.attributes.barycentric import weights
+from bspcsg.attributes.colours import as_bytes
+from bspcsg.formats.raw import RawMesh, joined
 from bspcsg.mesh.visuals import attributes_from
 from support.pictures import PIXEL
 
@@ -55,6 +57,41 @@ def test_what_an_operand_lacks_has_the_default() -> None:
     assert (mesh.face_attributes["int"][12:] == 0).all()
     assert not mesh.face_attributes["flag"][12:].any()
     assert (mesh.face_attributes["text"][12:] == "").all()
+
+
+@pytest.mark.parametrize(
+    ("color", "blank"),
+    [
+        ("red", [255, 255, 255]),
+        ("#ff000080", [255, 255, 255, 255]),
+        (np.array([65535, 0, 0], np.uint16), [65535, 65535, 65535]),
+        ((1.0, 0.0, 0.0, 0.5), [np.nan] * 4),
+    ],
+)
+def test_faces_without_colour_beside_coloured_ones_are_white(
+    color: Any, blank: list[float]
+) -> None:
+    """Not black, and not transparent."""
+    colored, plain = b.cube(1).tagged(color=color), b.cube(1).translate(5, 0, 0)
+    for parts in ((colored, plain), (plain, colored)):
+        union = b.union(*parts)
+        rest = union.to_mesh().source[:, 0] == parts.index(plain)
+        shown = union.to_mesh().face_attributes["color"][rest]
+        assert np.array_equal(shown, np.full_like(shown, blank), equal_nan=True)
+        assert (as_bytes(shown) == 255).all()
+        known = b.Solid.from_mesh(union.to_manifold()).to_mesh()
+        assert (as_bytes(known.attributes.at_corners("color")) == 255).all(axis=(1, 2)).sum() == 12
+
+
+def test_objects_without_colour_beside_coloured_ones_are_white() -> None:
+    red, plain = b.cube(1).tagged(color="red").to_mesh(), b.cube(1).to_mesh()
+    meshes = [
+        RawMesh(red.vertices, red.faces, attributes=red.attributes),
+        RawMesh(plain.vertices, plain.faces),
+    ]
+    said = joined(meshes).attributes
+    assert said is not None
+    assert (said.face["color"][12:] == 255).all()
 
 
 def test_faces_of_one_plane_are_joined_only_if_they_say_the_same() -> None:

@@ -1,12 +1,15 @@
 """Surfaces made finer, moved by functions, and found where functions are positive."""
 
 from collections.abc import Callable
+from time import process_time
 from typing import Any
 
 import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg.mesh.crossing import crossings
+from bspcsg.modelling.bodies.refining import halved, least_halved
 from support.checks import assert_closed, assert_sound
 
 BOX = [(-1.5, -1.5, -1.5), (1.5, 1.5, 1.5)]
@@ -62,13 +65,38 @@ def test_no_edge_is_longer_than_asked(length: float) -> None:
         ({"edge_length": 1e-6}, b.LimitError),
     ],
 )
-def test_refining_refuses(
-    given: dict[str, Any], kind: type[Exception], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    # Edges are halved until there are too many: seconds for those of the real limit.
-    monkeypatch.setattr("bspcsg.modelling.bodies.refining._MOST_TRIANGLES", 10_000)
+def test_refining_refuses(given: dict[str, Any], kind: type[Exception]) -> None:
+    began = process_time()
     with pytest.raises(kind):
         b.cube(1).refine(**given)
+    assert process_time() - began < 1
+
+
+# Found: edges were halved until there were too many triangles, for some seconds.
+@pytest.mark.parametrize(
+    ("body", "length", "least"),
+    [
+        (b.cube(1), 1e-3, "25,165,824"),  # four times as many ten times, and those in two
+        (b.box((1e6, 1e-6, 1e-6)), 1e-2, "533,333,3"),
+        (b.cube(1), 1e-320, "far too many"),
+    ],
+)
+def test_triangles_are_counted_before_edges_are_halved(
+    body: b.Solid, length: float, least: str
+) -> None:
+    began = process_time()
+    with pytest.raises(b.LimitError, match=least):
+        body.refine(edge_length=length)
+    assert process_time() - began < 1
+
+
+def test_halving_makes_no_fewer_triangles_than_are_counted() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(60):
+        vertices = rng.random((9, 3)) * 10 ** rng.uniform(-2, 2, 3)
+        length = np.abs(vertices).max() * 10 ** rng.uniform(-2, 0)
+        faces = np.arange(9).reshape(3, 3)
+        assert least_halved(vertices, faces, length) <= len(halved(vertices, faces, length)[1])
 
 
 def test_nothing_stays_nothing() -> None:
@@ -102,6 +130,43 @@ def test_a_bent_bar() -> None:
     ring = long.warp(bent, winding="nonzero")
     assert_sound(ring)
     assert ring.genus == 1
+
+
+def shaken(by: float) -> Callable[[Any], Any]:
+    rng = np.random.default_rng(0)
+    return lambda p: p + by * rng.normal(size=p.shape)
+
+
+# Found: it took from 6 to 60 s to tell, first for all pairs and then for what no mending can part.
+@pytest.mark.parametrize(
+    ("body", "f"),
+    [
+        (b.sphere(10, segments=64), shaken(0.1)),
+        (b.sphere(10, segments=64), shaken(10)),
+        (b.cube(10, center=True).refine(40), lambda p: p + 1.2 * np.sin(2 * p[:, [1, 2, 0]])),
+    ],
+)
+def test_a_few_faces_that_pierce_others_tell(body: b.Solid, f: Any) -> None:
+    count = len(body.normalized().to_mesh().faces)
+    began = process_time()
+    with pytest.raises(b.InvalidMeshError, match="cross or overlap") as caught:
+        body.warp(f)
+    assert process_time() - began < 1
+    assert caught.value.code == "self_crossing"
+    assert caught.value.where and max(caught.value.where) < count
+
+
+def test_triangles_pierce_only_as_far_as_their_corners_must_move() -> None:
+    rng = np.random.default_rng(1)
+    faces, deep, found = np.arange(6).reshape(2, 3), 0.02, 0
+    for pair in rng.random((80, 6, 3)):
+        if not crossings(pair, faces, deep).are_deep:
+            continue
+        found += 1
+        ways = rng.normal(size=(10, 6, 3))
+        for way in deep * ways / np.linalg.norm(ways, axis=2, keepdims=True):
+            assert len(crossings(pair + way, faces, 0.0).pairs) == 1
+    assert found > 5
 
 
 @pytest.mark.parametrize(

@@ -165,6 +165,11 @@ def test_what_scripts_print_goes_to_standard_error(
         ("import bspcsg\nbspcsg.cube(-1)\n", "invalid_parameter", "part.py:2: size must be above"),
         ("x = 1\n", "no_result", "left no variable “result”"),
         ("result = 3\n", "invalid_parameter", "Cannot find a mesh in int"),
+        (
+            "import bspcsg as b\nresult = [b.cube(1), None]\n",
+            "invalid_parameter",
+            "Cannot find a mesh in NoneType",
+        ),
     ],
 )
 @pytest.mark.usefixtures("here")

@@ -11,6 +11,7 @@ import numpy as np
 from ...errors import BspcsgError
 from ...formats.files import read
 from ...mesh.mesh import Mesh
+from ...processes import run_program
 from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
 
 #: Significant digits in what openscad writes.
@@ -111,14 +112,6 @@ def _shift(mesh: Mesh) -> float:
 def _ran(command: list[str], timeout: float) -> "subprocess.CompletedProcess[str]":
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
     try:
-        return subprocess.run(
-            command,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            timeout=timeout,
-            env=environment,
-            check=False,
-        )
+        return run_program(command, timeout, environment)
     except subprocess.TimeoutExpired as error:
         raise NoOpinionError(f"it took longer than {timeout:g} s") from error

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ...processes import run_program
 from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
 
 _CHILD = Path(__file__).with_name("pymeshlab_child.py")
@@ -50,7 +51,7 @@ def _asked_child(folder: Path, timeout: float) -> dict[str, str]:
     # Without -P, this package's own folder would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
-        done = subprocess.run(command, capture_output=True, timeout=timeout, check=False)
+        done = run_program(command, timeout)
     except subprocess.TimeoutExpired as error:
         raise NoOpinionError(f"it took longer than {timeout:g} s") from error
     path = folder / "said.json"

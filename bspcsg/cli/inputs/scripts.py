@@ -43,11 +43,12 @@ def made_by(
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", csg.CsgWarning)
-        if text is None:
-            solid = csg.load(path, **options)
-        else:
+        try:
+            if text is None:
+                return csg.load(path, **options)
             form: Literal["csg", "json"] = "json" if suffix == ".json" else "csg"
-            solid = csg.loads(text, name=str(path), form=form, **options)
-    for said in caught:
-        out.warning(str(said.message))
-    return solid
+            return csg.loads(text, name=str(path), form=form, **options)
+        finally:
+            # What was left out may be why a script is refused.
+            for said in caught:
+                out.warning(str(said.message))

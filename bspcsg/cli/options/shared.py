@@ -14,9 +14,26 @@ from ..inputs.scripts import STREAMED, SUFFIXES
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
 
-#: A file, or "-" for a stream; whoever completes a line offers files for it. Whether it can be read
-#: is found out by reading: click would call a forbidden file wrong usage.
-PATH = click.Path(path_type=Path, allow_dash=True, readable=False)
+
+class FilePath(click.Path):
+    """Names of files or folders; whoever completes a line offers these for it.
+
+    Whether a file can be read is found out by reading: click would call one that is forbidden
+    wrong usage.
+    """
+
+    def __init__(self, *, readable: bool = False, **kinds: bool) -> None:
+        super().__init__(path_type=Path, readable=readable, **kinds)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the path of a text, which would be the current folder if it were empty."""
+        if value == "":
+            self.fail("the name is empty, as of a shell variable that is not set.", param, ctx)
+        return super().convert(value, param, ctx)
+
+
+#: A file, or "-" for a stream.
+PATH = FilePath(allow_dash=True)
 
 
 class FiniteRange(click.FloatRange):

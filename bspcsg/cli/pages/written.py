@@ -6,6 +6,7 @@ import click
 
 from ...errors import FormatError
 from ..inputs.files import is_dropped, refuse_folder, shown
+from ..options.shared import FilePath
 
 _SUFFIXES = (".html", ".htm")
 
@@ -13,7 +14,7 @@ PAGE = click.option(
     "--html",
     "page",
     metavar="FILE",
-    type=click.Path(path_type=Path, readable=False),
+    type=FilePath(),
     help="Write a page, too, that shows it in 3D in a browser.",
 )
 

@@ -13,7 +13,7 @@ from ...errors import FormatError
 from ..console import output, status
 from ..console.tables import table_text
 from ..inputs.files import STREAM, refuse_folder
-from ..options.shared import SECONDS, FiniteRange
+from ..options.shared import SECONDS, FilePath, FiniteRange
 
 if TYPE_CHECKING:
     from ...bench.runner import Settings
@@ -28,7 +28,7 @@ Examples:
   bspcsg bench --from bench.json --format md
 """
 
-_PATH = click.Path(path_type=Path, dir_okay=False)
+_PATH = FilePath(dir_okay=False, readable=True)
 
 #: GiB that may be asked for: a bound in bytes is a number of 64 bits.
 _MOST_MEMORY = 2**20
@@ -127,7 +127,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     "--data",
     "shared",
     metavar="FOLDER",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FilePath(file_okay=False, readable=True),
     default=Path("../shared"),
     show_default=True,
     help="Folder with meshes/ and chains/; cases that need them are left out without.",

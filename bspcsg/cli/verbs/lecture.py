@@ -8,7 +8,7 @@ import click
 from ..console import output
 from ..console.output import Output
 from ..inputs.files import shown
-from ..options.shared import common
+from ..options.shared import FilePath, common
 from ..pages.written import refuse_page, write_page
 
 _EPILOG = """\b
@@ -26,7 +26,7 @@ Example:
     "target",
     required=True,
     metavar="FILE",
-    type=click.Path(path_type=Path, readable=False),
+    type=FilePath(),
     help="Page to write, ending in .html.",
 )
 @common

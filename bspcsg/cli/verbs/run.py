@@ -15,7 +15,7 @@ from ..inputs.files import ON_INVALID, STREAM, shown, stream_text
 from ..inputs.scripts import SUFFIXES, made_by
 from ..job import Job
 from ..options.patterns import file_argument
-from ..options.shared import PORT, TIMEOUT, common, is_given, making_or_showing
+from ..options.shared import PORT, TIMEOUT, FilePath, common, is_given, making_or_showing
 from ..pages.watching import NOWHERE, Watching
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     "allow_paths",
     metavar="DIR",
     multiple=True,
-    type=click.Path(path_type=Path, exists=True, file_okay=False),
+    type=FilePath(exists=True, file_okay=False, readable=True),
     help="A folder beside the script's own whose files it may read; can be repeated; not for"
     " Python.",
 )

@@ -26,7 +26,7 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import SAMPLES, SECONDS, telling
+from ..options.shared import SAMPLES, SECONDS, FilePath, telling
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
@@ -47,7 +47,7 @@ _NAMED = 20
 #: Most reasons for refusing operands that are told without -v.
 _REASONS = 3
 
-_FILE = click.Path(path_type=Path, readable=False)
+_FILE = FilePath()
 
 
 @click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)

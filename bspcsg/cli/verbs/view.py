@@ -14,7 +14,7 @@ from ..console.output import Output, counted
 from ..console.screen import has_screen
 from ..inputs.files import STREAM, Inputs, is_dropped, shown
 from ..options.patterns import files_argument
-from ..options.shared import PORT, common, is_given, reading
+from ..options.shared import PORT, FilePath, common, is_given, reading
 from ..pages.seen import layers_of
 from ..pages.written import refuse_page, write_page
 
@@ -40,7 +40,7 @@ _LARGE = 20_000_000
     "--output",
     "target",
     metavar="FILE",
-    type=click.Path(path_type=Path, readable=False),
+    type=FilePath(),
     help="Page to write; by default one in the folder for temporary files.",
 )
 @click.option(

@@ -13,6 +13,9 @@ from ...parameters import at_least, positive
 from ...solid.counting import counted
 from ...solid.solid import Solid, given_pitch, keeping_pitch, solid_with
 
+#: More than rounding makes an edge longer, as a factor.
+_ROUNDED = 1 + 2.0**-30
+
 #: Vertices, triangles, and which of the triangles before each lies in.
 Finer: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
 
@@ -108,6 +111,7 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
     Triangles fall into two, three or four, as many of their edges as are halved, so that no corner
     lies within an edge.
     """
+    refuse_many(least_halved(vertices, faces, longest), "at least ")
     origins = np.arange(len(faces))
     while True:
         edges, sides = _edges(faces, len(vertices))
@@ -118,12 +122,28 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
         long &= (middles != ends[:, 0]).any(axis=1) & (middles != ends[:, 1]).any(axis=1)
         if not long.any():
             return vertices, faces, origins
-        refuse_many(len(faces) + 2 * int(long.sum()))
+        refuse_many(len(faces) + 2 * int(long.sum()), "at least ")
         number = np.full(len(edges), -1)
         number[long] = len(vertices) + np.arange(int(long.sum()))
         vertices = np.concatenate([vertices, middles[long]])
         faces, rows = _cut_at(vertices, faces, number[sides])
         origins = origins[rows]
+
+
+def least_halved(vertices: FloatArray, faces: IndexArray, longest: float) -> int:
+    """Return a number of triangles that halving makes at least.
+
+    Each falls into four like it until its shortest side is short enough. Then each longer side is
+    cut, and each part of it is a side of a triangle, of which each has three.
+    """
+    corners = vertices[faces]
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    # Edges of a few roundings cannot be halved.
+    length = max(longest * _ROUNDED, 4 * float(np.spacing(np.abs(vertices).max(initial=0.0))))
+    halvings = np.ceil(np.log2(np.maximum(sides.min(axis=1) / length, 1.0)))
+    lengths = sides / length / 2 ** halvings[:, None]
+    cut = np.maximum(1 + (lengths > 1).sum(axis=1), lengths.sum(axis=1) / 3)
+    return int(min(float((4**halvings * cut).sum()), 1e300))
 
 
 def _cut_at(
@@ -182,9 +202,9 @@ def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
     return np.stack([keys // count, keys % count], axis=1), sides.reshape(-1, 3)
 
 
-def refuse_many(count: int) -> None:
-    """Raise `LimitError` for more triangles than a result may have."""
+def refuse_many(count: int, about: str = "") -> None:
+    """Raise `LimitError` for more triangles than a result may have; `about` precedes the number."""
     if count > _MOST_TRIANGLES:
-        amount = f"{count:,}" if count < _MOST_TRIANGLES**2 else "far too many"
+        amount = f"{about}{count:,}" if count < _MOST_TRIANGLES**2 else "far too many"
         message = f"The result would have {amount} triangles; {_MOST_TRIANGLES:,} are the most."
         raise LimitError(message, "too_large")

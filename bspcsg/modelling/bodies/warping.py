@@ -8,7 +8,7 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, WindingRule
 from ...attributes.attributes import NORMALS
 from ...errors import InvalidMeshError, invalid_parameter
-from ...mesh.certificate import certify
+from ...mesh.crossing import Crossings, crossings
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
 from ...solid.counting import counted
@@ -20,6 +20,9 @@ PointMap: TypeAlias = Callable[[FloatArray], Any]
 
 #: Faces that an error names.
 _FEW = 20
+
+#: Of the largest coordinate: a mended vertex moves by a few roundings, 2**-53 each.
+_ROUNDING = 2.0**-40
 
 
 @counted
@@ -46,15 +49,21 @@ def _uncrossed(moved: SaidMesh, before: FloatArray, given: int | None) -> SaidMe
 
     Surfaces that touched are mended where rounding makes them cross; more is refused.
     """
-    if not certify(moved.vertices, moved.faces).crossings:
-        return moved
     held = moved.held_pitch(given)
     pitch = moved.suited_pitch() if held is None else held
-    mended = None if pitch is None else moved.mended(before, pitch)
-    if mended is None or len(mended.left):
-        refuse_crossings(moved.vertices, moved.faces, "Where f moves them")
+    found = crossings(moved.vertices, moved.faces, _farthest(moved.vertices, pitch))
+    if not len(found.pairs):
         return moved
+    mended = None if found.are_deep or pitch is None else moved.mended(before, pitch)
+    if mended is None or len(mended.left):
+        raise _refusal(found, moved.vertices, moved.faces, "Where f moves them")
     return mended.mesh
+
+
+def _farthest(vertices: FloatArray, pitch: int | None) -> float:
+    """Return a distance that mending moves no vertex by: far more than rounding, and a step."""
+    step = 0.0 if pitch is None else 10.0**pitch
+    return float(np.abs(vertices).max()) * _ROUNDING + step
 
 
 def _moved(f: PointMap, points: FloatArray) -> FloatArray:
@@ -76,12 +85,18 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
 
 def refuse_crossings(vertices: FloatArray, faces: IndexArray, when: str) -> None:
     """Raise `InvalidMeshError` if faces cross or overlap; `when` begins the sentence."""
-    crossings = certify(vertices, faces).crossings
-    if crossings:
-        first = vertices[faces[crossings[0][0]]].mean(axis=0).round(6).tolist()
-        message = (
-            f"{when}, {len(crossings)} pairs of faces cross or overlap, the first near {first}."
-            " Refine the solid first; warp can let winding numbers decide what is inside."
-        )
-        where = sorted({face for pair in crossings[:_FEW] for face in pair})
-        raise InvalidMeshError(message, "self_crossing", where)
+    found = crossings(vertices, faces, 0.0)
+    if len(found.pairs):
+        raise _refusal(found, vertices, faces, when)
+
+
+def _refusal(
+    found: Crossings, vertices: FloatArray, faces: IndexArray, when: str
+) -> InvalidMeshError:
+    first = vertices[faces[found.pairs[0, 0]]].mean(axis=0).round(6).tolist()
+    least = "" if found.are_all else "at least "
+    message = (
+        f"{when}, pairs of faces cross or overlap ({least}{len(found.pairs)}), one near {first}."
+        " Refine the solid first; warp can let winding numbers decide what is inside."
+    )
+    return InvalidMeshError(message, "self_crossing", np.unique(found.pairs[:_FEW]).tolist())

@@ -1,0 +1,101 @@
+"""Child processes that end with this one, however it ends.
+
+``processes.py PIPE PROGRAM ARGUMENT…`` becomes a program that does. As a script it imports nothing
+of this package.
+"""
+
+import contextlib
+import os
+import select
+import signal
+import sys
+import threading
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import subprocess
+
+#: Linux: the signal that a process gets when the thread that started it ends (prctl(2)).
+_PARENT_DEATH_SIGNAL = 1
+
+
+@contextlib.contextmanager
+def watched() -> Iterator[tuple[int, ...]]:
+    """Yield what tells a child of the end of this process, where a child can be told."""
+    if os.name != "posix":
+        yield ()
+        return
+    reader, writer = os.pipe()
+    try:
+        yield (reader,)
+    finally:
+        os.close(reader)
+        os.close(writer)
+
+
+def end_with_parent(pipe: int | None = None) -> None:
+    """Have this process killed when its parent ends in any way, or at once if it has ended.
+
+    Parameters
+    ----------
+    pipe : int, optional
+        The end to be read of a pipe to which the parent alone can write; without it nothing is
+        done. On Linux the thread that started this process must wait for its end.
+    """
+    if pipe is None:
+        return
+    if sys.platform == "linux":
+        import ctypes
+
+        ctypes.CDLL(None).prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+    else:
+        threading.Thread(target=_end_without_writer, args=(pipe, None), daemon=True).start()
+    _end_without_writer(pipe, 0)
+
+
+def _end_without_writer(pipe: int, patience: int | None) -> None:
+    waiting = select.poll()
+    waiting.register(pipe, 0)
+    if waiting.poll(patience):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def run_program(
+    command: Sequence[str], timeout: float | None, environment: Mapping[str, str] | None = None
+) -> "subprocess.CompletedProcess[str]":
+    """Run a program to its end, and return what it wrote; on Linux it ends with this process.
+
+    Raises
+    ------
+    subprocess.TimeoutExpired
+        If it takes longer.
+    """
+    import subprocess
+
+    with watched() as read_by_child:
+        start: list[str] = []
+        if sys.platform == "linux":
+            # What a process asked of the system stays when it becomes another program.
+            start = [sys.executable, "-I", "-S", __file__, *map(str, read_by_child)]
+        return subprocess.run(
+            [*start, *command],
+            capture_output=True,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=timeout,
+            env=environment,
+            check=False,
+            pass_fds=read_by_child,
+        )
+
+
+def _become(pipe: int, command: list[str]) -> None:
+    end_with_parent(pipe)
+    os.close(pipe)
+    os.execvp(command[0], command)
+
+
+if __name__ == "__main__":
+    _become(int(sys.argv[1]), sys.argv[2:])
