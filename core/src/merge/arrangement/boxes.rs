@@ -21,6 +21,9 @@ const STEPS: u16 = 1 << 10;
 /// Pairs of nodes at which the search for pairs is parted into tasks.
 const TASKS: usize = 64;
 
+/// Pairs that are looked at together.
+const BLOCK: usize = 1 << 9;
+
 /// A box in single precision, rounded outwards.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bounds {
@@ -224,16 +227,22 @@ impl BoxTree {
         }
     }
 
-    /// The pairs of places at which boxes and slabs of two trees meet, in an order that depends on
-    /// the trees only.
-    pub(super) fn pairs(&self, other: &Self, worth: Worth) -> Vec<[u32; 2]> {
+    /// Calls `visit` with blocks of pairs of places at which boxes and slabs of two trees meet; returns what
+    /// it returns, in an order that depends on the trees only. The first error of a task ends it.
+    pub(super) fn each_block<T: Send, E: Send>(
+        &self,
+        other: &Self,
+        worth: Worth,
+        visit: impl Fn(&[[u32; 2]]) -> Result<T, E> + Sync + Send,
+    ) -> Result<Vec<T>, E> {
         if self.bounds.is_empty() || other.bounds.is_empty() {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let found = each(worth, self.starts(other), |start| {
-            self.pairs_below(other, start)
+            self.blocks_below(other, start, &visit)
         });
-        found.concat()
+        let found: Result<Vec<Vec<T>>, E> = found.into_iter().collect();
+        Ok(found?.into_iter().flatten().collect())
     }
 
     /// Pairs of nodes below which all pairs are: about as many as tasks are wanted.
@@ -266,23 +275,28 @@ impl BoxTree {
         }
     }
 
-    fn pairs_below(&self, other: &Self, start: [Node; 2]) -> Vec<[u32; 2]> {
-        let (mut open, mut found) = (vec![start], Vec::new());
+    fn blocks_below<T, E>(
+        &self,
+        other: &Self,
+        start: [Node; 2],
+        visit: impl Fn(&[[u32; 2]]) -> Result<T, E>,
+    ) -> Result<Vec<T>, E> {
+        let (mut open, mut pairs, mut found) = (vec![start], Vec::new(), Vec::new());
         while let Some([a, b]) = open.pop() {
             poll();
             if a.level == 0 && b.level == 0 {
-                self.pairs_of_leaves(other, [a, b], &mut found);
+                self.pairs_of_leaves(other, [a, b], &mut pairs);
             } else {
                 self.descend(other, [a, b], &mut open);
             }
+            if pairs.len() >= BLOCK || open.is_empty() {
+                found.push(visit(&pairs)?);
+                pairs.clear();
+            }
         }
-        found
+        Ok(found)
     }
 
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "there are less than 2^32 faces"
-    )]
     fn pairs_of_leaves(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[u32; 2]>) {
         let theirs = other.at(b);
         for i in self.leaves(a).filter(|i| self.bounds[*i].meets(theirs)) {
@@ -314,7 +328,9 @@ mod tests {
         for (count, others) in [(0, 3), (1, 1), (3, 70), (200, 300)] {
             let (a, b) = (triangles(count, 1), triangles(others, 77));
             let [ours, theirs] = [&a, &b].map(|t| BoxTree::new(t).with_slabs(t));
-            let mut found = ours.pairs(&theirs, Worth::Nothing);
+            let visit = |pairs: &[[u32; 2]]| Ok::<_, ()>(pairs.to_vec());
+            let found = ours.each_block(&theirs, Worth::Nothing, visit);
+            let mut found = found.expect("no error").concat();
             found.sort_unstable();
             let met = |i: usize, j: usize| {
                 let boxes = ours.bounds[i].meets(&theirs.bounds[j]);

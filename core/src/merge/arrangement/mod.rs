@@ -179,9 +179,7 @@ impl From<Option<Orientation>> for Fate {
 
 impl Scene<'_> {
     fn root(&self) -> Result<Branch, Special> {
-        let [first, second] = &self.candidates;
-        let pairs = first.tree.pairs(&second.tree, self.worth);
-        let found = segments(&self.operands, &self.candidates, &pairs)?;
+        let found = segments(&self.operands, &self.candidates, self.worth)?;
         let shared = self.shared(&found);
         let mut leaf = Deferred {
             corner: i32::from(self.kept.outside),

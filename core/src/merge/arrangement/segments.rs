@@ -1,6 +1,7 @@
 //! The segments in which faces of two operands cross, and the points at their ends.
 
-use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use rustc_hash::FxHashMap as HashMap;
 
 use super::candidates::{Candidates, Operand};
@@ -8,12 +9,13 @@ use super::contact::{contact, Contact, End};
 use super::triangulation::Special;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Facing;
-use crate::interrupt::{carried, spend};
+use crate::interrupt::spend;
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::in_pool;
+use crate::mesh::tasks::Worth;
 
-/// Pairs of one task.
-const BLOCK: usize = 1 << 11;
+/// Pairs for each candidate beyond which faces are crowded: boxes do not tell needles apart, and the
+/// sweeps of the descent do.
+const PAIRS_FOR_EACH: usize = 12;
 
 /// A point in which an edge of one operand goes through a face of the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -55,19 +57,23 @@ struct Met {
 /// The segments of all pairs.
 ///
 /// # Errors
-/// `Special` if faces meet in another way than that edges go through faces.
+/// `Special` if faces meet in another way than that edges go through faces, or are crowded.
 pub(super) fn segments(
     operands: &[Operand; 2],
     candidates: &[Candidates; 2],
-    pairs: &[[u32; 2]],
+    worth: Worth,
 ) -> Result<Segments, Special> {
-    let met = carried(|block: &[[u32; 2]]| met(candidates, block));
-    let found: Result<Vec<Vec<Met>>, Special> = if in_pool() && pairs.len() > BLOCK {
-        pairs.par_chunks(BLOCK).map(met).collect()
-    } else {
-        pairs.chunks(BLOCK).map(met).collect()
+    let faces: usize = candidates.iter().map(|c| c.faces.len()).sum();
+    let left = AtomicUsize::new(PAIRS_FOR_EACH * faces);
+    let visit = |block: &[[u32; 2]]| {
+        let take = |left: usize| left.checked_sub(block.len());
+        left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
+            .map_err(|_| Special)?;
+        met(candidates, block).inspect_err(|_| left.store(0, Ordering::Relaxed))
     };
-    Ok(numbered(operands, candidates, found?))
+    let [first, second] = candidates;
+    let met = first.tree.each_block(&second.tree, worth, visit)?;
+    Ok(numbered(operands, candidates, met))
 }
 
 fn met(candidates: &[Candidates; 2], pairs: &[[u32; 2]]) -> Result<Vec<Met>, Special> {
