@@ -221,6 +221,18 @@ def test_edges_without_length_and_faces_without_area_change_no_sum() -> None:
     assert sums[0] == sums[1]
 
 
+# A solid whose corners all come to lie on a line, or in a point, on the lattice.
+@pytest.mark.parametrize(("length", "highest"), [(7, 9), (0, 3)])
+def test_specks_count_in_sums(length: int, highest: int) -> None:
+    speck, box = b.cube(1).to_mesh(), b.cube(4, center=True).to_mesh()
+    line = (np.arange(8) * length // 7)[:, None].repeat(3, axis=1)
+    tool = polyhedron_of(box.vertices.astype(np.int64), box.faces)
+    touched = b.Solid.from_mesh(swept_mesh(polyhedron_of(line, speck.faces), tool), pitch=0)
+    assert touched.bounds is not None
+    assert touched.bounds.tolist() == [[-2] * 3, [highest] * 3]
+    assert touched > b.cube(4, center=True)
+
+
 # Found: an offset inwards of a plate took a second for each hole.
 def test_what_is_touched_grows_with_the_surface() -> None:
     ball = b.sphere(0.1, segments=8).to_mesh()

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
+from ...mesh.mesh import surfaces_of
 from .shading import half_edges, unit
 
 #: Whole numbers of any size.
@@ -21,6 +22,9 @@ _DOUBT = 2e-15
 
 #: So many signs are found at once: some ten bytes each, and a hundred for each that is not clear.
 _AT_ONCE = 1 << 22
+
+#: The faces of a tetrahedron whose corners 1, 2, 3 are seen from corner 0 clockwise.
+_TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
 
 
 class Vectors(NamedTuple):
@@ -131,16 +135,41 @@ def in_units(steps: IndexArray, pitch: int) -> FloatArray:
 def polyhedron_of(points: IndexArray, faces: IndexArray) -> Polyhedron:
     """Return the polyhedron of a closed mesh, without edges of no length.
 
-    A face without area has the normal of a neighbour; shells of such faces are left out.
+    A face without area has the normal of a neighbour. Shells of such faces only are one step wide.
     """
+    points, faces = _with_wide_shells(points, faces)
     faces = _without_short_edges(points, faces)
-    corners = points.astype(object)[faces]
-    normals = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    is_flat = (normals == 0).all(axis=1)
-    if is_flat.any():
-        is_flat = _borrow_normals(normals, is_flat, faces)
-    kept = ~is_flat
+    normals = _normals(points, faces)
+    kept = _borrow_normals(normals, faces)
     return Polyhedron(points, np.ascontiguousarray(faces[kept]), _directions(normals[kept]))
+
+
+def _normals(points: IndexArray, faces: IndexArray) -> LongArray:
+    corners = points.astype(object)[faces]
+    return _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _with_wide_shells(points: IndexArray, faces: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return corners and faces with tetrahedra in place of shells on a line or in a point."""
+    has_area = (_normals(points, faces) != 0).any(axis=1)
+    if has_area.all():
+        return points, faces
+    shells = surfaces_of(faces, len(points))
+    is_wide = np.isin(shells, shells[has_area])
+    thin = (np.unique(faces[shells == shell]) for shell in np.unique(shells[~is_wide]))
+    tetrahedra = [_tetrahedron(points[corners]) for corners in thin]
+    numbers = len(points) + 4 * np.arange(len(tetrahedra))
+    added = (numbers[:, None, None] + _TETRAHEDRON).reshape(-1, 3)
+    return np.concatenate([points, *tetrahedra]), np.concatenate([faces[is_wide], added])
+
+
+def _tetrahedron(points: IndexArray) -> IndexArray:
+    """Return the corners of a tetrahedron along points on a line, a step wide."""
+    axis = int(np.ptp(points, axis=0).argmax())
+    along, *across = np.roll(np.eye(3, dtype=np.int64), -axis, axis=0)
+    low, high = points[points[:, axis].argmin()], points[points[:, axis].argmax()]
+    end = high if high[axis] > low[axis] else low + along
+    return np.stack([low, end, *(low + step for step in across)])
 
 
 def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
@@ -157,17 +186,17 @@ def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
     return kept
 
 
-def _borrow_normals(normals: LongArray, is_flat: Marks, faces: IndexArray) -> Marks:
-    """Give faces without area the normals of neighbours, and mark those that have no such one."""
+def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
+    """Give faces without area the normals of neighbours; mark the faces that have one now."""
+    has_normal: Marks = (normals != 0).any(axis=1)
+    if has_normal.all():
+        return has_normal
     forth, back = half_edges(faces)
     here, there = np.concatenate([forth, back]) // 3, np.concatenate([back, forth]) // 3
-    while True:
-        borrowing = is_flat[here] & ~is_flat[there]
-        if not borrowing.any():
-            return is_flat
+    while (borrowing := ~has_normal[here] & has_normal[there]).any():
         normals[here[borrowing]] = normals[there[borrowing]]
-        is_flat = is_flat.copy()
-        is_flat[here[borrowing]] = False
+        has_normal[here[borrowing]] = True
+    return has_normal
 
 
 def _directions(vectors: LongArray) -> Directions:
