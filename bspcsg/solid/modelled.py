@@ -295,7 +295,7 @@ class Modelled:
         InvalidParameterError
             If a parameter is out of its range.
         LimitError
-            If the solid is not convex and falls into too many parts (see `bspcsg.minkowski`).
+            If more than 10 million faces bound what the ball touches (see `bspcsg.minkowski`).
         UnboundedError
             If the solid and its complement both reach to infinity.
 

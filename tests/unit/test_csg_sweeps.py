@@ -92,9 +92,9 @@ def test_intersections_of_both_dimensions_are_empty() -> None:
 def test_minkowski_of_what_is_far_from_convex() -> None:
     ball = "difference() { sphere(r = 20, $fn = 80); cube(3); }"
     with pytest.raises(
-        b.FormatError, match=r":1:1: minkowski\(\): a solid is not convex"
+        b.FormatError, match=r":1:1: minkowski\(\): neither solid is convex"
     ) as caught:
-        csg.loads(f"minkowski() {{ {ball} cube(1); }}")
+        csg.loads(f"minkowski() {{ {ball} {ball} }}")
     assert caught.value.code == "too_large"
 
 

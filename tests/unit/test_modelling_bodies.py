@@ -10,9 +10,14 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg._types import FloatArray, IndexArray
 from bspcsg.above import Convenience
 from bspcsg.conveniences import _HOMES
-from bspcsg.modelling.bodies.sums import is_convex
+from bspcsg.modelling.bodies import touching
+from bspcsg.modelling.bodies.hulls import hull_of
+from bspcsg.modelling.bodies.polyhedra import in_steps, in_units, polyhedron_of
+from bspcsg.modelling.bodies.sums import convex_parts, is_convex
+from bspcsg.modelling.bodies.touching import swept_mesh
 from support.checks import assert_sound
 from support.small import random_set, random_shapes
 
@@ -123,9 +128,128 @@ def test_sums_refuse_what_is_unbounded_or_too_large() -> None:
     with pytest.raises(b.UnboundedError):
         b.minkowski(b.cube(1), ~b.cube(1))
     far = b.sphere(10, segments=80) - b.cube(1)
-    with pytest.raises(b.LimitError) as caught:
-        b.minkowski(far, b.cube(1))
+    with pytest.raises(b.LimitError, match="neither solid is convex") as caught:
+        b.minkowski(far, far)
     assert caught.value.code == "too_large"
+
+
+def test_sums_refuse_what_would_take_all_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(touching, "_MOST_FACES", 100)
+    with pytest.raises(b.LimitError, match="give coarser ones") as caught:
+        b.minkowski(frame(), b.cube(1))
+    assert caught.value.code == "too_large"
+
+
+# Found: more than 2 000 faces were refused.
+def test_sums_of_many_faces() -> None:
+    ball = b.hull(b.sphere(10, segments=80))
+    sum_of_hollow = b.minkowski(ball - b.cube(2), b.cube(1))
+    assert sum_of_hollow == b.minkowski(ball, b.cube(1)) - b.cube(1).translate(1, 1, 1)
+
+
+def bodies(random: Random) -> list[b.Solid]:
+    """Return a block with boxes and tetrahedra added and cut off, and a disc with a small hole."""
+    block = b.cube(4)
+    for size in (1.5, 2, 3):
+        at = [random.randint(-1, 3) for _ in range(3)]
+        block = block | b.cube(size).translate(at)
+        corners = [[random.randint(0, 5) for _ in range(3)] for _ in range(5)]
+        block = block - b.hull(corners)
+    ring = b.cylinder(h=1, r=2, segments=7) - b.cylinder(h=3, r=0.25, segments=5, center=True)
+    return [solid for solid in (block, ring) if not solid.is_empty]
+
+
+TOOLS = {
+    "box": b.box(0.5, 0.25, 0.75, center=True),
+    "far": b.box(0.5, 0.1, 0.3).translate(0.2, 0.4, -1),
+    "ball": b.sphere(0.4, segments=8),
+    "corner": b.hull([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]),
+    "frame": frame(),
+}
+
+
+def on_lattice(solid: b.Solid, pitch: int) -> tuple[FloatArray, IndexArray]:
+    mesh = solid.to_mesh()
+    steps = np.rint(in_steps(mesh.vertices, pitch)).astype(np.int64)
+    return in_units(steps, pitch), mesh.faces
+
+
+def touched(corners: FloatArray, part: b.Solid, pitch: int) -> b.Solid:
+    """Return the union of the sums of a convex tool and each triangle."""
+    ends, _ = on_lattice(part, pitch)
+    sums = (triangle[:, None] + ends for triangle in corners)
+    return b.union(hull_of(np.round(each.reshape(-1, 3), -pitch), pitch) for each in sums)
+
+
+# The mesh of all that the tool touches, against the sums of each triangle, one by one.
+@pytest.mark.parametrize("tool", TOOLS)
+@pytest.mark.parametrize("seed", range(3))
+def test_sums_hold_what_the_tool_touches(seed: int, tool: str) -> None:
+    parts = [b.hull(corners) for corners in convex_parts(TOOLS[tool])]
+    for given in bodies(Random(seed)):
+        pitch = min(given.pitch, TOOLS[tool].pitch)
+        vertices, faces = on_lattice(given, pitch)
+        solid = b.Solid.from_mesh((vertices, faces), pitch=pitch)
+        larger, smaller = [], []
+        for part in parts:
+            rim, at = touched(vertices[faces], part, pitch), on_lattice(part, pitch)[0][0]
+            larger.append(solid.translate(at) | rim)
+            smaller.append(solid.translate(at) - rim)
+        assert b.minkowski(solid, TOOLS[tool]) == b.union(larger)
+        assert ~b.minkowski(~solid, TOOLS[tool]) == b.intersection(smaller)
+
+
+def test_edges_without_length_and_faces_without_area_change_no_sum() -> None:
+    plain = (b.cube(4) - b.cube(2)).to_mesh()
+    ball = b.sphere(0.5, segments=8).to_mesh()
+    points, ends = (np.rint(mesh.vertices * 1e6).astype(np.int64) for mesh in (plain, ball))
+    a, c, d = plain.faces[0]
+    # A corner in the middle of an edge for the face on one side only, and one corner twice.
+    middle, twin = len(points), len(points) + 1
+    more = np.vstack([points, (points[a] + points[c]) // 2, points[a]])
+    faces = np.vstack(
+        [
+            plain.faces[1:],
+            [(a, middle, d), (middle, c, d), (twin, c, middle), (a, twin, middle), (a, c, twin)],
+        ]
+    )
+    tool = polyhedron_of(ends, ball.faces)
+    sums = [
+        b.Solid.from_mesh(swept_mesh(polyhedron_of(*mesh), tool), pitch=0)
+        for mesh in ((points, plain.faces), (more, faces))
+    ]
+    assert sums[0] == sums[1]
+
+
+# A solid whose corners all come to lie on a line, or in a point, on the lattice.
+@pytest.mark.parametrize(("length", "highest"), [(7, 9), (0, 3)])
+def test_specks_count_in_sums(length: int, highest: int) -> None:
+    speck, box = b.cube(1).to_mesh(), b.cube(4, center=True).to_mesh()
+    line = (np.arange(8) * length // 7)[:, None].repeat(3, axis=1)
+    tool = polyhedron_of(box.vertices.astype(np.int64), box.faces)
+    touched = b.Solid.from_mesh(swept_mesh(polyhedron_of(line, speck.faces), tool), pitch=0)
+    assert touched.bounds is not None
+    assert touched.bounds.tolist() == [[-2] * 3, [highest] * 3]
+    assert touched > b.cube(4, center=True)
+
+
+# Found: an offset inwards of a plate took a second for each hole.
+def test_what_is_touched_grows_with_the_surface() -> None:
+    ball = b.sphere(0.1, segments=8).to_mesh()
+    tool = polyhedron_of(np.rint(ball.vertices * 1e6).astype(np.int64), ball.faces)
+    counts = []
+    for holes in (3, 6):
+        drills = (b.prism(6, h=3, r=1).translate(4 * i, 0, 0) for i in range(holes))
+        mesh = (b.box(4 * holes, 4, 2).translate(-2, -2, 0.5) - b.union(drills)).to_mesh()
+        points = np.rint(mesh.vertices * 1e6).astype(np.int64)
+        counts.append(
+            [
+                len(swept_mesh(polyhedron_of(points, f), tool)[1])
+                for f in (mesh.faces, mesh.faces[:, ::-1])
+            ]
+        )
+    (few, few_inside), (many, many_inside) = counts
+    assert many < 2.1 * few and many_inside < 2.1 * few_inside and many_inside < many
 
 
 # Cuts

@@ -31,8 +31,7 @@ def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Return the sums of a point of each child: the first swept along the others.
 
-    Empty solids do not count, as in OpenSCAD. Shapes that are not convex are divided into convex
-    parts; the sums of parts are the hulls of the sums of their corners, and these are united.
+    Empty solids do not count, as in OpenSCAD.
     """
     arguments = run.arguments(owner)
     solids, regions = run.same_kind(owner, children)

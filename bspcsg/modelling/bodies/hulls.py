@@ -90,7 +90,7 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
     """
     if len(points) < 4:
         return Solid.empty()
-    chosen = _lattice_for(points, pitch)
+    chosen = lattice_for(points, pitch)
     with core_errors():
         vertices, faces, is_mended = hull_mesh(np.ascontiguousarray(points), chosen)
     if len(faces) == 0:
@@ -99,7 +99,8 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
     return keeping_pitch(from_leaf(leaf), None)
 
 
-def _lattice_for(points: FloatArray, pitch: int | None) -> int:
+def lattice_for(points: FloatArray, pitch: int | None) -> int:
+    """Return the pitch of a lattice that holds points: this one, if that does."""
     largest = float(np.abs(points).max())
     if pitch is not None and largest < (_REACH - 1) * 10.0**pitch:
         return pitch

@@ -41,7 +41,7 @@ def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
     sizes = np.linalg.norm(_areas(mesh), axis=1) / 2
     shares = np.bincount(mesh.faces.ravel(), np.repeat(sizes / 3, 3), count)
     angles = np.bincount(mesh.faces.ravel(), _angles(mesh).ravel(), count)
-    forth, back = half_edges(mesh)
+    forth, back = half_edges(mesh.faces)
     start, end = mesh.faces.ravel()[forth], mesh.faces.ravel()[back]
     own, along = unit(_areas(mesh)), mesh.vertices[end] - mesh.vertices[start]
     bends = _signed_bends(own[forth // 3], own[back // 3], along)
@@ -75,13 +75,13 @@ def _angles(mesh: Mesh) -> FloatArray:
     return found
 
 
-def half_edges(mesh: Mesh) -> tuple[IndexArray, IndexArray]:
-    """Return for each edge the two sides of triangles that run along it, forth and back.
+def half_edges(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return for each edge of a closed mesh the two sides of triangles along it, forth and back.
 
     Side 3 f + k is that of face f from its corner k to the next.
     """
-    start, end = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
-    count = np.int64(len(mesh.vertices))
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    count = faces.max(initial=0) + 1
     forth, back = np.argsort(start * count + end), np.argsort(end * count + start)
     once = start[forth] < end[forth]
     return forth[once], back[once]
@@ -97,7 +97,7 @@ def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> Floa
 
 def _fans(mesh: Mesh, own: FloatArray, limit: float) -> IndexArray:
     """Return a number for each corner, the same for those that no sharp edge parts."""
-    forth, back = half_edges(mesh)
+    forth, back = half_edges(mesh.faces)
     cosines = np.einsum("ij,ij->i", own[forth // 3], own[back // 3])
     flat = cosines >= math.cos(math.radians(limit)) - _ROUNDING
     forth, back = forth[flat], back[flat]

@@ -46,7 +46,7 @@ def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:
     A curve starts in the plane across the normal, and where faces meet in a sharp edge in those
     across both.
     """
-    forth, back = half_edges(mesh)
+    forth, back = half_edges(mesh.faces)
     start, end = mesh.faces.ravel()[forth], mesh.faces.ravel()[back]
     p, q, own = mesh.vertices[start], mesh.vertices[end], at_corners.reshape(-1, 3)
     near = p + _along(q - p, own[forth], own[next_side(back)]) / 3

@@ -1,6 +1,7 @@
 """Minkowski sums, those of solids."""
 
 from fractions import Fraction
+from itertools import islice
 from typing import Any, TypeAlias, overload
 
 import numpy as np
@@ -16,25 +17,21 @@ from ...solid.leaf import PlaneLeaf
 from ...solid.solid import Solid, from_leaf
 from ..planar.sums import sum_of_regions
 from .hulls import hull_of
+from .polyhedra import LongArray, in_steps
 from .shading import half_edges, next_side
+from .sweeping import sum_of_convex, swept
 
 #: Corners of convex sets, each an array of shape (n, 3).
 ConvexParts: TypeAlias = list[FloatArray]
 
-#: Whole numbers of any size.
-LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
-
 #: By how much of its volume, and by how many steps a corner, rounding makes a convex solid another.
 _LARGER, _MOVED = 1e-9, 4
 
-#: A solid with more faces is not divided into convex parts, which grows with their square.
-_MOST_FACES = 2000
+#: More pairs of faces of two solids, neither of which is convex, would take hours.
+_MOST_PAIRS = 4_000_000
 
-#: More pairs of convex parts than this would take hours.
-_MOST_PAIRS = 20_000
-
-#: Sums of corners of which one hull is made at once: 24 bytes each and as many in steps, 1 GB.
-_MOST_SUMS = 20_000_000
+#: So many sums are united at once: the result has less surface than all of them.
+_AT_ONCE = 64
 
 
 @overload
@@ -46,8 +43,9 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
     """Return the Minkowski sum: all points that are a point of one solid plus one of the other.
 
     It is the first solid thickened by the second. The sum of convex solids is the hull of the sums
-    of their corners, exactly; others are divided into convex parts first, and the sums of parts are
-    united.
+    of their corners. If one is convex, the sum is the other one and all that the convex one touches
+    while it moves along the surface. Of two that are not, the one with fewer faces is divided into
+    convex parts, and the sums of the parts are united.
 
     Parameters
     ----------
@@ -67,12 +65,13 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
     UnboundedError
         If `b` reaches to infinity, or `a` and its complement do.
     LimitError
-        If a solid that is not convex has more than 2000 faces, or there are more than 20 000 pairs
-        of parts ("too_large").
+        If more than 10 million faces bound what the convex solid touches, or neither is convex and
+        the product of their numbers of faces is more than 4 million ("too_large"). Of regions,
+        if there are more than 20 000 pairs of convex parts.
 
     Notes
     -----
-    Corners of parts that are no lattice points are rounded to it before they are added.
+    Corners that are no lattice points are rounded to it before they are added.
 
     Examples
     --------
@@ -91,7 +90,9 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
         return Solid.empty()
     if not a.is_bounded:
         return ~_eroded(~a, b)
-    return _sum_of_parts(convex_parts(a), convex_parts(b), min(a.pitch, b.pitch))
+    if is_convex(a) and is_convex(b):
+        return sum_of_convex(_hull(a), _hull(b))
+    return _swept(*_solid_and_tool(a, b))
 
 
 def convex_parts(solid: Solid) -> ConvexParts:
@@ -99,20 +100,12 @@ def convex_parts(solid: Solid) -> ConvexParts:
 
     Raises
     ------
-    LimitError
-        If it is not convex and has too many faces.
     UnboundedError
         If it reaches to infinity.
     """
     mesh = solid.normalized().to_mesh()
     if is_convex(solid):
         return [mesh.vertices]
-    if len(mesh.faces) > _MOST_FACES:
-        message = (
-            f"a solid is not convex and has {len(mesh.faces):,} faces; more than {_MOST_FACES:,}"
-            " are not divided into convex parts."
-        )
-        raise LimitError(message, "too_large")
     cells = ObjectTree.from_mesh(mesh, pitch=solid.tree.pitch).cells()
     corners: dict[int, list[FloatArray]] = {}
     for face, cell in enumerate(cells.owner.tolist()):
@@ -137,7 +130,7 @@ def _bends_inwards(mesh: Mesh, step: float) -> bool:
     one moves as many times more as that corner is farther away than the edge is long, or the
     larger triangle high.
     """
-    first, second = half_edges(mesh)
+    first, second = half_edges(mesh.faces)
     points = mesh.vertices[mesh.faces].reshape(-1, 3)
     a, b, c = (points[k::3] for k in range(3))
     normals = np.cross(b - a, c - a)
@@ -153,30 +146,44 @@ def _bends_inwards(mesh: Mesh, step: float) -> bool:
     return bool((over > _MOVED * step * (1 + reach)).any())
 
 
-def _sum_of_parts(first: ConvexParts, second: ConvexParts, pitch: int) -> Solid:
-    _refuse_many(len(first) * len(second))
-    return setops.union(_sum(p, q, pitch) for p in first for q in second)
+def _solid_and_tool(a: Solid, b: Solid) -> tuple[Solid, Solid]:
+    """Return two solids, the second one that is convex or has fewer faces."""
+    first, second = (0 if is_convex(solid) else _face_count(solid) for solid in (a, b))
+    return (b, a) if first < second else (a, b)
 
 
-def _refuse_many(pairs: int) -> None:
-    if pairs > _MOST_PAIRS:
+def _swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
+    """Return the sum of a solid and a tool, or the solid eroded by it."""
+    _refuse_many(solid, tool)
+    combined = setops.intersection if is_inside else setops.union
+    hulls = (hull_of(part, tool.pitch) for part in convex_parts(tool))
+    sums = (swept(solid, hull, is_inside) for hull in hulls if not hull.is_empty)
+    found = combined(islice(sums, _AT_ONCE))
+    while more := list(islice(sums, _AT_ONCE)):
+        found = combined(found.normalized(), *more)
+    return found
+
+
+def _refuse_many(solid: Solid, tool: Solid) -> None:
+    pairs = _face_count(solid) * _face_count(tool)
+    if pairs > _MOST_PAIRS and not is_convex(tool):
         message = (
-            f"the solids fall into convex parts of which {pairs:,} pairs would have to be added;"
-            f" the most are {_MOST_PAIRS:,}."
+            f"neither solid is convex, and they have {_face_count(solid):,} and"
+            f" {_face_count(tool):,} faces; the most pairs of two are {_MOST_PAIRS:,}."
         )
         raise LimitError(message, "too_large")
 
 
-def _sum(first: FloatArray, second: FloatArray, pitch: int) -> Solid:
-    """Return the hull of the sums of corners."""
-    if len(first) * len(second) > _MOST_SUMS:
-        message = (
-            f"the solids have {len(first):,} and {len(second):,} corners; the most sums of two are"
-            f" {_MOST_SUMS:,}."
-        )
-        raise LimitError(message, "too_large")
-    sums = first[:, None, :] + second[None, :, :]
-    return hull_of(sums.reshape(-1, 3), pitch)
+def _face_count(solid: Solid) -> int:
+    return len(solid.normalized().to_mesh().faces)
+
+
+def _hull(solid: Solid) -> Solid:
+    return hull_of(_corners(solid), solid.pitch)
+
+
+def _corners(solid: Solid) -> FloatArray:
+    return solid.normalized().to_mesh().vertices
 
 
 def _eroded(solid: Solid, tool: Solid) -> Solid:
@@ -189,23 +196,7 @@ def _eroded(solid: Solid, tool: Solid) -> Solid:
         return solid
     if is_convex(solid) and is_convex(tool):
         return _between_planes(solid, tool)
-    parts = convex_parts(tool)
-    triangles = solid.normalized().to_mesh()
-    _refuse_many(len(parts) * len(triangles.faces))
-    pitch = min(solid.pitch, tool.pitch)
-    corners = triangles.vertices[triangles.faces]
-    return setops.intersection(_eroded_by(solid, corners, part, pitch) for part in parts)
-
-
-def _eroded_by(solid: Solid, corners: FloatArray, part: FloatArray, pitch: int) -> Solid:
-    """Return a solid less what a convex tool touches while it moves along the boundary.
-
-    Where the tool touches no boundary, it is inside if one of its points is. One in its middle
-    leaves a body that ends deep in what the tool touches, whose corners are rounded.
-    """
-    rim = setops.union(_sum(triangle, part, pitch) for triangle in corners)
-    middle = [round(x, -pitch) for x in part.mean(axis=0).tolist()]
-    return solid.translate(middle) - rim
+    return _swept(solid, tool, is_inside=True)
 
 
 def _between_planes(solid: Solid, tool: Solid) -> Solid:
@@ -245,12 +236,7 @@ def _supporting(rows: list[list[int]], points: FloatArray) -> list[list[int]]:
 
 
 def _in_steps(solid: Solid) -> FloatArray:
-    """Return the corners in lattice steps."""
-    vertices = solid.normalized().to_mesh().vertices
-    steps: FloatArray = (
-        vertices * 10.0**-solid.pitch if solid.pitch < 0 else vertices / 10.0**solid.pitch
-    )
-    return steps
+    return in_steps(_corners(solid), solid.pitch)
 
 
 def _steps(tool: Solid) -> LongArray:

@@ -1,0 +1,262 @@
+"""Closed meshes in lattice steps, and which way their faces and edges turn, decided exactly."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...mesh.mesh import surfaces_of
+from .shading import half_edges, unit
+
+#: Whole numbers of any size.
+LongArray: TypeAlias = np.ndarray[Any, np.dtype[np.object_]]
+
+#: Yes or no.
+Marks: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
+
+#: The product of two rounded vectors of length 1 errs by less.
+_DOUBT = 2e-15
+
+#: So many signs are found at once: some ten bytes each, and a hundred for each that is not clear.
+_AT_ONCE = 1 << 22
+
+#: The faces of a tetrahedron whose corners 1, 2, 3 are seen from corner 0 clockwise.
+_TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
+
+
+class Vectors(NamedTuple):
+    """Vectors, and the same of length 1, rounded."""
+
+    whole: LongArray
+    units: FloatArray
+
+    def at(self, rows: IndexArray | slice) -> "Vectors":
+        """Return some of the vectors."""
+        return Vectors(self.whole[rows], self.units[rows])
+
+
+class Directions(NamedTuple):
+    """Directions, each once, and for each edge or face which of them it has."""
+
+    each: Vectors
+    of: IndexArray
+
+    def at(self, things: IndexArray) -> Vectors:
+        """Return the directions of some edges or faces."""
+        return self.each.at(self.of[things])
+
+
+@dataclass(frozen=True, eq=False)
+class Polyhedron:
+    """A closed mesh whose corners are in lattice steps; see `polyhedron_of`."""
+
+    points: IndexArray
+    faces: IndexArray
+    normals: Directions
+
+    @cached_property
+    def _sides(self) -> tuple[IndexArray, IndexArray]:
+        return half_edges(self.faces)
+
+    @cached_property
+    def ends(self) -> tuple[IndexArray, IndexArray]:
+        """For each edge the corners at which it starts and ends."""
+        forth, back = self._sides
+        return self.faces.ravel()[forth], self.faces.ravel()[back]
+
+    @cached_property
+    def beside(self) -> tuple[IndexArray, IndexArray]:
+        """For each edge the faces on its left and right, seen from outside."""
+        forth, back = self._sides
+        return forth // 3, back // 3
+
+    @cached_property
+    def along(self) -> Directions:
+        """The directions of the edges."""
+        start, end = self.ends
+        return _directions((self.points[end] - self.points[start]).astype(object))
+
+    @cached_property
+    def sharp(self) -> IndexArray:
+        """The edges between faces of different directions."""
+        left, right = self.beside
+        return np.flatnonzero(self.normals.of[left] != self.normals.of[right])
+
+    @cached_property
+    def convex(self) -> IndexArray:
+        """The sharp edges at which the solid is convex, or folded to nothing."""
+        left, right = (self.normals.at(side[self.sharp]).whole for side in self.beside)
+        return self.sharp[_dots(_cross(left, right), self.along.at(self.sharp).whole) >= 0]
+
+    @cached_property
+    def _leaving(self) -> tuple[IndexArray, IndexArray, IndexArray]:
+        """The edges, forth and then back, by where they start; the first of each corner; these."""
+        starts = np.concatenate(self.ends)
+        order = np.argsort(starts, kind="stable")
+        corners, first = np.unique(starts[order], return_index=True)
+        return order, first, corners
+
+    def holds(self, point: IndexArray) -> bool:
+        """Say whether a point is in the polyhedron, if that is convex, or on its surface."""
+        away = (point - self.points[self.faces[:, 0]]).astype(object)
+        return bool((_dots(self.normals.each.whole[self.normals.of], away) <= 0).all())
+
+    def tops(self, rises: Marks) -> tuple[IndexArray, IndexArray]:
+        """Return corners from which no edge rises, and in which column: all pairs.
+
+        Parameters
+        ----------
+        rises : (edges, n) bool
+            Whether an edge rises from its start to its end.
+        """
+        order, first, corners = self._leaving
+        leaving = np.concatenate([rises, ~rises])[order]
+        row, column = np.nonzero(~np.logical_or.reduceat(leaving, first, axis=0))
+        return corners[row], column
+
+
+def in_steps(points: FloatArray, pitch: int) -> FloatArray:
+    """Return points in steps of a lattice, which rounding makes whole."""
+    steps: FloatArray = points * 10.0**-pitch if pitch < 0 else points / 10.0**pitch
+    return steps
+
+
+def in_units(steps: IndexArray, pitch: int) -> FloatArray:
+    """Return lattice points in model units."""
+    points: FloatArray = (
+        steps / np.float64(10.0**-pitch) if pitch < 0 else steps * np.float64(10.0**pitch)
+    )
+    return points
+
+
+def polyhedron_of(points: IndexArray, faces: IndexArray) -> Polyhedron:
+    """Return the polyhedron of a closed mesh, without edges of no length.
+
+    A face without area has the normal of a neighbour. Shells of such faces only are one step wide.
+    """
+    points, faces = _with_wide_shells(points, faces)
+    faces = _without_short_edges(points, faces)
+    normals = _normals(points, faces)
+    kept = _borrow_normals(normals, faces)
+    return Polyhedron(points, np.ascontiguousarray(faces[kept]), _directions(normals[kept]))
+
+
+def _normals(points: IndexArray, faces: IndexArray) -> LongArray:
+    corners = points.astype(object)[faces]
+    return _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+
+
+def _with_wide_shells(points: IndexArray, faces: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return corners and faces with tetrahedra in place of shells on a line or in a point."""
+    has_area = (_normals(points, faces) != 0).any(axis=1)
+    if has_area.all():
+        return points, faces
+    shells = surfaces_of(faces, len(points))
+    is_wide = np.isin(shells, shells[has_area])
+    thin = (np.unique(faces[shells == shell]) for shell in np.unique(shells[~is_wide]))
+    tetrahedra = [_tetrahedron(points[corners]) for corners in thin]
+    numbers = len(points) + 4 * np.arange(len(tetrahedra))
+    added = (numbers[:, None, None] + _TETRAHEDRON).reshape(-1, 3)
+    return np.concatenate([points, *tetrahedra]), np.concatenate([faces[is_wide], added])
+
+
+def _tetrahedron(points: IndexArray) -> IndexArray:
+    """Return the corners of a tetrahedron along points on a line, a step wide."""
+    axis = int(np.ptp(points, axis=0).argmax())
+    along, *across = np.roll(np.eye(3, dtype=np.int64), -axis, axis=0)
+    low, high = points[points[:, axis].argmin()], points[points[:, axis].argmax()]
+    end = high if high[axis] > low[axis] else low + along
+    return np.stack([low, end, *(low + step for step in across)])
+
+
+def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
+    """Return the faces that are left if the ends of each edge without length become one corner."""
+    ends = np.stack([faces.ravel(), np.roll(faces, -1, axis=1).ravel()], axis=1)
+    short = np.unique(ends[(points[ends[:, 0]] == points[ends[:, 1]]).all(axis=1)])
+    if not len(short):
+        return faces
+    _, first, same = np.unique(points[short], axis=0, return_index=True, return_inverse=True)
+    number = np.arange(len(points))
+    number[short] = short[first[same.ravel()]]
+    welded = number[faces]
+    kept: IndexArray = welded[(welded != np.roll(welded, 1, axis=1)).all(axis=1)]
+    return kept
+
+
+def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
+    """Give faces without area the normals of neighbours; mark the faces that have one now."""
+    has_normal: Marks = (normals != 0).any(axis=1)
+    if has_normal.all():
+        return has_normal
+    forth, back = half_edges(faces)
+    here, there = np.concatenate([forth, back]) // 3, np.concatenate([back, forth]) // 3
+    while (borrowing := ~has_normal[here] & has_normal[there]).any():
+        normals[here[borrowing]] = normals[there[borrowing]]
+        has_normal[here[borrowing]] = True
+    return has_normal
+
+
+def _directions(vectors: LongArray) -> Directions:
+    """Return the directions of vectors of which none is zero."""
+    shortest = vectors // np.gcd.reduce(vectors, axis=1)[:, None]
+    numbers: dict[tuple[int, ...], int] = {}
+    of = [numbers.setdefault(tuple(row), len(numbers)) for row in shortest.tolist()]
+    whole = np.array(list(numbers), dtype=object).reshape(-1, 3)
+    return Directions(Vectors(whole, unit(whole.astype(np.float64))), np.array(of, np.int64))
+
+
+def rising(first: Vectors, second: Vectors) -> Marks:
+    """Return for each of some vectors with which of others it has a positive product.
+
+    The others are turned by an infinitesimal angle, so that no product is zero. The same turn
+    decides in all calls.
+    """
+    products = first.units @ second.units.T
+    signs: Marks = products > 0
+    row, column = np.nonzero(np.abs(products) <= _DOUBT)
+    if len(row):
+        signs[row, column] = _is_positive(first.whole[row], second.whole[column])
+    return signs
+
+
+def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
+    """As `rising`, for each vector and the one in the same place of the others."""
+    products = np.einsum("ij,ij->i", first.units, second.units)
+    signs: Marks = products > 0
+    doubtful = np.flatnonzero(np.abs(products) <= _DOUBT)
+    if len(doubtful):
+        signs[doubtful] = _is_positive(first.whole[doubtful], second.whole[doubtful])
+    return signs
+
+
+def _is_positive(first: LongArray, second: LongArray) -> Marks:
+    """Return whether vectors have positive products with others that are turned a little.
+
+    The axis has a large x, a smaller y and a much smaller z: the first of the changes along the
+    axes that is not zero decides.
+    """
+    sign = _dots(first, second)
+    for change in _cross(second, first).T:
+        sign = np.where(sign == 0, change, sign)
+    positive: Marks = (sign > 0).astype(bool)
+    return positive
+
+
+def blocks(count: int, width: int) -> Iterator[slice]:
+    """Yield parts of a range of rows of some width, of which each is done at once."""
+    step = max(1, _AT_ONCE // max(width, 1))
+    return (slice(start, start + step) for start in range(0, count, step))
+
+
+def _dots(first: LongArray, second: LongArray) -> LongArray:
+    products: LongArray = (first * second).sum(axis=1)
+    return products
+
+
+def _cross(first: LongArray, second: LongArray) -> LongArray:
+    x, y, z = first.T
+    u, v, w = second.T
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=1)

@@ -1,0 +1,76 @@
+"""Solids with all that a convex tool touches while it moves along their surface."""
+
+import numpy as np
+
+from ..._types import FloatArray, IndexArray
+from ...solid.leaf import MeshLeaf
+from ...solid.solid import Solid, from_leaf, keeping_pitch
+from .hulls import hull_of, lattice_for
+from .polyhedra import Polyhedron, in_steps, in_units, polyhedron_of
+from .touching import swept_mesh
+
+
+def swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
+    """Return the sum of a bounded solid and a convex one.
+
+    If `is_inside`, the complement of the sum of the complement: what the tool leaves of the solid.
+
+    Raises
+    ------
+    LimitError
+        If what the tool touches has too many faces.
+    """
+    pitch = _common_pitch(solid, tool)
+    points, faces = _swept_mesh(solid, tool, pitch, is_inside)
+    leaf = MeshLeaf(points, _turned(faces, is_inside), pitch=pitch)
+    return keeping_pitch(from_leaf(leaf).normalized(), None)
+
+
+def sum_of_convex(first: Solid, second: Solid) -> Solid:
+    """Return the sum of two convex solids; errors are those of `swept`."""
+    pitch = _common_pitch(first, second)
+    return hull_of(_swept_mesh(first, second, pitch, False)[0], pitch)
+
+
+def _swept_mesh(
+    solid: Solid, tool: Solid, pitch: int, is_inside: bool
+) -> tuple[FloatArray, IndexArray]:
+    body, hull = _polyhedron(solid, pitch, is_inside), _polyhedron(tool, pitch, False)
+    origin = _point_within(hull)
+    moved = Polyhedron(hull.points - origin, hull.faces, hull.normals)
+    points, faces = swept_mesh(body, moved)
+    return in_units(points + origin, pitch), faces
+
+
+def _common_pitch(solid: Solid, tool: Solid) -> int:
+    """Return the pitch of the finer lattice of two solids, or of one that holds their sum."""
+    boxes = [_box(one) for one in (solid, tool)]
+    return lattice_for(np.concatenate([*boxes, boxes[0] + boxes[1]]), min(solid.pitch, tool.pitch))
+
+
+def _box(solid: Solid) -> FloatArray:
+    vertices = solid.normalized().to_mesh().vertices
+    return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+
+
+def _polyhedron(solid: Solid, pitch: int, is_turned: bool) -> Polyhedron:
+    mesh = solid.normalized().to_mesh()
+    points = np.rint(in_steps(mesh.vertices, pitch)).astype(np.int64)
+    return polyhedron_of(points, _turned(mesh.faces, is_turned))
+
+
+def _turned(faces: IndexArray, is_turned: bool) -> IndexArray:
+    return np.ascontiguousarray(faces[:, ::-1] if is_turned else faces)
+
+
+def _point_within(tool: Polyhedron) -> IndexArray:
+    """Return the middle of a convex body, or a corner if no lattice point is so near to it.
+
+    Where a tool that holds the origin touches no surface, it is inside if the origin is. From the
+    middle it reaches equally far to all sides, so pieces overlap least.
+    """
+    middle: IndexArray = np.rint(tool.points.mean(axis=0)).astype(np.int64)
+    if tool.holds(middle):
+        return middle
+    corner: IndexArray = tool.points[0]
+    return corner
