@@ -15,7 +15,7 @@ use crate::mesh::tasks::Worth;
 
 /// Pairs for each candidate beyond which faces are crowded: boxes do not tell needles apart, and the
 /// sweeps of the descent do.
-const PAIRS_FOR_EACH: usize = 12;
+const PAIRS_FOR_EACH: usize = 8;
 
 /// A point in which an edge of one operand goes through a face of the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
