@@ -46,9 +46,14 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     false
 }
 
+/// So many places are looked at in a larger cell at less cost than in the cells of all halvings down to
+/// the least cell; three halvings that leave most elements in one part do not tell that the next do.
+const ALONE: usize = 50;
+
 /// Calls `look` with the small cells around places in a cell, their elements, and the places there,
 /// until it returns true; returns whether it did. Cells are small where halving separates no more; of
-/// at most `most` elements also where three halvings leave most of them in one part.
+/// at most `most` elements and [`ALONE`] places also where three halvings leave most elements in one
+/// part.
 pub(super) fn any_small_cell<P>(
     sources: &Sources,
     within: &(Cell, List),
@@ -66,8 +71,8 @@ pub(super) fn any_small_cell<P>(
             continue;
         }
         let reaches_out = || list.reaching_out(&cell) * 8 > list.len() * 7;
-        let stuck =
-            || list.len() <= most && round.kept_most() || list.len() <= STUCK && reaches_out();
+        let few = places.len() <= ALONE && list.len() <= most;
+        let stuck = || few && round.kept_most() || list.len() <= STUCK && reaches_out();
         let Some(cut) = cell.cut().filter(|_| list.len() > LEAF && !stuck()) else {
             if look(&cell, &list, &places) {
                 return true;
@@ -96,5 +101,33 @@ mod tests {
         let solid = cuboids((0..9).map(apart).chain([[[34; 3], [38; 3]]]));
         assert!(overlaps_at(&solid, &[[2; 3], [35; 3]]));
         assert!(!overlaps_at(&solid, &[[2; 3], [66; 3], [900; 3]]));
+    }
+
+    // Found: of a plate that reached a little across the origin each place was looked at among all
+    // faces.
+    /// The first halvings cut off only the first of a row of boxes.
+    #[test]
+    fn many_places_are_looked_at_in_small_cells() {
+        let apart = |i: i64| [[8 * i - 4; 3], [8 * i; 3]];
+        let solid = cuboids((0..200).map(apart));
+        let Node::Deferred(leaf) = &*solid.root().node else {
+            panic!("a mesh is one leaf");
+        };
+        let sources = Sources::new(solid.sources().clone());
+        let list = List::open(leaf, solid.root(), &sources);
+        let most = list.len();
+        let places = (0..200).map(|i| ([8 * i - 2; 3], ())).collect();
+        let mut largest = 0;
+        any_small_cell(
+            &sources,
+            &(solid.root().cell, list),
+            places,
+            most,
+            |_, list, _| {
+                largest = largest.max(list.len());
+                false
+            },
+        );
+        assert!(largest <= 12 * (ALONE + 1), "{largest} of {most}");
     }
 }
