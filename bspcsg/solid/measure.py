@@ -84,20 +84,16 @@ class Measured(ABC):
 
         Where it is not the boundary of the solid, "self_overlap" says so, and names triangles of
         the mesh that cross or overlap others; `normalized` returns the solid with that boundary.
-        Where an input crosses itself by less than a step of the lattice, "crossing" says so.
+        Where an input crosses itself by less than a step of the lattice, "crossing" says so, and
+        "flat" names triangles that have area on the lattice, but none in the doubles of the mesh.
+        Nothing else is in the mesh's `certificate`.
         """
         found = self.tree.findings
         if self.is_bounded:
             self.to_mesh()
             found = [*found, *self.tree.mesh_findings()]
         told = tuple(Finding.from_core(finding) for finding in found)
-        # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
-        if not self.is_bounded or {"inside_out", "self_overlap"} & {one.code for one in told}:
-            return told
-        more = overlaps_of(self)
-        if not more and "crossing" not in {one.code for one in told}:
-            more = _crossings_of(self)
-        return (*told, *more)
+        return (*told, *_faults_of(self, told)) if self.is_bounded else told
 
     @property
     def pitch(self) -> int:
@@ -331,17 +327,41 @@ def _turned_shells(mesh: Mesh, reduced: Measured) -> tuple[Finding, ...]:
     return (Finding("inside_out", "warning", message, tuple(found[:_PLACES]), len(found)),)
 
 
-def _crossings_of(solid: Measured) -> tuple[Finding, ...]:
-    """Return what is to be said of a mesh that crosses itself, though not on the lattice."""
+def _faults_of(solid: Measured, told: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return what else is to be said of the faults in the certificate of a solid's mesh."""
+    codes = {one.code for one in told}
+    more: tuple[Finding, ...] = ()
+    # Inside out, the set may be empty, and comparing the mesh with its boundary says nothing.
+    if not {"inside_out", "self_overlap"} & codes:
+        more = overlaps_of(solid)
+    if not more and not {"crossing", "self_overlap"} & codes:
+        more = _crossings_of(solid, is_on_lattice="inside_out" in codes)
+    flat = solid.to_mesh().certificate.flat
+    if flat and not {"collapsed", "turned"} & codes:
+        more = (*more, _flat(solid.to_mesh(), list(flat)))
+    return more
+
+
+def _crossings_of(solid: Measured, *, is_on_lattice: bool) -> tuple[Finding, ...]:
+    """Return what is to be said of a mesh that crosses itself, on the lattice or only beside it."""
     mesh = solid.to_mesh()
     crossing = _crossing_faces(mesh)
     if not crossing:
         return ()
+    code, much = "crossing", " of inputs cross or overlap others by less than a step of the lattice"
+    if is_on_lattice:
+        code, much = "self_overlap", " cross or overlap others"
+    message = f"these triangles{much}; the first near {_near(mesh, crossing)}"
+    return (Finding(code, "warning", message, tuple(crossing[:_PLACES]), len(crossing)),)
+
+
+def _flat(mesh: Mesh, faces: list[int]) -> Finding:
+    """Return what is to be said of triangles whose given coordinates leave them no area."""
     message = (
-        "these triangles of inputs cross or overlap others by less than a step of the lattice; the"
-        f" first near {_near(mesh, crossing)}"
+        "these triangles of inputs have no area in doubles, though their corners have on the"
+        f" lattice; the first near {_near(mesh, faces)}"
     )
-    return (Finding("crossing", "warning", message, tuple(crossing[:_PLACES]), len(crossing)),)
+    return Finding("flat", "note", message, tuple(faces[:_PLACES]), len(faces))
 
 
 def _crossing_faces(mesh: Mesh) -> list[int]:

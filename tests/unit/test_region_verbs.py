@@ -109,6 +109,29 @@ def test_hulls_are_exact_where_doubles_are_not() -> None:
     assert set(outline) == {(tenth, tenth), (3 * tenth, 3 * tenth), (9 * tenth, tenth)}
 
 
+# Found: each side of a turned grid got corners, beside it by rounding.
+@pytest.mark.parametrize("size", [1e-7, 1 / 3, 1.0, 1e8])
+def test_hulls_have_no_corners_that_rounding_makes(size: float) -> None:
+    grid = np.array([(x, y) for x in range(9) for y in range(9)]) * size
+    for turn in np.random.default_rng(1).uniform(0, 6, 20):
+        c, s = np.cos(turn), np.sin(turn)
+        turned = grid @ np.array([(c, s), (-s, c)])
+        [outline] = b.hull(turned).to_polygons()
+        assert len(outline) == 4
+        assert np.sort(outline, axis=0) == pytest.approx(np.sort(turned[[0, 8, 72, 80]], axis=0))
+        assert b.hull(turned[:9]).is_empty
+
+
+def test_fine_arcs_keep_the_corners_that_they_need() -> None:
+    turns = np.linspace(0, 2 * np.pi, 200_000, endpoint=False)
+    ring = np.column_stack([np.cos(turns), np.sin(turns)])
+    [outline] = b.hull(ring).to_polygons()
+    assert 1000 < len(outline) < len(ring)
+    # No corner that is left out lies farther outside than rounding, wherever it is.
+    heights = [1 - (outline @ way).max() for way in ring[::1999]]
+    assert max(heights) < 4e-9
+
+
 def test_hulls_of_nothing_and_of_too_much() -> None:
     assert Region.empty().hull().is_empty
     with pytest.raises(b.UnboundedError):

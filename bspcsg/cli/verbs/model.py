@@ -39,7 +39,7 @@ Example:
 def hull(files: tuple[Path, ...], **given: Any) -> int:
     """Write the convex hull of all files together, exactly.
 
-    Each of its corners is a corner of a file, and nothing of the files lies outside.
+    Each of its corners is a corner of a file, and none lies outside but for rounding.
     """
     return _Hull(files, **given).run()
 

@@ -30,9 +30,9 @@ def hull(*solids_or_points: Any) -> Any: ...
 def hull(*solids_or_points: Any) -> Solid | Region:
     """Return the convex hull: the least convex set that holds all that is given.
 
-    It is exact on the lattice. Each corner of the result is a corner of a solid or one of the
-    points, none of these lies outside, and no corner could be left out. Coordinates stay as they
-    were given, but where faces between them would cross, for they are not on the lattice.
+    Each corner of the result is a corner of a solid or one of the points, in the coordinates that
+    were given, unless faces are so thin that they would look inwards between these: then it is on
+    the lattice. No face has a point before it but for rounding.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def hull(*solids_or_points: Any) -> Solid | Region:
     Returns
     -------
     Solid or Region
-        Empty if all that is given lies in one plane, or on one line.
+        Empty if all that is given lies in one plane, or on one line; in space, but for rounding.
 
     Raises
     ------
@@ -54,6 +54,14 @@ def hull(*solids_or_points: Any) -> Solid | Region:
         If a solid reaches to infinity.
     LimitError
         If the points do not fit on one lattice.
+
+    Notes
+    -----
+    The hull is that of the points' places on the lattice, exactly. If all are there, each is a
+    corner that is none of the hull of the others, however near it lies. Else points are off their
+    places by rounding, each by less than a step or some spacings of its doubles. Then, points that
+    lie no farther from the hull of the others than twice the most of this are no corners: what was
+    turned keeps the sides that it had. What is left out lies outside by no more than that.
 
     Examples
     --------
@@ -79,7 +87,7 @@ def _hull(given: list[Any]) -> Solid | Region:
 
 
 def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
-    """Return the convex hull of points, empty if they lie in a plane.
+    """Return the convex hull of points, empty if they lie in a plane but for rounding.
 
     Parameters
     ----------
@@ -92,10 +100,10 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
         return Solid.empty()
     chosen = lattice_for(points, pitch)
     with core_errors():
-        vertices, faces, is_mended = hull_mesh(np.ascontiguousarray(points), chosen)
+        vertices, faces, is_convex_there = hull_mesh(np.ascontiguousarray(points), chosen)
     if len(faces) == 0:
         return Solid.empty()
-    leaf = MeshLeaf(vertices, faces, pitch=chosen, trusted=not is_mended)
+    leaf = MeshLeaf(vertices, faces, pitch=chosen, trusted=is_convex_there)
     return keeping_pitch(from_leaf(leaf), None)
 
 

@@ -1,6 +1,7 @@
 """Convex hulls in the plane."""
 
 from collections.abc import Sequence
+from math import hypot
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -13,6 +14,9 @@ from ...geometry.arrays import doubles
 
 #: A point in steps of the lattice, and its number.
 _Corner: TypeAlias = tuple[int, int, int]
+
+#: Roundings of a computed point, by the spacing of doubles at the largest coordinate.
+_COMPUTED = 4.0
 
 
 def hull_of_region(figure: Region) -> Region:
@@ -43,7 +47,10 @@ def _points_of(figure: Any) -> FloatArray:
 
 
 def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
-    """Return the convex hull of points in the plane, exactly; empty if they lie on a line.
+    """Return the convex hull of points in the plane; empty if they lie on a line but for rounding.
+
+    It is that of the points' places on the lattice, exactly. Points off their places are no corners
+    if that may come from rounding, as in space (see `bspcsg.hull`).
 
     Parameters
     ----------
@@ -55,13 +62,70 @@ def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
     if len(points) < 3:
         return Region.empty()
     chosen = chosen_pitch(pitch, points)
-    steps = np.round(points / 10.0**chosen)
+    exact = points / 10.0**chosen
+    steps = np.round(exact)
     corners = sorted({(int(x), int(y)): k for k, (x, y) in enumerate(steps.tolist())}.items())
     row = [(x, y, k) for (x, y), k in corners]
     outline = _chain(row)[:-1] + _chain(row[::-1])[:-1]
+    outline = _sharp(outline, 2 * _moved_by(exact, steps))
     if len(outline) < 3:
         return Region.empty()
     return Region([points[[k for _, _, k in outline]]], pitch=chosen)
+
+
+def _moved_by(exact: FloatArray, steps: FloatArray) -> float:
+    """Return how far rounding may have moved a point, in steps; 0 if all are on the lattice."""
+    moved = float(np.hypot(*(exact - steps).T).max())
+    largest = float(np.abs(steps).max())
+    return moved + _COMPUTED * float(np.finfo(np.float64).eps) * largest if moved else 0.0
+
+
+def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
+    """Return the corners of a convex outline that lie farther than a distance from the rest.
+
+    Those at which it bends clearly come first; others if they lie farther outside of these.
+    """
+    count = len(outline)
+    if most == 0 or count < 3:
+        return outline
+    clear = [
+        k
+        for k in range(count)
+        if _height(outline[k], outline[k - 1], outline[(k + 1) % count]) > most
+    ]
+    if len(clear) < 2:
+        # The first is the least by its coordinates, so the one farthest from it is far apart.
+        far = max(range(count), key=lambda k: _height(outline[k], outline[0], outline[0]))
+        clear = [0, far]
+    kept: list[_Corner] = []
+    for start, end in zip(clear, [*clear[1:], clear[0] + count], strict=True):
+        kept.append(outline[start])
+        between = [outline[k % count] for k in range(start, end + 1)]
+        kept += _bends(between, most)
+    return kept
+
+
+def _bends(chain: list[_Corner], most: float) -> list[_Corner]:
+    """Return the corners between two ends that lie farther outside of the rest than a distance."""
+    kept: list[_Corner] = []
+    waiting = [(0, len(chain) - 1)]
+    while waiting:
+        start, end = waiting.pop()
+        heights = [_height(chain[k], chain[start], chain[end]) for k in range(start + 1, end)]
+        if heights and max(heights) > most:
+            top = start + 1 + heights.index(max(heights))
+            waiting += [(top, end), (start, top)]
+        elif start > 0:
+            kept.append(chain[start])
+    return kept
+
+
+def _height(point: _Corner, start: _Corner, end: _Corner) -> float:
+    """Return the distance of a point from the line between two others, or from both at once."""
+    x, y = point[0] - start[0], point[1] - start[1]
+    along, up = end[0] - start[0], end[1] - start[1]
+    length = hypot(along, up)
+    return abs(x * up - y * along) / length if length else hypot(x, y)
 
 
 def _chain(points: list[_Corner]) -> list[_Corner]:

@@ -88,6 +88,16 @@ impl Pitch {
         }
     }
 
+    /// How many steps a coordinate lies beyond one of the lattice, by the exact difference.
+    pub fn steps_beyond(self, x: f64, place: f64) -> f64 {
+        let power = power_of_ten(self.0.abs());
+        if self.0 <= 0 {
+            x.mul_add(power, -place)
+        } else {
+            place.mul_add(-power, x) / power
+        }
+    }
+
     /// By what model units are multiplied; `None` for steps of several units, which divide.
     pub(super) fn steps_per_unit(self) -> Option<f64> {
         (self.0 <= 0).then(|| power_of_ten(-self.0))

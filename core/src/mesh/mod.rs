@@ -10,6 +10,7 @@ pub mod finding;
 pub mod grid;
 pub mod half_space;
 pub mod handle;
+pub mod hulls;
 pub mod images;
 pub mod import;
 mod links;

@@ -154,13 +154,6 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
     again
 }
 
-/// Mends what crosses or has no area though its corners, snapped to the lattice, do neither: faulty
-/// triangles get these corners.
-pub fn settle_snapped(mesh: &mut Rounded, pitch: Pitch) -> Settled {
-    let found = all_faults(&mesh.faces());
-    mesh.settle_from_lattice(found, pitch)
-}
-
 impl Rounded {
     /// Makes the vertices at one place of the lattice one, and removes triangles that then have a
     /// corner twice; says whether the others are closed by index.

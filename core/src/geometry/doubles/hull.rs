@@ -12,7 +12,8 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use crate::arith::Sign;
-use crate::geometry::doubles::vector::{dot, less, normal};
+use crate::geometry::doubles::reach::is_beyond;
+use crate::geometry::doubles::vector::{cross, dot, less, normal};
 use crate::geometry::doubles::{side, turn, Facing, Point, Triangle};
 use crate::geometry::side::Side;
 use crate::interrupt::poll;
@@ -46,44 +47,138 @@ struct Face {
 /// ```
 #[must_use]
 pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
-    let faces = Polytope::around(points);
-    let extreme = extreme_corners(points, &faces);
-    if extreme.len() == corner_count(&faces) {
-        return faces;
-    }
-    let chosen: Vec<Point> = extreme.iter().map(|p| points[*p]).collect();
-    let renamed = |face: [usize; 3]| face.map(|corner| extreme[corner]);
-    Polytope::around(&chosen).into_iter().map(renamed).collect()
+    hull_beyond(points, 0.0)
 }
 
-fn corner_count(faces: &[[usize; 3]]) -> usize {
-    // Of a triangulated sphere.
-    if faces.is_empty() {
-        0
-    } else {
-        faces.len() / 2 + 2
+/// The triangles of a convex hull of finite points that may each be off by a radius.
+///
+/// Points that lie no farther than twice the radius from the hull of the others are no corners, and
+/// none lies farther outside. Empty if all points lie so near to one plane that it may hold them.
+///
+/// # Example
+/// ```
+/// use bspcsg::geometry::doubles::hull::hull_beyond;
+///
+/// let mut points = vec![[0.0; 3], [9.0, 0.0, 0.0], [0.0, 9.0, 0.0], [0.0, 0.0, 9.0]];
+/// points.push([2.0, 2.0, -0.1]);
+/// assert_eq!(hull_beyond(&points, 0.0).len(), 6);
+/// assert_eq!(hull_beyond(&points, 0.1).len(), 4);
+/// ```
+#[must_use]
+pub fn hull_beyond(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
+    let all: Vec<usize> = (0..points.len()).collect();
+    let mut faces = Polytope::around(points, &[&all], 0.0);
+    let corners = corners_of(&faces);
+    let places: Vec<Point> = corners.iter().map(|p| points[*p]).collect();
+    if radius > 0.0 && is_flat_within(&places, FLAT * radius) {
+        return Vec::new();
     }
+    for _ in 0..PASSES {
+        let sharp = sharp_corners(points, &faces, 2.0 * radius);
+        if sharp.len() == corners_of(&faces).len() {
+            break;
+        }
+        let is_left = |p: &usize| sharp.binary_search(p).is_err();
+        let others: Vec<usize> = corners.iter().copied().filter(is_left).collect();
+        faces = Polytope::around(points, &[&sharp, &others], 2.0 * radius);
+    }
+    faces
 }
 
-/// The corners around which faces of three planes or more meet, ascending.
-fn extreme_corners(points: &[Point], faces: &[[usize; 3]]) -> Vec<usize> {
-    let mut around: HashMap<usize, Vec<Triangle>> = HashMap::default();
-    for face in faces {
-        for corner in face {
-            around
-                .entry(*corner)
-                .or_default()
-                .push(face.map(|p| points[p]));
+/// Of corners that are one but for rounding none is sharp; after the first pass one of them is left.
+const PASSES: usize = 3;
+
+/// Points of one plane, each off by a radius, lie within so many from the plane of three of them that
+/// are far apart: each of these counts by how far the plane goes on beyond it, at most three times,
+/// twice and once, and the point itself once.
+const FLAT: f64 = 7.0;
+
+/// The points that faces use, ascending.
+#[must_use]
+pub fn corners_of(faces: &[[usize; 3]]) -> Vec<usize> {
+    let mut used: Vec<usize> = faces.as_flattened().to_vec();
+    used.sort_unstable();
+    used.dedup();
+    used
+}
+
+/// Return whether all points lie within a distance from the plane of three that are far apart.
+fn is_flat_within(points: &[Point], most: f64) -> bool {
+    let width = |axis: usize| {
+        let along = || points.iter().map(|p| p[axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    };
+    let widest = (0..3).max_by(|i, j| width(*i).total_cmp(&width(*j)));
+    let farthest = |height: &dyn Fn(&Point) -> f64| {
+        let far = points.iter().max_by(|p, q| height(p).total_cmp(&height(q)));
+        far.copied().unwrap_or_default()
+    };
+    let axis = widest.unwrap_or_default();
+    let (low, high) = (farthest(&|p| -p[axis]), farthest(&|p| p[axis]));
+    let along = less(&high, &low);
+    let length = dot(&along, &along);
+    // Measured from the line, so that a plane through points near it keeps its digits.
+    let off = |p: &Point| {
+        let way = less(p, &low);
+        let share = dot(&way, &along) / length;
+        [0, 1, 2].map(|i| way[i] - share * along[i])
+    };
+    let widest = off(&farthest(&|p| dot(&off(p), &off(p))));
+    let normal = cross(&along, &widest);
+    let height = |p: &Point| dot(&normal, &off(p)).abs();
+    height(&farthest(&height)) <= most * dot(&normal, &normal).sqrt()
+}
+
+/// The corners of faces that lie farther than a distance from the hull of the others, ascending.
+fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize> {
+    let mut around: Vec<(usize, usize)> = Vec::with_capacity(3 * faces.len());
+    for (number, face) in faces.iter().enumerate() {
+        around.extend(face.map(|corner| (corner, number)));
+    }
+    around.sort_unstable();
+    let clearly = (CLEAR * size_of(points, faces)).max(most);
+    let mut sharp = Vec::new();
+    for star in around.chunk_by(|p, q| p.0 == q.0) {
+        poll();
+        let corner = star[0].0;
+        let beside = || star.iter().flat_map(|(_, face)| faces[*face]);
+        let others: Vec<Point> = beside()
+            .filter(|p| *p != corner)
+            .map(|p| points[p])
+            .collect();
+        let is_beyond = |most: f64| is_beyond(&points[corner], &others, most);
+        let planes = || star.iter().map(|(_, face)| faces[*face].map(|p| points[p]));
+        let is_sharp = is_beyond(clearly)
+            || has_three_planes(&planes().collect::<Vec<Triangle>>())
+                && (most == 0.0 || is_beyond(most));
+        if is_sharp {
+            sharp.push(corner);
         }
     }
-    let has_three = |planes: &[Triangle]| {
-        let others: Vec<&Triangle> = planes.iter().filter(|p| are_apart(&planes[0], p)).collect();
-        others.iter().any(|third| are_apart(others[0], third))
+    sharp
+}
+
+/// Beyond so much of the size of a hull doubles leave no doubt about distances.
+const CLEAR: f64 = 1e-12;
+
+/// The largest distance along an axis of a corner of faces from one of them.
+fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {
+    let Some([first, ..]) = faces.first() else {
+        return 0.0;
     };
-    let extreme = around.iter().filter(|(_, planes)| has_three(planes));
-    let mut corners: Vec<usize> = extreme.map(|(corner, _)| *corner).collect();
-    corners.sort_unstable();
-    corners
+    let ways = faces
+        .as_flattened()
+        .iter()
+        .map(|p| less(&points[*p], &points[*first]));
+    let most = |way: Point| way.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    ways.map(most).fold(0.0, f64::max)
+}
+
+/// Return whether triangles around a corner lie in three planes or more, so that it is within no
+/// edge and no side.
+fn has_three_planes(planes: &[Triangle]) -> bool {
+    let others: Vec<&Triangle> = planes.iter().filter(|p| are_apart(&planes[0], p)).collect();
+    others.iter().any(|third| are_apart(others[0], third))
 }
 
 /// Return whether triangles that share a corner lie in different planes.
@@ -96,37 +191,86 @@ struct Polytope<'a> {
     faces: Vec<Face>,
     /// Faces that may have points before them.
     waiting: Vec<usize>,
+    /// For each point the round in which it is added, if there are several.
+    rounds: Vec<usize>,
 }
 
 impl<'a> Polytope<'a> {
-    fn around(points: &'a [Point]) -> Vec<[usize; 3]> {
-        let Some(first) = simplex(points) else {
+    /// The hull of several groups of points, those of the first in full; of the others those
+    /// farther outside than a distance.
+    fn around(points: &'a [Point], groups: &[&[usize]], most: f64) -> Vec<[usize; 3]> {
+        let all = groups.concat();
+        let Some(first) = simplex(points, groups[0]).or_else(|| simplex(points, &all)) else {
             return Vec::new();
         };
         let mut polytope = Self {
             points,
             faces: Vec::new(),
             waiting: Vec::new(),
+            rounds: Vec::new(),
         };
-        polytope.start(first);
-        while let Some(face) = polytope.waiting.pop() {
-            poll();
-            if let Some(point) = polytope.farthest(face) {
-                polytope.add(point, face);
+        if groups.len() > 1 {
+            polytope.rounds = vec![0; points.len()];
+        }
+        for (round, group) in groups.iter().enumerate().skip(1) {
+            for point in *group {
+                polytope.rounds[*point] = round;
             }
+        }
+        polytope.start(first, all);
+        for round in 0..groups.len() {
+            polytope.add_all(round, if round == 0 { 0.0 } else { most });
         }
         let left = polytope.faces.iter().filter(|face| !face.is_gone);
         left.map(|face| face.corners).collect()
     }
 
+    /// Adds the points of a round and of those before that lie farther outside than a distance.
+    fn add_all(&mut self, round: usize, most: f64) {
+        let is_left = |f: &usize| !self.faces[*f].is_gone;
+        self.waiting = (0..self.faces.len()).filter(is_left).collect();
+        while let Some(face) = self.waiting.pop() {
+            poll();
+            if most > 0.0 {
+                self.leave_out(face, most);
+            }
+            let Some(point) = self.farthest(face, round) else {
+                continue;
+            };
+            let (seen, rim) = self.seen(point, face);
+            if most > 0.0 && self.is_within(point, &seen, most) {
+                for face in seen {
+                    self.faces[face].is_gone = false;
+                }
+                self.faces[face].before.retain(|p| *p != point);
+                self.waiting.push(face);
+            } else {
+                self.add(point, seen, &rim);
+            }
+        }
+    }
+
+    /// Leaves out the points before a face that lie within a distance from it.
+    fn leave_out(&mut self, face: usize, most: f64) {
+        let (triangle, points) = (self.triangle(face), self.points);
+        let before = &mut self.faces[face].before;
+        before.retain(|p| is_beyond(&points[*p], &triangle, most));
+    }
+
+    /// Return whether a point lies within a distance from all that it sees.
+    fn is_within(&self, point: usize, seen: &[usize], most: f64) -> bool {
+        let corners: Vec<Point> = seen.iter().flat_map(|f| self.triangle(*f)).collect();
+        !is_beyond(&self.points[point], &corners, most)
+    }
+
     /// Makes the tetrahedron of four points in general position, and sorts all others before it.
-    fn start(&mut self, [a, b, c, d]: [usize; 4]) {
+    fn start(&mut self, [a, b, c, d]: [usize; 4], all: Vec<usize>) {
         let corners = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
         let beside = [[2, 3, 1], [0, 3, 2], [1, 3, 0], [2, 1, 0]];
         for (corners, beside) in corners.into_iter().zip(beside) {
             self.push(corners, beside);
         }
-        self.distribute((0..self.points.len()).collect(), 0);
+        self.distribute(all, 0);
     }
 
     fn push(&mut self, corners: [usize; 3], beside: [usize; 3]) {
@@ -159,8 +303,8 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// The point that seems farthest before a face; any would do.
-    fn farthest(&self, face: usize) -> Option<usize> {
+    /// The point of the first rounds that seems farthest before a face; any would do.
+    fn farthest(&self, face: usize, round: usize) -> Option<usize> {
         if self.faces[face].is_gone {
             return None;
         }
@@ -168,15 +312,15 @@ impl<'a> Polytope<'a> {
         let normal = normal(&[a, b, c]);
         let height = |p: usize| dot(&normal, &less(&self.points[p], &a));
         let listed = self.faces[face].before.iter().copied();
-        listed.max_by(|p, q| {
+        let due = listed.filter(|p| self.rounds.get(*p).is_none_or(|of| *of <= round));
+        due.max_by(|p, q| {
             let lower = height(*p).total_cmp(&height(*q));
             lower.then_with(|| order(&self.points[*q], &self.points[*p]))
         })
     }
 
-    /// Adds a point before a face: all faces that it sees give way to new ones around it.
-    fn add(&mut self, point: usize, face: usize) {
-        let (seen, rim) = self.seen(point, face);
+    /// Adds a point: all faces that it sees give way to new ones around it.
+    fn add(&mut self, point: usize, seen: Vec<usize>, rim: &[Rim]) {
         let first = self.faces.len();
         // The rim is a cycle: each new face is beside those that start where it ends, and end where
         // it starts.
@@ -190,7 +334,7 @@ impl<'a> Polytope<'a> {
             .enumerate()
             .map(|(k, r)| (r.end, first + k))
             .collect();
-        for (number, edge) in (first..).zip(&rim) {
+        for (number, edge) in (first..).zip(rim) {
             let beside = [edge.behind, starts[&edge.end], ends[&edge.start]];
             self.push([edge.start, edge.end, point], beside);
             self.faces[edge.behind].beside[edge.slot] = number;
@@ -244,28 +388,26 @@ struct Rim {
     slot: usize,
 }
 
-/// Four points of which none lies in the plane of the others, the last behind the first three.
-fn simplex(points: &[Point]) -> Option<[usize; 4]> {
-    let a = (0..points.len()).min_by(|p, q| order(&points[*p], &points[*q]))?;
-    let b = (0..points.len()).max_by(|p, q| order(&points[*p], &points[*q]))?;
+/// Four of some points of which none lies in the plane of the others, the last behind the first
+/// three.
+fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
+    let all = || some.iter().copied();
+    let a = all().min_by(|p, q| order(&points[*p], &points[*q]))?;
+    let b = all().max_by(|p, q| order(&points[*p], &points[*q]))?;
     let (pa, pb) = (points[a], points[b]);
     let across = |p: &usize| {
         let normal = normal(&[pa, pb, points[*p]]);
         dot(&normal, &normal)
     };
-    let wide = (0..points.len()).max_by(|p, q| across(p).total_cmp(&across(q)))?;
+    let wide = all().max_by(|p, q| across(p).total_cmp(&across(q)))?;
     let is_off = |p: &usize| !are_in_line(&[pa, pb, points[*p]]);
-    let c = Some(wide)
-        .filter(is_off)
-        .or_else(|| (0..points.len()).find(is_off))?;
+    let c = Some(wide).filter(is_off).or_else(|| all().find(is_off))?;
     let base = [pa, pb, points[c]];
     let normal = normal(&[pa, pb, points[c]]);
     let height = |p: &usize| dot(&normal, &less(&points[*p], &pa)).abs();
-    let high = (0..points.len()).max_by(|p, q| height(p).total_cmp(&height(q)))?;
+    let high = all().max_by(|p, q| height(p).total_cmp(&height(q)))?;
     let is_out = |p: &usize| side(&base, &points[*p]) != Side::On;
-    let d = Some(high)
-        .filter(is_out)
-        .or_else(|| (0..points.len()).find(is_out))?;
+    let d = Some(high).filter(is_out).or_else(|| all().find(is_out))?;
     Some(if side(&base, &points[d]) == Side::Minus {
         [a, b, c, d]
     } else {
@@ -287,7 +429,7 @@ fn order(p: &Point, q: &Point) -> std::cmp::Ordering {
 
 #[cfg(test)]
 mod tests {
-    use super::{hull, side, Point, Side};
+    use super::{hull, hull_beyond, side, Point, Side};
     use proptest::prelude::*;
 
     /// Points of a small grid, most of them in common lines and planes.
@@ -329,6 +471,24 @@ mod tests {
         #[test]
         fn all_points_are_behind_all_faces(points in grid_points()) {
             assert_hull(&points);
+        }
+
+        /// Points of a grid, each moved by no more than a radius, many of them twice.
+        #[test]
+        fn what_rounding_moves_keeps_its_faces(
+            points in grid_points(),
+            moves in prop::collection::vec(prop::array::uniform3(-1i32..2), 40),
+        ) {
+            let moved: Vec<Point> = points.iter().zip(&moves).map(|(p, by)| {
+                [0, 1, 2].map(|i| 1e6 * p[i] + f64::from(by[i]))
+            }).collect();
+            let faces = hull_beyond(&moved, 2.0);
+            prop_assert_eq!(faces.len(), hull(&points).len());
+            for face in &faces {
+                let triangle = face.map(|p| moved[p]);
+                let corners = faces.as_flattened().iter();
+                prop_assert!(corners.clone().all(|p| side(&triangle, &moved[*p]) != Side::Plus));
+            }
         }
 
         #[test]

@@ -10,6 +10,7 @@
 pub mod extent;
 pub mod hull;
 pub mod meeting;
+pub mod reach;
 pub mod sheets;
 pub mod vector;
 

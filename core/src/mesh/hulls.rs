@@ -1,0 +1,242 @@
+//! Convex hulls of points that are put on the lattice.
+
+use std::collections::hash_map::Entry;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::faces::edges;
+use super::grid::Pitch;
+use super::handle::VertexId;
+use super::snap::snap_all;
+use crate::arith::convert::as_double;
+use crate::error::Result;
+use crate::geometry::doubles::hull::{corners_of, hull, hull_beyond};
+use crate::geometry::doubles::vector::{cross, dot, normal};
+use crate::geometry::doubles::{Facing, Point, Triangle};
+use crate::geometry::side::Side;
+
+/// The mesh of a hull.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    /// The corners.
+    pub vertices: Vec<Point>,
+    /// The triangles.
+    pub triangles: Vec<[VertexId; 3]>,
+    /// True if it is a hull on the lattice, too: then its faces do not cross there.
+    pub is_convex_there: bool,
+}
+
+/// The sine of the angle by which faces may turn inwards against each other: of ordinary ones, rounding
+/// turns none so far, and it leaves no point before a face by more than so much of the hull's size.
+const FOLD: f64 = 1e-7;
+
+/// The hull of points, empty if they lie in a plane but for rounding; exact for their places on the
+/// lattice.
+///
+/// A point is off its place by rounding. So one that lies within twice the farthest of these from the
+/// hull of the others is no corner. Where faces of the exact hull would look inwards between the
+/// coordinates that were given, these are put on the lattice; where that does not help, for it is no
+/// coarser than the doubles, the faces are those of the hull of what was given.
+///
+/// # Errors
+/// As [`Pitch::snap`].
+///
+/// # Example
+/// ```
+/// use bspcsg::mesh::grid::Pitch;
+/// use bspcsg::mesh::hulls::hull_of;
+///
+/// let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// // A third of the way along an edge, as near as doubles come.
+/// let points = [&corners[..], &[[0.0, 2.0 / 3.0, 1.0 / 3.0]]].concat();
+/// assert_eq!(hull_of(&points, Pitch::DEFAULT)?.vertices, corners);
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
+pub fn hull_of(points: &[Point], pitch: Pitch) -> Result<Hull> {
+    let lattice = snap_all(points, pitch)?;
+    // Below 2^53 in magnitude, so that doubles hold them.
+    let steps: Vec<Point> = lattice.iter().map(|p| p.map(as_double)).collect();
+    let radius = moved_by(points, &steps, pitch);
+    let faces = hull_beyond(&steps, radius);
+    let used = corners_of(&faces);
+    let triangles = numbered(&faces, &used);
+    let given: Vec<Point> = used.iter().map(|p| points[*p]).collect();
+    let on_lattice = used
+        .iter()
+        .map(|p| lattice[*p].map(|k| pitch.coordinate(k)));
+    let vertices = if looks_outwards(&given, &triangles) {
+        given
+    } else {
+        let others: Vec<Point> = on_lattice.collect();
+        if !looks_outwards(&others, &triangles) {
+            return Ok(hull_as_given(&given));
+        }
+        others
+    };
+    Ok(Hull {
+        vertices,
+        triangles,
+        is_convex_there: true,
+    })
+}
+
+/// The exact hull of points between doubles.
+fn hull_as_given(points: &[Point]) -> Hull {
+    let faces = hull(points);
+    let used = corners_of(&faces);
+    Hull {
+        vertices: used.iter().map(|p| points[*p]).collect(),
+        triangles: numbered(&faces, &used),
+        is_convex_there: false,
+    }
+}
+
+/// How far rounding may have moved a point, in steps: to its place on the lattice and, unless all are
+/// there, when its coordinates were computed.
+fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
+    let squares = points.iter().zip(steps).map(|(point, place)| {
+        let off = |i: usize| pitch.steps_beyond(point[i], place[i]);
+        off(0).powi(2) + off(1).powi(2) + off(2).powi(2)
+    });
+    let moved = squares.fold(0.0, f64::max).sqrt();
+    let largest = steps
+        .as_flattened()
+        .iter()
+        .fold(0.0, |most: f64, x| most.max(x.abs()));
+    if moved > 0.0 {
+        moved + COMPUTED * f64::EPSILON * largest
+    } else {
+        0.0
+    }
+}
+
+/// Roundings of a point that a matrix has turned, by the spacing of doubles at the largest coordinate:
+/// a half of each of three products and three sums, along two axes or three at once.
+const COMPUTED: f64 = 4.0;
+
+/// Faces by the places of their corners among the used points.
+fn numbered(faces: &[[usize; 3]], used: &[usize]) -> Vec<[VertexId; 3]> {
+    let place = |p: usize| used.partition_point(|q| *q < p);
+    faces
+        .iter()
+        .map(|face| face.map(|p| VertexId::of(place(p))))
+        .collect()
+}
+
+/// Return whether all triangles of a nearly convex mesh have its middle behind them, and none turns
+/// inwards against a neighbour.
+///
+/// Seen from the middle they then lie side by side, so that none crosses another.
+fn looks_outwards(vertices: &[Point], triangles: &[[VertexId; 3]]) -> bool {
+    let middle = [0, 1, 2].map(|i| {
+        let sum: f64 = vertices.iter().map(|p| p[i]).sum();
+        sum / as_double(vertices.len())
+    });
+    let corners = |t: &[VertexId; 3]| t.map(|v| vertices[v.place()]);
+    let mut first: HashMap<[VertexId; 2], &[VertexId; 3]> = HashMap::default();
+    first.reserve(triangles.len() * 3 / 2);
+    triangles.iter().all(|t| {
+        let facing = Facing::of(&corners(t));
+        let mut beside =
+            edges(*t)
+                .into_iter()
+                .filter_map(|[a, b]| match first.entry([a.min(b), a.max(b)]) {
+                    Entry::Occupied(other) => Some(other.remove()),
+                    Entry::Vacant(place) => {
+                        place.insert(t);
+                        None
+                    }
+                });
+        facing.side(&middle) == Side::Minus
+            && beside.all(|other| !turns_inwards(&facing, &corners(other)))
+    })
+}
+
+/// Return whether a triangle turns inwards against another one with an edge of it.
+fn turns_inwards(facing: &Facing, other: &Triangle) -> bool {
+    let ways = [normal(facing.triangle()), normal(other)];
+    let bend = cross(&ways[0], &ways[1]);
+    let sizes = dot(&ways[0], &ways[0]) * dot(&ways[1], &ways[1]);
+    let is_before = |p: &Point| facing.side(p) == Side::Plus;
+    (dot(&ways[0], &ways[1]) < 0.0 || dot(&bend, &bend) > FOLD * FOLD * sizes)
+        && other.iter().any(is_before)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{hull_of, looks_outwards, Pitch, Point};
+    use crate::geometry::doubles::vector::{dot, less, normal};
+
+    /// Two layers of points, turned about two axes.
+    fn turned_layers(width: u32, turn: f64) -> Vec<Point> {
+        let numbers = || (0..width).map(f64::from);
+        let layer = |z: f64| numbers().flat_map(move |x| numbers().map(move |y| [x, y, z]));
+        let (s, c) = turn.sin_cos();
+        let about_z = |p: Point| [c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]];
+        let about_x = |p: Point| [p[0], c * p[1] - s * p[2], s * p[1] + c * p[2]];
+        let all = [0.0, 4.0].into_iter().flat_map(layer);
+        all.map(|p| about_x(about_z(p))).collect()
+    }
+
+    #[test]
+    fn turned_boxes_of_points_have_twelve_triangles() {
+        for turn in 1..40 {
+            let points = turned_layers(9, f64::from(turn) * 0.1);
+            let hull = hull_of(&points, Pitch::DEFAULT).unwrap();
+            assert_eq!((hull.vertices.len(), hull.triangles.len()), (8, 12));
+            assert!(hull.is_convex_there);
+        }
+    }
+
+    #[test]
+    fn turned_layers_of_one_plane_are_empty() {
+        for turn in 1..40 {
+            let points = turned_layers(9, f64::from(turn) * 0.1);
+            let hull = hull_of(&points[..81], Pitch::DEFAULT).unwrap();
+            assert!(hull.triangles.is_empty(), "turn {turn}");
+        }
+    }
+
+    #[test]
+    fn corners_of_the_lattice_count_however_near_they_lie() {
+        let mut points = vec![[0.0; 3], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0], [0.0, 0.0, 8.0]];
+        points.push([1.0, 1.0, -(0.5f64.powi(9))]);
+        let step = Pitch::new(-9).unwrap();
+        assert_eq!(hull_of(&points, step).unwrap().vertices.len(), 5);
+        points[4] = [2.0, 2.0, -1.0];
+        assert_eq!(
+            hull_of(&points, Pitch::new(0).unwrap())
+                .unwrap()
+                .vertices
+                .len(),
+            5
+        );
+    }
+
+    /// A corner beside the edge of a box lies in the plane of a side on the lattice, and above it where
+    /// it was given: the thin faces there turn by as much as it is farther up than off the edge.
+    #[test]
+    fn thin_faces_look_outwards() {
+        let mut mended = 0;
+        for step in 1..60 {
+            let mut points = turned_layers(2, 0.0);
+            points.push([0.5, 1.0 + f64::from(step) * 1e-9, 4.0 + 0.45e-9]);
+            let hull = hull_of(&points, Pitch::DEFAULT).unwrap();
+            assert!(hull.is_convex_there);
+            mended += usize::from(hull.vertices.iter().all(|p| p[2] != 4.0 + 0.45e-9));
+            assert!(looks_outwards(&hull.vertices, &hull.triangles));
+            for t in &hull.triangles {
+                let triangle = t.map(|v| hull.vertices[v.place()]);
+                let normal = normal(&triangle);
+                let size = dot(&normal, &normal).sqrt();
+                for point in &points {
+                    assert!(
+                        dot(&normal, &less(point, &triangle[0])) <= 1e-6 * size,
+                        "{step}"
+                    );
+                }
+            }
+        }
+        assert!(mended > 0);
+    }
+}
