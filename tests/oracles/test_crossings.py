@@ -35,12 +35,23 @@ FOUND = (490, 2354, 4777, 5732, 5925)
 #: Scenes in which rounding puts vertices in one place, and nothing else touches.
 MET = (5675, 6915)
 
+#: Scenes in which mending copies a vertex and leaves both in one place, and one in which a motion
+#: takes along vertices that a contact has split; with what is said of them.
+IN_ONE_PLACE = [
+    (10647, "rounded_contact"),
+    (15968, "rounded_contact"),
+    (17227, "given_contact"),
+]
+
 #: Scenes of which single precision leaves nothing: parts that touch along an edge, one of a volume
 #: of 1e-34, needles and sheets.
 THIN = (369, 599, 477, 1102, 1501)
 
 #: The codes of findings that name vertices in one place.
-CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact"})
+CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact", "given_contact"})
+
+#: Those of them that count all vertices in one place, not what was split there.
+IN_PLACE = frozenset({"rounded_contact", "given_contact"})
 
 #: So many of the scenes are rounded once, and no more.
 ROUNDED = 100
@@ -490,7 +501,22 @@ def test_vertices_in_one_place_are_told(
             finding = told["rounded_contact"]
             assert finding.count == several > 0
             assert len(np.unique(mesh.vertices[list(finding.where)], axis=0)) == several // 2
+        told_in_place = sum(told[code].count for code in IN_PLACE & set(told))
+        is_split = bool((CONTACTS - IN_PLACE) & set(told))
+        assert told_in_place <= several and (is_split or told_in_place == several), seed
     assert set(MET) <= set(delivered)
+
+
+# Found: nothing told of vertices that mending copied, nor of those that an input has in one place.
+@pytest.mark.parametrize(("seed", "code"), IN_ONE_PLACE)
+def test_vertices_that_rounding_did_not_bring_together_are_told(seed: int, code: str) -> None:
+    solid = scene(seed).normalized()
+    mesh = solid.to_mesh()
+    (finding,) = [one for one in solid.findings if one.code in CONTACTS]
+    _, places, counts = np.unique(mesh.vertices, axis=0, return_inverse=True, return_counts=True)
+    in_one_place = np.flatnonzero(counts[places.ravel()] > 1)
+    assert (finding.code, finding.count) == (code, len(in_one_place))
+    assert set(finding.where) <= set(in_one_place.tolist())
 
 
 def test_meshes_in_single_precision_do_not_cross(

@@ -35,7 +35,7 @@ SAID = frozenset({"crossing", "turned", "collapsed"})
 SAID_IN_SINGLE = frozenset({"crossing_in_single"})
 
 #: The codes of findings that name vertices in one place.
-CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact"})
+CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact", "given_contact"})
 
 #: The largest share of meshes that may cross, though a finding says so.
 MOST_SAID = 0.01

@@ -3,6 +3,7 @@
 import pickle
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 
 import bspcsg as b
@@ -33,3 +34,29 @@ def said(solid: b.Solid) -> list[tuple[str, int]]:
 def test_contacts_are_said_on_every_way(place: tuple[int, int, int], code: str, way: str) -> None:
     touching = b.cube(1) | b.cube(1).translate(place)
     assert said(WAYS[way](touching)) == [(code, 1)]
+
+
+#: Ways on which each vertex is taken by itself: that a contact has split some is not taken along.
+TAKEN: dict[str, Callable[[b.Solid], b.Solid]] = {
+    "turned": lambda solid: solid.rotate(33, (1, 2, 3)),
+    "scaled": lambda solid: solid.scale(1.234),
+    "given anew": lambda solid: b.Solid(solid.vertices, solid.faces),
+    "given anew and moved": lambda solid: b.Solid(solid.vertices, solid.faces).translate(3, 4, 5),
+}
+
+
+# Found: nothing told of vertices that an input has in one place without sharing them.
+@pytest.mark.parametrize("way", TAKEN)
+@pytest.mark.parametrize(("place", "count"), [((1, 1, 1), 2), ((1, 1, 0), 4)])
+def test_vertices_that_an_input_has_in_one_place_are_said(
+    place: tuple[int, int, int], count: int, way: str
+) -> None:
+    solid = TAKEN[way](b.cube(1) | b.cube(1).translate(place))
+    assert said(solid) == [("given_contact", count)]
+
+
+def test_corners_that_are_welded_touch_nothing() -> None:
+    apart = (b.cube(1) | b.cube(1).translate(3, 0, 0)).to_mesh()
+    corners = apart.vertices[apart.faces].reshape(-1, 3)
+    solid = b.Solid(corners, np.arange(len(corners)).reshape(-1, 3))
+    assert said(solid) == [("welded", 1)]

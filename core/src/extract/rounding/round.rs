@@ -16,6 +16,7 @@ use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
 use crate::extract::order::put_in_order;
+use crate::geometry::doubles::digits;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
@@ -86,7 +87,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
         turned(&mesh, &exact, &sources)
     };
     tell_moved(&mut mesh, &settled.moved);
-    tell_touching(&mut mesh, &exact.vertices, !settled.mended.is_empty());
+    tell_touching(&mut mesh, &exact, &sources, !settled.mended.is_empty());
     let renumbered = if settled.mended.is_empty() {
         Vec::new()
     } else {
@@ -309,14 +310,25 @@ fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     }
 }
 
-/// Reports the vertices that rounding put where others are.
-fn tell_touching(mesh: &mut Mesh, corners: &[Corner], is_mended: bool) {
+/// Reports the vertices that lie where others are.
+fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mended: bool) {
     let used = if is_mended { used(mesh) } else { Vec::new() };
     let is_used = |v: u32| !is_mended || used[v as usize];
-    let places = touching(&mesh.vertices, corners, is_used);
-    if !places.is_empty() {
-        let finding = Finding::about("rounded_contact", Severity::Note, &places, TOUCHING);
-        mesh.findings.push(finding);
+    let is_given = |v: u32| match exact.vertices.get(v as usize) {
+        Some(Corner::Source(slot, vertex)) => sources.get(*slot).mesh().is_some_and(|source| {
+            digits(&source.doubles[vertex.place()]) == digits(&mesh.vertices[v as usize])
+        }),
+        _ => false,
+    };
+    let found = touching(&mesh.vertices, &exact.vertices, is_used, is_given);
+    for (code, places, text) in [
+        ("rounded_contact", found.rounded, TOUCHING),
+        ("given_contact", found.given, GIVEN),
+    ] {
+        if !places.is_empty() {
+            let finding = Finding::about(code, Severity::Note, &places, text);
+            mesh.findings.push(finding);
+        }
     }
 }
 
@@ -358,8 +370,10 @@ const SWAPPED: &str = "rounding to doubles turned triangles over; an edge of the
 const MOVED: &str =
     "surfaces would cross between the given corners and the lattice; these corners \
     were put on the lattice, less than a step away";
-const TOUCHING: &str = "rounding to doubles put these vertices where others are; there the mesh \
-    touches itself";
+const TOUCHING: &str =
+    "rounding to doubles, or mending it, put these vertices where others are; there \
+    the mesh touches itself";
+const GIVEN: &str = "an input has these vertices where others are; there the mesh touches itself";
 const MENDED: &str = "rounding to doubles made surfaces cross or left triangles no area; these \
     triangles were changed by the width of the rounding";
 const COLLAPSED: &str = "rounding to doubles put two corners of these triangles in one place";

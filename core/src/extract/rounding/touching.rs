@@ -1,4 +1,4 @@
-//! Vertices that rounding puts in one place, where surfaces then touch.
+//! Vertices of a rounded mesh that lie in one place, where surfaces touch.
 
 use std::hash::BuildHasher;
 
@@ -7,30 +7,64 @@ use rustc_hash::{FxBuildHasher, FxHashSet as HashSet};
 use crate::arith::convert::as_number;
 use crate::extract::mesh::Corner;
 use crate::geometry::doubles::{digits, Point};
-use crate::mesh::tasks::each_chunk;
+use crate::interrupt::spend;
+use crate::mesh::tasks::{each_chunk, CHUNK};
 
 /// The digits of a place.
 type Digits = [u64; 3];
 
-/// The vertices in use, ascending, that have the place of another although they are other points.
+/// Vertices that have the place of another, by what has put them there; each list ascends.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Touching {
+    /// All at places of which rounding, or mending it, has put one there.
+    pub rounded: Vec<u64>,
+    /// All at places where an input has several.
+    pub given: Vec<u64>,
+}
+
+/// The vertices in use that have the place of another, but for copies that splitting a contact made.
 ///
-/// Inputs are welded, so that one of such vertices is a constructed point.
+/// Vertices without a corner are copies that mending made. `is_given` tells vertices that are where
+/// their input has them.
 ///
 /// # Cost
-/// A pass over the vertices, if any is constructed.
+/// Two passes over the vertices.
 pub fn touching(
     vertices: &[Point],
     corners: &[Corner],
     is_used: impl Fn(u32) -> bool + Sync,
-) -> Vec<u64> {
-    let placed = || vertices.iter().map(digits).zip(corners);
-    let constructed = placed().filter(|(_, c)| matches!(c, Corner::Point(_)));
-    let places: HashSet<Digits> = constructed.map(|(place, _)| place).collect();
+    is_given: impl Fn(u32) -> bool,
+) -> Touching {
+    let mut found = Touching::default();
+    let corner = |v: u32| corners.get(v as usize);
+    let mut candidates = candidates(vertices, is_used);
+    candidates.sort_unstable();
+    for group in candidates.chunk_by(|a, b| a.0 == b.0) {
+        let first = corner(group[0].1);
+        let is_split = first.is_some() && group.iter().all(|v| corner(v.1) == first);
+        if group.len() == 1 || is_split {
+            continue;
+        }
+        let list = if group.iter().all(|v| is_given(v.1)) {
+            &mut found.given
+        } else {
+            &mut found.rounded
+        };
+        list.extend(group.iter().map(|v| u64::from(v.1)));
+    }
+    found.rounded.sort_unstable();
+    found.given.sort_unstable();
+    found
+}
+
+/// The vertices in use that have the place of others, and few others, with their places.
+fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(Digits, u32)> {
+    let places = repeated(vertices);
     if places.is_empty() {
         return Vec::new();
     }
     let filter = Filter::of(&places);
-    let candidates = each_chunk(&vertices[..corners.len()], |first, chunk| {
+    let found = each_chunk(vertices, |first, chunk| {
         let numbered = (as_number(first)..).zip(chunk.iter().map(digits));
         let is_there =
             |(_, place): &(u32, Digits)| filter.may_have(place) && places.contains(place);
@@ -40,14 +74,19 @@ pub fn touching(
             .map(|(v, place)| (place, v));
         found.collect::<Vec<(Digits, u32)>>()
     });
-    let mut candidates = candidates.concat();
-    candidates.sort_unstable();
-    let corner = |v: u32| corners[v as usize];
-    let groups = candidates.chunk_by(|a, b| a.0 == b.0);
-    let several = groups.filter(|group| group.iter().any(|v| corner(v.1) != corner(group[0].1)));
-    let mut found: Vec<u64> = several.flatten().map(|v| u64::from(v.1)).collect();
-    found.sort_unstable();
-    found
+    found.concat()
+}
+
+/// The places of several vertices, and few others.
+fn repeated(vertices: &[Point]) -> HashSet<Digits> {
+    let mut filter = Filter::for_places(vertices.len());
+    let mut places = HashSet::default();
+    for chunk in vertices.chunks(CHUNK) {
+        spend(chunk.len());
+        let placed = chunk.iter().map(digits);
+        places.extend(placed.filter(|place| !filter.add(place)));
+    }
+    places
 }
 
 /// Bits by which most places are told not to be in a set.
@@ -63,20 +102,29 @@ impl Filter {
     /// The places in a word.
     const WORD: u32 = u64::BITS;
 
-    fn of(places: &HashSet<Digits>) -> Self {
-        let bits = (Self::ROOM * places.len())
-            .next_power_of_two()
-            .ilog2()
-            .max(6);
-        let mut filter = Self {
+    fn for_places(count: usize) -> Self {
+        let bits = (Self::ROOM * count).next_power_of_two().ilog2().max(6);
+        Self {
             words: vec![0; (1 << bits) / Self::WORD as usize],
             shift: u64::BITS - bits,
-        };
+        }
+    }
+
+    fn of(places: &HashSet<Digits>) -> Self {
+        let mut filter = Self::for_places(places.len());
         for place in places {
-            let (word, bit) = filter.at(place);
-            filter.words[word] |= bit;
+            filter.add(place);
         }
         filter
+    }
+
+    /// Puts a place into the set; says whether it was surely not there.
+    #[inline]
+    fn add(&mut self, place: &Digits) -> bool {
+        let (word, bit) = self.at(place);
+        let is_new = self.words[word] & bit == 0;
+        self.words[word] |= bit;
+        is_new
     }
 
     #[inline]
@@ -115,30 +163,58 @@ mod tests {
         assert!(places.len() == 256 && taken > 200, "{taken}");
     }
 
+    fn source(slot: u32, vertex: u32) -> Corner {
+        Corner::Source(Slot(slot), VertexId(vertex))
+    }
+
+    fn found(vertices: &[(Point, Option<Corner>)]) -> [Vec<u64>; 2] {
+        let places: Vec<Point> = vertices.iter().map(|v| v.0).collect();
+        let corners: Vec<Corner> = vertices.iter().filter_map(|v| v.1).collect();
+        let is_given = |v: u32| matches!(vertices[v as usize].1, Some(Corner::Source(..)));
+        let found = touching(&places, &corners, |v| v != 1006, is_given);
+        [found.rounded, found.given]
+    }
+
     #[test]
-    fn other_points_in_one_place_are_found_and_copies_of_one_are_not() {
-        let source = |slot: u32, vertex: u32| Corner::Source(Slot(slot), VertexId(vertex));
-        let one = [1.0, 2.0, 0.0];
+    fn vertices_in_one_place_are_found_and_copies_of_one_are_not() {
+        let many = (0..1000).map(|i| ([f64::from(i), 7.0, 7.0], Some(Corner::Point(i))));
         let zero = [0.0, -0.0, 0.0];
-        let many = (0..1000).map(|i| ([f64::from(i), 7.0, 7.0], Corner::Point(i)));
         let few = [
             // A point and a vertex of an input.
-            (one, Corner::Point(1000)),
-            (one, source(0, 0)),
+            ([1.0, 2.0, 0.0], Some(Corner::Point(1000))),
+            ([1.0, 2.0, 0.0], Some(source(0, 0))),
             // Two points.
-            (zero, Corner::Point(1001)),
-            (zero.map(|x| -x), Corner::Point(1002)),
+            (zero, Some(Corner::Point(1001))),
+            (zero.map(|x| -x), Some(Corner::Point(1002))),
             // Copies of one.
-            ([5.0; 3], Corner::Point(1003)),
-            ([5.0; 3], Corner::Point(1003)),
-            // No constructed ones.
-            ([6.0; 3], source(0, 1)),
-            ([6.0; 3], source(1, 1)),
+            ([5.0; 3], Some(Corner::Point(1003))),
+            ([5.0; 3], Some(Corner::Point(1003))),
+            // One that no triangle has.
+            ([5.0; 3], Some(Corner::Point(1004))),
         ];
-        let (vertices, corners): (Vec<Point>, Vec<Corner>) = many.chain(few).unzip();
-        let found = touching(&vertices, &corners, |_| true);
-        assert_eq!(found, [1000, 1001, 1002, 1003]);
-        assert_eq!(touching(&vertices, &corners, |v| v != 1003), found[..2]);
-        assert!(touching(&vertices[1006..], &corners[1006..], |_| true).is_empty());
+        let all: Vec<(Point, Option<Corner>)> = many.chain(few).collect();
+        assert_eq!(found(&all), [vec![1000, 1001, 1002, 1003], vec![]]);
+        assert_eq!(found(&all[..1001]), [vec![], vec![]]);
+    }
+
+    // Found: meshes touched themselves where an input has vertices in one place that it does not share,
+    // and no finding said so.
+    #[test]
+    fn vertices_that_an_input_has_in_one_place_are_found() {
+        let pair = |x: f64, corners: [Corner; 2]| corners.map(|corner| ([x; 3], Some(corner)));
+        let own = pair(6.0, [source(0, 1), source(0, 7)]);
+        let split = pair(7.0, [source(0, 2); 2]);
+        let cut = pair(8.0, [source(0, 3), Corner::Point(0)]);
+        assert_eq!(found(&[own, split, cut].concat()), [vec![4, 5], vec![0, 1]]);
+    }
+
+    // Found: vertices that mending copied lay in one place, and no finding said so.
+    #[test]
+    fn copies_that_mending_made_are_found() {
+        let given = ([3.0; 3], Some(source(0, 0)));
+        let copy = |x: f64| ([x; 3], None);
+        assert_eq!(found(&[given, copy(3.0)]), [vec![0, 1], vec![]]);
+        assert_eq!(found(&[given, copy(4.0), copy(4.0)]), [vec![1, 2], vec![]]);
+        assert_eq!(found(&[given, copy(4.0)]), [vec![], vec![]]);
     }
 }
