@@ -223,7 +223,11 @@ mod tests {
             points.push([0.5, 1.0 + f64::from(step) * 1e-9, 4.0 + 0.45e-9]);
             let hull = hull_of(&points, Pitch::DEFAULT).unwrap();
             assert!(hull.is_convex_there);
-            mended += usize::from(hull.vertices.iter().all(|p| p[2] != 4.0 + 0.45e-9));
+            mended += usize::from(
+                hull.vertices
+                    .iter()
+                    .all(|p| p[2].to_bits() != (4.0f64 + 0.45e-9).to_bits()),
+            );
             assert!(looks_outwards(&hull.vertices, &hull.triangles));
             for t in &hull.triangles {
                 let triangle = t.map(|v| hull.vertices[v.place()]);

@@ -194,7 +194,7 @@ mod tests {
         ];
         let all: Vec<(Point, Option<Corner>)> = many.chain(few).collect();
         assert_eq!(found(&all), [vec![1000, 1001, 1002, 1003], vec![]]);
-        assert_eq!(found(&all[..1001]), [vec![], vec![]]);
+        assert_eq!(found(&all[..1001]), [Vec::<u64>::new(), Vec::new()]);
     }
 
     // Found: meshes touched themselves where an input has vertices in one place that it does not share,
@@ -215,6 +215,6 @@ mod tests {
         let copy = |x: f64| ([x; 3], None);
         assert_eq!(found(&[given, copy(3.0)]), [vec![0, 1], vec![]]);
         assert_eq!(found(&[given, copy(4.0), copy(4.0)]), [vec![1, 2], vec![]]);
-        assert_eq!(found(&[given, copy(4.0)]), [vec![], vec![]]);
+        assert_eq!(found(&[given, copy(4.0)]), [Vec::<u64>::new(), Vec::new()]);
     }
 }
