@@ -11,6 +11,7 @@ pub mod extent;
 pub mod hull;
 pub mod meeting;
 pub mod sheets;
+pub mod slabs;
 pub mod vector;
 
 use num_bigint::BigInt;
