@@ -9,8 +9,9 @@ use super::image::Image;
 use super::star::is_star_shaped;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meeting_of, Meeting};
+use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
-use crate::interrupt::poll;
+use crate::interrupt::{poll, spend};
 use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
@@ -110,6 +111,7 @@ pub fn crossings_among(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let mut found = Found::default();
     for pair in pairs {
         if !pair.iter().any(|t| has_no_area(&faces.corners(*t))) {
+            poll();
             let [p, q] = pair.map(|t| Candidate::of(faces, (0, t)));
             found.look_at(&p, &q);
         }
@@ -189,7 +191,6 @@ struct Found {
 
 impl Kept for Found {
     fn look_at(&mut self, p: &Candidate, q: &Candidate) {
-        poll();
         let [p, q] = ordered(p, q);
         let pair = [p.triangle, q.triangle];
         if let Some(edge) = p.common_edge(q) {
@@ -218,7 +219,6 @@ struct Close(Vec<[u32; 2]>);
 
 impl Kept for Close {
     fn look_at(&mut self, p: &Candidate, q: &Candidate) {
-        poll();
         if p.common_edge(q).is_none() && !are_clear(&p.facing, &q.facing) {
             let [p, q] = ordered(p, q);
             self.0.push([p.triangle, q.triangle]);
@@ -253,6 +253,7 @@ struct Search<'a> {
     /// By party.
     candidates: &'a [Candidate],
     image: Image,
+    slabs: Vec<Slabs>,
 }
 
 impl<'a> Search<'a> {
@@ -262,7 +263,13 @@ impl<'a> Search<'a> {
         let Some(image) = Image::of(candidates.len(), corners) else {
             return K::default();
         };
-        let search = Self { candidates, image };
+        let origin = corners(0)[0];
+        let slabs = |c: &Candidate| Slabs::of(c.facing.triangle(), &origin);
+        let search = Self {
+            candidates,
+            image,
+            slabs: candidates.iter().map(slabs).collect(),
+        };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
         let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(SHARE);
         let found = each(Worth::Pool, parts, |part| search.kept(part));
@@ -294,6 +301,9 @@ impl<'a> Search<'a> {
             part,
             |k| self.swept(k),
             |i, j| {
+                if self.slabs[i as usize].miss(&self.slabs[j as usize]) {
+                    return Some(());
+                }
                 waiting.push([i, j]);
                 if waiting.len() == BATCH {
                     self.look_at(&waiting, &mut found);
@@ -309,6 +319,7 @@ impl<'a> Search<'a> {
     /// Look at pairs that may meet.
     fn look_at<K: Kept>(&self, pairs: &[[u32; 2]], found: &mut K) {
         let looked = each_chunk(pairs, |_, pairs| {
+            spend(pairs.len());
             let mut found = K::default();
             for [i, j] in pairs {
                 let candidate = |k: &u32| &self.candidates[*k as usize];
@@ -324,6 +335,7 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::doubles::Point;
 
     const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
@@ -345,6 +357,49 @@ mod tests {
         assert!(found.flat.is_empty() && !found.crossings.is_empty());
         assert!(found.crossings.iter().all(|[t, u]| *t < 4 && *u >= 4));
         assert!(faults_of_two(9.0).is_empty());
+    }
+
+    /// Triangles within so many steps of a grid, which meet in all ways, turned by an angle.
+    fn soup(count: u32, steps: u32, angle: f64) -> (Vec<Point>, Vec<[VertexId; 3]>) {
+        let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+        let mut numbers = std::iter::successors(Some(7), next).map(|x| x >> 8);
+        let mut number = |bound: u32| numbers.next().unwrap_or(0) % bound;
+        let (sin, cos) = angle.sin_cos();
+        let turned = |[x, y, z]: Point| [cos * x - sin * y, sin * x + cos * y, z / 3.0];
+        let mut vertices = Vec::new();
+        for _ in 0..count {
+            let place = [(); 3].map(|()| number(20));
+            for _ in 0..3 {
+                vertices.push(turned(place.map(|x| f64::from(x + number(steps)))));
+            }
+        }
+        let triangles = (0..count).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]);
+        (vertices, VertexId::rows(triangles))
+    }
+
+    /// The crossings of all pairs of triangles.
+    fn among_all_pairs(faces: &Faces) -> Vec<[u32; 2]> {
+        let count = as_number(faces.triangles.len());
+        let pairs = (0..count).flat_map(|t| (t + 1..count).map(move |u| [t, u]));
+        crossings_among(faces, &pairs.collect::<Vec<[u32; 2]>>())
+    }
+
+    #[test]
+    fn the_search_finds_what_comparing_all_pairs_does() {
+        let mut crossings = 0;
+        for (count, steps) in [(1, 3), (30, 12), (300, 3), (700, 5), (900, 2), (400, 30)] {
+            for angle in [0.0, 0.3, std::f64::consts::FRAC_PI_4] {
+                let (vertices, triangles) = soup(count, steps, angle);
+                let faces = Faces {
+                    vertices: &vertices,
+                    triangles: &triangles,
+                };
+                let found = all_faults(&faces).crossings;
+                assert_eq!(found, among_all_pairs(&faces), "{count} {steps} {angle}");
+                crossings += found.len();
+            }
+        }
+        assert!(crossings > 10_000, "{crossings}");
     }
 
     #[test]

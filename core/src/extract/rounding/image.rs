@@ -1,14 +1,16 @@
 //! The image of triangles on integers, turned so that many of them are flat along an axis there.
 //!
 //! Boxes around what is flat along an axis overlap little, but those around triangles that lie askew
-//! overlap all that is near. What has walls at right angles mostly lies askew as a whole.
+//! overlap all that is near. What has walls at right angles mostly lies askew as a whole, and so do
+//! the needles along a cylinder.
 
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::extent::Extent;
-use crate::geometry::doubles::vector::{cross, dot, normal};
+use crate::geometry::doubles::vector::{cross, dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::plane::Lattice;
+use crate::mesh::terrains::is_needle;
 
 /// So many triangles tell how all of them lie.
 const SAMPLE: usize = 64;
@@ -19,6 +21,10 @@ const SUITED: usize = 4;
 /// Directions this close, as a cosine or its complement, count as one, or as perpendicular: what is
 /// off by this share of its length is as good as flat in a sweep.
 const CLOSE: f64 = 1e-6;
+
+/// Lines whose directions have a larger cosine are taken for one: seen across both, lengths shrink to less
+/// than a twentieth, and what turning rounds must stay far below a step.
+const APART: f64 = 0.99;
 
 /// A linear image of triangles.
 ///
@@ -40,8 +46,9 @@ impl Image {
     pub fn of(count: usize, corners: impl Fn(u32) -> Triangle) -> Option<Self> {
         let numbers = 0..as_number(count);
         let step = count.div_ceil(SAMPLE).max(1);
-        let normals = numbers.clone().step_by(step).map(|k| normal(&corners(k)));
-        let axes = axes(&normals.filter_map(unit).collect::<Vec<Point>>());
+        let sample: Vec<Triangle> = numbers.clone().step_by(step).map(&corners).collect();
+        let normals: Vec<Point> = sample.iter().map(normal).filter_map(unit).collect();
+        let axes = axes(&normals).or_else(|| axes_across_needles(&sample));
         let frame = axes.map(|axes| (corners(0)[0], axes));
         let extent = |k: u32| Extent::of(&corners(k).map(|p| turned(frame.as_ref(), &p)));
         let extents: Vec<Extent> = numbers.map(extent).collect();
@@ -94,22 +101,74 @@ fn unit(v: Point) -> Option<Point> {
 /// Three directions at right angles, along the first two of which most of some normals lie; `None` if
 /// they suit few of them, or are axes.
 fn axes(normals: &[Point]) -> Option<[Point; 3]> {
-    let is_axis = |a: &Point| a.iter().any(|x| x.abs() > 1.0 - CLOSE);
     if normals.iter().all(is_axis) {
         return None;
     }
-    let is_along = |a: &Point, b: &Point| dot(a, b).abs() > 1.0 - CLOSE;
-    let count = |a: &Point| normals.iter().filter(|b| is_along(a, b)).count();
-    // Of equally good ones the first.
-    let best = |some: Vec<&Point>| some.into_iter().rev().max_by_key(|a| count(a)).copied();
-    let first = best(normals.iter().collect())?;
-    let is_across = |a: &&Point| dot(a, &first).abs() < CLOSE;
-    let second = best(normals.iter().filter(is_across).collect())?;
-    let suited = count(&first) + count(&second);
+    let first = most_common(normals, |_| true)?;
+    let second = most_common(normals, |a| dot(a, &first).abs() < CLOSE)?;
+    let suited = count_along(&first, normals) + count_along(&second, normals);
     if SUITED * suited < normals.len() || is_axis(&first) && is_axis(&second) {
         return None;
     }
     Some([first, second, cross(&first, &second)])
+}
+
+/// Three directions across the needles among some triangles; `None` if needles along two lines are few,
+/// or lie along axes.
+///
+/// What is long along one of the lines is thin as seen across both, and across this one in their plane.
+fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
+    let needles: Vec<Point> = sample.iter().filter_map(bearing).collect();
+    if SUITED * needles.len() < sample.len() || needles.iter().all(is_axis) {
+        return None;
+    }
+    let first = most_common(&needles, |_| true)?;
+    let second = most_common(&needles, |a| dot(a, &first).abs() < APART);
+    let suited = |a: &Point| count_along(a, &needles);
+    if SUITED * (suited(&first) + second.as_ref().map_or(0, suited)) < sample.len() {
+        return None;
+    }
+    let across = unit(cross(&first, &second.unwrap_or(beside(&first))))?;
+    let in_plane = |a: &Point| cross(a, &across);
+    let third = second.map_or(first, |second| in_plane(&second));
+    Some([across, in_plane(&first), third])
+}
+
+/// The direction of a needle, `None` of another triangle: that of the second longest edge. The longest
+/// one is the diagonal between neighbours.
+fn bearing(triangle: &Triangle) -> Option<Point> {
+    let [a, b, c] = triangle;
+    let mut edges = [less(b, a), less(c, b), less(a, c)];
+    edges.sort_unstable_by(|e, f| dot(e, e).total_cmp(&dot(f, f)));
+    is_needle(triangle).then_some(edges[1]).and_then(unit)
+}
+
+/// An axis that is not along a direction.
+fn beside([x, y, _]: &Point) -> Point {
+    if x.abs() < y.abs() {
+        [1.0, 0.0, 0.0]
+    } else {
+        [0.0, 1.0, 0.0]
+    }
+}
+
+/// The one of some directions along which most of them lie, among those that are fit; of equally good
+/// ones the first.
+fn most_common(directions: &[Point], is_fit: impl Fn(&Point) -> bool) -> Option<Point> {
+    let fit = directions.iter().rev().filter(|a| is_fit(a));
+    fit.max_by_key(|a| count_along(a, directions)).copied()
+}
+
+fn count_along(a: &Point, directions: &[Point]) -> usize {
+    directions.iter().filter(|b| is_along(a, b)).count()
+}
+
+fn is_along(a: &Point, b: &Point) -> bool {
+    dot(a, b).abs() > 1.0 - CLOSE
+}
+
+fn is_axis(a: &Point) -> bool {
+    a.iter().any(|x| x.abs() > 1.0 - CLOSE)
 }
 
 #[cfg(test)]
@@ -147,6 +206,39 @@ mod tests {
         let straight = overlaps(&boxes(30, 0.0));
         assert_eq!(straight, 30);
         assert_eq!(overlaps(&boxes(30, 0.5)), straight);
+    }
+
+    /// Needles around a line, as on the side of a cylinder, turned about an axis.
+    fn cylinder(count: u32, angle: f64) -> Vec<Triangle> {
+        let (sin, cos) = angle.sin_cos();
+        let turn = |[x, y, z]: Point| [cos * x - sin * z, y, sin * x + cos * z];
+        let side = |k: u32| {
+            let at = |k: u32, z: f64| {
+                let (y, x) = (std::f64::consts::TAU * f64::from(k) / f64::from(count)).sin_cos();
+                [x, y, z]
+            };
+            [at(k, -9.0), at(k + 1, -9.0), at(k, 9.0)].map(turn)
+        };
+        (0..count).map(side).collect()
+    }
+
+    #[test]
+    fn needles_along_two_lines_overlap_no_more_than_along_an_axis() {
+        let straight = overlaps(&cylinder(300, 0.0));
+        assert!(straight < 3 * 300, "{straight}");
+        assert!(overlaps(&cylinder(300, 0.5)) < 2 * straight);
+        let two = [cylinder(300, 0.5), cylinder(300, 1.2)].concat();
+        let both = overlaps(&two);
+        assert!(both < 10 * straight, "{both}");
+    }
+
+    #[test]
+    fn no_length_is_lost_across_lines_that_are_nearly_one() {
+        for apart in [0.0, 1e-5, 0.01, 0.1, 0.2, 1.0] {
+            let two = [cylinder(300, 0.5), cylinder(300, 0.5 + apart)].concat();
+            let [a, b, c] = axes_across_needles(&two).expect("needles");
+            assert!(dot(&cross(&a, &b), &c).abs() > 0.1, "{apart}");
+        }
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub mod hull;
 pub mod meeting;
 pub mod reach;
 pub mod sheets;
+pub mod slabs;
 pub mod vector;
 
 use num_bigint::BigInt;
