@@ -8,6 +8,7 @@ use std::cmp::Ordering;
 use super::candidates::{Operand, Windings};
 use super::triangulation::Special;
 use crate::arith::convert::as_number;
+use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
 /// The winding numbers around the vertices of one mesh, as far as they are known: classes of vertices
@@ -106,6 +107,7 @@ impl<'a> Labels<'a> {
     /// Notes the vertices outside of the box around the other operand: their number is zero.
     pub(super) fn note_beyond(&mut self) {
         for (vertex, place) in VertexId::all().zip(&self.of.mesh.vertices) {
+            poll();
             if self.windings.are_zero_at(place) {
                 let (root, above) = self.root(vertex);
                 self.known[root].get_or_insert(-above);

@@ -11,6 +11,7 @@ mod contact;
 mod faces;
 mod labels;
 mod occupancy;
+mod probe;
 mod segments;
 mod triangulation;
 
@@ -20,6 +21,7 @@ use candidates::{Candidates, Operand, Within};
 use faces::{Arrangement, Face, Planes, Shared};
 use labels::Labels;
 use occupancy::Occupancy;
+use probe::probe;
 use segments::{segments, Crossing, Segment, Segments};
 use triangulation::Special;
 
@@ -33,6 +35,7 @@ use crate::geometry::edge::LatticeEdge;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::tasks::{both, each, Worth};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
@@ -61,6 +64,7 @@ pub fn arranged(expression: &Expression, solids: &[Solid], sources: &Sources) ->
     let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
     let worth = Worth::pool_if(faces >= POOL);
     let within = for_both(worth, |k| operands[k].within(&window));
+    probe(&operands, &within).ok()?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
     let occupied = for_both(worth, |k| {
         let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);
@@ -313,6 +317,7 @@ impl Scene<'_> {
     ) -> Result<(), Special> {
         let mesh = self.operands[operand].mesh;
         for id in &self.within[operand].faces {
+            poll();
             let number = labels.at(mesh.vertices_of(*id)[0]);
             fates[id.place()] = self.kept.at(operand, number)?.into();
         }
@@ -355,6 +360,7 @@ impl Scene<'_> {
             .iter()
             .filter(|id| !is_cut[id.place()])
         {
+            poll();
             labels.join_corners(mesh.vertices_of(*id))?;
         }
         labels.note_beyond();

@@ -9,13 +9,13 @@ use super::contact::{contact, Contact, End};
 use super::triangulation::Special;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Facing;
-use crate::interrupt::spend;
+use crate::interrupt::{poll, spend};
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::Worth;
 
 /// Pairs for each candidate beyond which faces are crowded: boxes do not tell needles apart, and the
 /// sweeps of the descent do.
-const PAIRS_FOR_EACH: usize = 8;
+const PAIRS_FOR_EACH: usize = 24;
 
 /// A point in which an edge of one operand goes through a face of the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -98,6 +98,7 @@ fn numbered(operands: &[Operand; 2], candidates: &[Candidates; 2], met: Vec<Vec<
     let mut segments = Segments::default();
     let mut numbers: HashMap<Crossing, u32> = HashMap::default();
     for Met { pair, ends } in met.into_iter().flatten() {
+        poll();
         let ends = ends.map(|end| {
             let corners = candidates[end.of].corners(operands[end.of].mesh, pair[end.of]);
             let [a, b] = end.edge.map(|i| corners[i]);
