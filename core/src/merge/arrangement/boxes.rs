@@ -4,10 +4,11 @@
 //! diagonal slabs tell apart what boxes along the axes do not.
 //!
 //! # Source
-//! Morton 1966 (the curve); Klosowski et al. 1998 (slabs).
+//! Morton 1966 (the curve).
 
 use crate::arith::convert::as_number;
 use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::{poll, spend};
 use crate::mesh::tasks::{each, Worth};
@@ -29,13 +30,6 @@ const BLOCK: usize = 1 << 9;
 pub(super) struct Bounds {
     pub(super) low: [f32; 3],
     pub(super) high: [f32; 3],
-}
-
-/// What a triangle covers along six diagonals, rounded outwards.
-#[derive(Clone, Copy, Debug)]
-struct Slabs {
-    low: [f32; 6],
-    high: [f32; 6],
 }
 
 /// Boxes in the order of the curve, and levels of boxes around each four of the level below.
@@ -106,21 +100,6 @@ impl Bounds {
     }
 }
 
-impl Slabs {
-    fn of(triangle: &Triangle) -> Self {
-        let [a, b, c] = triangle.map(|[x, y, z]| [x + y, x - y, y + z, y - z, z + x, z - x]);
-        Self {
-            low: std::array::from_fn(|i| down(a[i].min(b[i]).min(c[i]))),
-            high: std::array::from_fn(|i| up(a[i].max(b[i]).max(c[i]))),
-        }
-    }
-
-    fn meets(&self, other: &Self) -> bool {
-        let along = |i: usize| self.low[i] <= other.high[i] && other.low[i] <= self.high[i];
-        (0..6).fold(true, |all, i| all & along(i))
-    }
-}
-
 /// For each place in the order of the curve the number of the triangle there.
 pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
     let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
@@ -182,9 +161,9 @@ impl BoxTree {
         }
     }
 
-    /// The tree, to be asked for pairs.
-    pub(super) fn with_slabs(self, triangles: &[Triangle]) -> Self {
-        let slabs = triangles.iter().map(Slabs::of).collect();
+    /// The tree, to be asked for pairs with others that have the same origin.
+    pub(super) fn with_slabs(self, triangles: &[Triangle], origin: &Point) -> Self {
+        let slabs = triangles.iter().map(|t| Slabs::of(t, origin)).collect();
         Self { slabs, ..self }
     }
 
@@ -301,7 +280,7 @@ impl BoxTree {
         let theirs = other.at(b);
         for i in self.leaves(a).filter(|i| self.bounds[*i].meets(theirs)) {
             for j in other.leaves(b) {
-                if self.bounds[i].meets(&other.bounds[j]) && self.slabs[i].meets(&other.slabs[j]) {
+                if self.bounds[i].meets(&other.bounds[j]) && !self.slabs[i].miss(&other.slabs[j]) {
                     found.push([as_number(i), as_number(j)]);
                 }
             }
@@ -327,14 +306,14 @@ mod tests {
     fn pairs_are_those_that_comparing_all_finds() {
         for (count, others) in [(0, 3), (1, 1), (3, 70), (200, 300)] {
             let (a, b) = (triangles(count, 1), triangles(others, 77));
-            let [ours, theirs] = [&a, &b].map(|t| BoxTree::new(t).with_slabs(t));
+            let [ours, theirs] = [&a, &b].map(|t| BoxTree::new(t).with_slabs(t, &[0.0; 3]));
             let visit = |pairs: &[[u32; 2]]| Ok::<_, ()>(pairs.to_vec());
             let found = ours.each_block(&theirs, Worth::Nothing, visit);
             let mut found = found.expect("no error").concat();
             found.sort_unstable();
             let met = |i: usize, j: usize| {
                 let boxes = ours.bounds[i].meets(&theirs.bounds[j]);
-                boxes && ours.slabs[i].meets(&theirs.slabs[j])
+                boxes && !ours.slabs[i].miss(&theirs.slabs[j])
             };
             let all = (0..a.len()).flat_map(|i| (0..b.len()).map(move |j| (i, j)));
             let all = all.filter(|(i, j)| met(*i, *j));

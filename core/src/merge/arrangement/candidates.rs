@@ -75,13 +75,18 @@ impl<'a> Operand<'a> {
         found.into_iter().reduce(Within::with).unwrap_or_default()
     }
 
-    /// Those of some faces that may meet others.
-    pub(super) fn candidates(&self, within: &Within, others: &Occupancy) -> Candidates {
+    /// Those of some faces that may meet others; slabs of both are measured from one origin.
+    pub(super) fn candidates(
+        &self,
+        within: &Within,
+        others: &Occupancy,
+        origin: &Point,
+    ) -> Candidates {
         let both = within.faces.iter().zip(&within.boxes);
         let faces = both.filter(|(_, bounds)| others.meets(bounds));
         let faces: Vec<FaceId> = faces.map(|(id, _)| *id).collect();
         let mut made = Candidates::of(self, &faces);
-        made.tree = made.tree.with_slabs(&made.triangles);
+        made.tree = made.tree.with_slabs(&made.triangles, origin);
         made
     }
 

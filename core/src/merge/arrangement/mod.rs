@@ -1,9 +1,9 @@
 //! The arrangement of two meshes in general position: each face is cut once, by all that crosses it.
 //!
-//! The stages, each in a file of its own: faces that may meet (`candidates`), pairs of them whose boxes
-//! meet (`boxes`), the segments in which they cross (`contact`, `segments`), the cells into which segments
-//! divide a face (`triangulation`, `faces`), winding numbers (`labels`), and the leaf that lists what
-//! stays. Whatever is not in general position is left to the descent.
+//! The stages, each in a file of its own: faces that may meet (`probe`, `occupancy`, `candidates`), pairs
+//! of them whose boxes meet (`boxes`), the segments in which they cross (`contact`, `segments`), the cells
+//! into which segments divide a face (`triangulation`, `faces`), winding numbers (`labels`), and the leaf
+//! that lists what stays. Whatever is not in general position is left to the descent.
 
 mod boxes;
 mod candidates;
@@ -71,7 +71,7 @@ pub fn arranged(expression: &Expression, solids: &[Solid], sources: &Sources) ->
         Occupancy::of(&window, &within[k].boxes, triangle, compared)
     });
     let candidates = for_both(worth, |k| {
-        operands[k].candidates(&within[k], &occupied[1 - k])
+        operands[k].candidates(&within[k], &occupied[1 - k], &window[0])
     });
     let scene = Scene {
         operands,
