@@ -1,17 +1,20 @@
-//! The narrow phase: in which segment two triangles cross, by signs alone.
+//! The narrow phase: what two triangles have in common, by signs alone.
 //!
-//! No coordinates of the segment are computed or compared. Its ends are named by an edge of one triangle
-//! and the other triangle.
+//! No coordinates of common points are computed or compared. Each is named by what of the triangles goes
+//! through it: a corner, an edge and a face, or two edges.
 //!
 //! # Source
 //! Guigue and Devillers 2003 (the signs and their order).
+#![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
+
+use smallvec::SmallVec;
 
 use crate::arith::Sign;
 use crate::geometry::doubles::{seen_along, side, turn, Facing, Point, Triangle};
 use crate::geometry::side::Side;
 
 /// How two triangles meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Contact {
     /// They have no point in common.
     Apart,
@@ -19,7 +22,7 @@ pub(super) enum Contact {
     /// the first triangle, the points behind the second one are on its left.
     Crossing([End; 2]),
     /// They meet in any other way.
-    Special,
+    Touching(Box<Touching>),
 }
 
 /// The end of a segment: an edge of one triangle goes through the other.
@@ -29,6 +32,40 @@ pub(super) struct End {
     pub(super) of: usize,
     /// The corners at the ends of the edge.
     pub(super) edge: [usize; 2],
+}
+
+/// A point that two triangles have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Spot {
+    /// A corner of one of them; where corners coincide that of the first.
+    Corner(usize, usize),
+    /// An edge of one goes through the inside of the other.
+    Through(End),
+    /// An edge of the first and one of the second cross, by the corners in which these start.
+    Edges(usize, usize),
+}
+
+/// A segment that two triangles have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stretch {
+    /// The ends.
+    pub(super) ends: [Spot; 2],
+    /// The edge that it is part of where the triangles lie in one plane: of which triangle, and the
+    /// corner in which it starts.
+    pub(super) along: Option<(usize, usize)>,
+}
+
+/// What two triangles have in common that touch, or cross in corners or edges.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Touching {
+    /// For each triangle the sides of the other's plane on which its corners lie.
+    pub(super) sides: [SmallVec<[Side; 3]>; 2],
+    /// The points at which an edge or a corner of one meets the other.
+    pub(super) spots: SmallVec<[Spot; 6]>,
+    /// The segments: one at most, but for triangles in one plane.
+    pub(super) stretches: SmallVec<[Stretch; 6]>,
+    /// True if the triangles have an area in common.
+    pub(super) overlap: bool,
 }
 
 /// Return how two triangles with integer corners meet; exact.
@@ -41,10 +78,23 @@ pub(super) fn contact(f: &Facing, g: &Facing) -> Contact {
     if is_apart(theirs) {
         return Contact::Apart;
     }
+    if ours == [Side::On; 3] {
+        return of_spots(in_one_plane(f, g), ours, theirs);
+    }
+    let touching = || across(f, g, ours, theirs);
     if ours.contains(&Side::On) || theirs.contains(&Side::On) {
-        return special(f, g, ours, theirs);
+        return of_spots(touching(), ours, theirs);
     }
     crossing(f.triangle(), g.triangle(), ours, theirs)
+        .unwrap_or_else(|| of_spots(touching(), ours, theirs))
+}
+
+fn of_spots(found: Touching, ours: [Side; 3], theirs: [Side; 3]) -> Contact {
+    if found.spots.is_empty() {
+        return Contact::Apart;
+    }
+    let sides = [ours, theirs].map(|s| SmallVec::from_slice(&s));
+    Contact::Touching(Box::new(Touching { sides, ..found }))
 }
 
 /// The sides of a triangle's plane on which the corners of another one lie.
@@ -64,19 +114,20 @@ fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     [i, next(i)]
 }
 
-/// The contact of triangles of which each has corners strictly on both sides of the other's plane.
-fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> Contact {
+/// The contact of triangles of which each has corners strictly on both sides of the other's plane;
+/// `None` if an edge meets an edge.
+fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> Option<Contact> {
     let [end, start] = leaving(ours, Side::Plus);
     let (f_first, f_last) = (leaving(ours, Side::Minus), [start, end]);
     let (g_first, g_last) = (leaving(theirs, Side::Plus), leaving(theirs, Side::Minus));
     let turn = |a: [usize; 2], b: [usize; 2]| side(&[f[a[0]], f[a[1]], g[b[0]]], &g[b[1]]);
     let order = [turn(f_first, g_last), turn(f_last, g_first)];
     if order.contains(&Side::Minus) {
-        return Contact::Apart;
+        return Some(Contact::Apart);
     }
     let ends = [turn(f_first, g_first), turn(f_last, g_last)];
     if order.contains(&Side::On) || ends.contains(&Side::On) {
-        return Contact::Special;
+        return None;
     }
     let end = |side: Side, ours: [usize; 2], theirs: [usize; 2]| match side {
         Side::Plus => End { of: 0, edge: ours },
@@ -85,56 +136,183 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> C
             edge: theirs,
         },
     };
-    Contact::Crossing([end(ends[0], f_first, g_first), end(ends[1], f_last, g_last)])
+    let ends = [end(ends[0], f_first, g_first), end(ends[1], f_last, g_last)];
+    Some(Contact::Crossing(ends))
 }
 
-/// The contact of triangles of which one has a corner in the other's plane.
-fn special(f: &Facing, g: &Facing, ours: [Side; 3], theirs: [Side; 3]) -> Contact {
-    if touches(f, g, ours) || touches(g, f, theirs) {
-        Contact::Special
-    } else {
-        Contact::Apart
+/// What triangles in different planes have in common.
+fn across(f: &Facing, g: &Facing, ours: [Side; 3], theirs: [Side; 3]) -> Touching {
+    let mut found = Touching::default();
+    for (of, t, other, sides) in [(0, f, g, ours), (1, g, f, theirs)] {
+        let corners = t.triangle();
+        for (i, corner) in corners.iter().enumerate() {
+            let next = (i + 1) % 3;
+            if sides[i] == Side::On && holds(other, corner) {
+                add(&mut found.spots, corner_spot(of, i, t, other));
+            } else if sides[i].is_across_from(sides[next])
+                && let Some(spot) = spot_inside(of, [i, next], corners, other.triangle())
+            {
+                add(&mut found.spots, spot);
+            }
+        }
+    }
+    if let [from, to] = found.spots[..] {
+        let ends = [from, to];
+        found.stretches.push(Stretch { ends, along: None });
+    }
+    found
+}
+
+fn add(spots: &mut SmallVec<[Spot; 6]>, spot: Spot) {
+    if !spots.contains(&spot) {
+        spots.push(spot);
     }
 }
 
-/// Return whether an edge of a triangle, or one of its corners, has a point of another triangle.
-fn touches(f: &Facing, g: &Facing, sides: [Side; 3]) -> bool {
-    let corners = f.triangle();
-    (0..3).any(|i| {
-        let (p, q) = (&corners[i], &corners[(i + 1) % 3]);
-        match (sides[i], sides[(i + 1) % 3]) {
-            (Side::On, Side::On) => overlaps(p, q, g),
-            (Side::On, _) => holds(g, p),
-            (_, Side::On) => holds(g, q),
-            (side, other) => side != other && goes_through(p, q, g.triangle()),
-        }
-    })
+/// A corner of a triangle; where it is one of the first triangle's corners, as that.
+fn corner_spot(of: usize, corner: usize, t: &Facing, other: &Facing) -> Spot {
+    let place = &t.triangle()[corner];
+    let twin = other.triangle().iter().position(|p| p == place);
+    match twin.filter(|_| of == 1) {
+        Some(twin) => Spot::Corner(0, twin),
+        None => Spot::Corner(of, corner),
+    }
 }
 
-/// Return whether a segment between the two sides of a triangle's plane goes through the triangle.
-fn goes_through(p: &Point, q: &Point, [a, b, c]: &Triangle) -> bool {
-    let turns = [[a, b], [b, c], [c, a]].map(|[s, t]| side(&[*p, *q, *s], t));
-    !(turns.contains(&Side::Plus) && turns.contains(&Side::Minus))
+/// Where an edge that leads from one side of a triangle's plane to the other meets the triangle, but
+/// for its corners.
+fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> Option<Spot> {
+    let [p, q] = edge.map(|i| t[i]);
+    let beside = |k: usize| side(&[p, q, other[k]], &other[(k + 1) % 3]);
+    let turns = [0, 1, 2].map(beside);
+    if turns.contains(&Side::Plus) && turns.contains(&Side::Minus) {
+        return None;
+    }
+    let mut on = (0..3).filter(|k| turns[*k] == Side::On);
+    match (on.next(), on.next()) {
+        (None, _) => Some(Spot::Through(End { of, edge })),
+        (Some(k), None) if of == 0 => Some(Spot::Edges(edge[0], k)),
+        (Some(k), None) => Some(Spot::Edges(k, edge[0])),
+        _ => None,
+    }
 }
 
 /// Return whether a triangle holds a point of its plane.
 fn holds(g: &Facing, p: &Point) -> bool {
-    overlaps(p, p, g)
-}
-
-/// Return whether a segment in a triangle's plane has a point of the triangle: no edge of it and not the
-/// segment's own line has them on different sides.
-fn overlaps(p: &Point, q: &Point, g: &Facing) -> bool {
     let axis = g.main_axis();
     let corners = seen_along(g.triangle(), axis);
-    let [s, t, _] = seen_along(&[*p, *q, *p], axis);
+    let [at, ..] = seen_along(&[*p; 3], axis);
     let turned = turn(corners);
-    let beyond = |i: usize, at: [f64; 2]| turn([corners[i], corners[(i + 1) % 3], at]) == -turned;
-    if (0..3).any(|i| beyond(i, s) && beyond(i, t)) {
-        return false;
+    (0..3).all(|i| turn([corners[i], corners[(i + 1) % 3], at]) != -turned)
+}
+
+/// What triangles in one plane have in common.
+fn in_one_plane(f: &Facing, g: &Facing) -> Touching {
+    let axis = f.main_axis();
+    let both = [f, g].map(|t| seen_along(t.triangle(), axis));
+    let beside = [
+        Beside::of(&both[0], &both[1]),
+        Beside::of(&both[1], &both[0]),
+    ];
+    let mut found = Touching::default();
+    if beside.iter().any(Beside::is_apart) {
+        return found;
     }
-    let across = corners.map(|corner| turn([s, t, corner]));
-    across.contains(&Sign::Zero) || across[0] != across[1] || across[1] != across[2]
+    for of in [0, 1] {
+        for edge in 0..3 {
+            let spots = spots_along(of, edge, &both, &beside);
+            if let [from, to] = spots[..] {
+                found.stretches.push(Stretch {
+                    ends: [from, to],
+                    along: Some((of, edge)),
+                });
+            }
+            for spot in spots {
+                add(&mut found.spots, spot);
+            }
+        }
+    }
+    found.overlap = !beside.iter().any(Beside::is_outside);
+    found
+}
+
+/// The corners of a triangle in the plane beside the edges of another one.
+struct Beside {
+    /// By edge and corner: negative outside.
+    turns: [[Sign; 3]; 3],
+}
+
+impl Beside {
+    fn of(edges: &[[f64; 2]; 3], corners: &[[f64; 2]; 3]) -> Self {
+        let turned = turn(*edges);
+        let at = |k: usize, i: usize| match turned {
+            Sign::Negative => -turn([edges[k], edges[(k + 1) % 3], corners[i]]),
+            _ => turn([edges[k], edges[(k + 1) % 3], corners[i]]),
+        };
+        Self {
+            turns: [0, 1, 2].map(|k| [0, 1, 2].map(|i| at(k, i))),
+        }
+    }
+
+    fn is_apart(&self) -> bool {
+        self.turns.contains(&[Sign::Negative; 3])
+    }
+
+    /// Return whether nothing of one is strictly inside the other, as an edge shows.
+    fn is_outside(&self) -> bool {
+        self.turns.iter().any(|t| !t.contains(&Sign::Positive))
+    }
+
+    fn holds(&self, corner: usize) -> bool {
+        (0..3).all(|k| self.turns[k][corner] != Sign::Negative)
+    }
+
+    /// Return whether the ends of an edge lie strictly on both sides of another one.
+    fn are_divided(&self, by: usize, edge: usize) -> bool {
+        let [a, b] = [edge, (edge + 1) % 3].map(|i| self.turns[by][i]);
+        a != Sign::Zero && b == -a
+    }
+}
+
+/// The ends of what an edge of one triangle has in common with the other one, in one plane.
+fn spots_along(
+    of: usize,
+    edge: usize,
+    both: &[[[f64; 2]; 3]; 2],
+    beside: &[Beside; 2],
+) -> SmallVec<[Spot; 6]> {
+    let (ours, theirs) = (&both[of], &both[1 - of]);
+    let (in_theirs, in_ours) = (&beside[1 - of], &beside[of]);
+    let mut spots = SmallVec::new();
+    for end in [edge, (edge + 1) % 3]
+        .into_iter()
+        .filter(|i| in_theirs.holds(*i))
+    {
+        let twin = theirs.iter().position(|p| *p == ours[end]);
+        add(
+            &mut spots,
+            match twin.filter(|_| of == 1) {
+                Some(twin) => Spot::Corner(0, twin),
+                None => Spot::Corner(of, end),
+            },
+        );
+    }
+    for (k, corner) in theirs.iter().enumerate() {
+        if in_theirs.are_divided(k, edge) && in_ours.are_divided(edge, k) {
+            let [first, second] = if of == 0 { [edge, k] } else { [k, edge] };
+            add(&mut spots, Spot::Edges(first, second));
+        }
+        let on_line = in_ours.turns[edge][k] == Sign::Zero;
+        if on_line && is_between(ours[edge], *corner, ours[(edge + 1) % 3]) {
+            add(&mut spots, Spot::Corner(1 - of, k));
+        }
+    }
+    spots
+}
+
+/// Return whether a point of a line lies strictly between two others.
+fn is_between(a: [f64; 2], p: [f64; 2], b: [f64; 2]) -> bool {
+    (0..2).any(|i| a[i] < p[i] && p[i] < b[i] || b[i] < p[i] && p[i] < a[i])
 }
 
 #[cfg(test)]
@@ -168,7 +346,7 @@ mod tests {
     }
 
     #[test]
-    fn contacts_other_than_crossings_are_special() {
+    fn contacts_other_than_crossings_are_named() {
         let touching = [
             [[2, 2, 0], [2, 2, 5], [3, 1, 5]],
             [[0, 0, 0], [9, 9, 9], [8, 9, 9]],
@@ -178,16 +356,10 @@ mod tests {
             [[4, 0, -3], [4, 0, 3], [4, -3, 0]],
         ];
         for other in touching {
-            assert_eq!(
-                contact(&of(FLOOR), &of(other)),
-                Contact::Special,
-                "{other:?}"
-            );
-            assert_eq!(
-                contact(&of(other), &of(FLOOR)),
-                Contact::Special,
-                "{other:?}"
-            );
+            for (f, g) in [(FLOOR, other), (other, FLOOR)] {
+                let found = contact(&of(f), &of(g));
+                assert!(matches!(found, Contact::Touching(_)), "{other:?}");
+            }
         }
     }
 
@@ -204,5 +376,54 @@ mod tests {
             assert_eq!(contact(&of(FLOOR), &of(other)), Contact::Apart, "{other:?}");
             assert_eq!(contact(&of(other), &of(FLOOR)), Contact::Apart, "{other:?}");
         }
+    }
+
+    /// A spot in words that do not depend on which triangle comes first.
+    fn name(spot: Spot, pair: [&[[i32; 3]; 3]; 2]) -> Vec<[i32; 3]> {
+        let edge = |of: usize, i: usize, j: usize| {
+            let mut ends = [pair[of][i], pair[of][j]];
+            ends.sort_unstable();
+            ends
+        };
+        match spot {
+            Spot::Corner(of, i) => vec![pair[of][i]],
+            Spot::Through(End { of, edge: [i, j] }) => edge(of, i, j).to_vec(),
+            Spot::Edges(i, j) => {
+                let mut edges = [edge(0, i, (i + 1) % 3), edge(1, j, (j + 1) % 3)];
+                edges.sort_unstable();
+                edges.concat()
+            }
+        }
+    }
+
+    /// All triangles in a small cube, some of them: what they have in common does not depend on their order.
+    #[test]
+    fn common_points_are_named_alike_from_both_sides() {
+        let place = |k: i32| [k % 3, k / 3 % 3, k / 9 % 3];
+        let mut triangles =
+            (0..2500).map(|k: i32| [7 * k, 11 * k + k / 27, 5 * k + k / 9].map(place));
+        let triangles: Vec<_> = triangles
+            .by_ref()
+            .filter(|t| !crate::geometry::doubles::is_flat(&t.map(|c| c.map(f64::from))))
+            .step_by(13)
+            .collect();
+        let mut found = 0;
+        for (f, g) in triangles
+            .iter()
+            .flat_map(|f| triangles.iter().map(move |g| (f, g)))
+        {
+            let names = |f: &[[i32; 3]; 3], g: &[[i32; 3]; 3]| {
+                let Contact::Touching(touching) = contact(&of(*f), &of(*g)) else {
+                    return Vec::new();
+                };
+                let spots = touching.spots.iter().map(|s| name(*s, [f, g]));
+                let mut names: Vec<_> = spots.collect();
+                names.sort_unstable();
+                names
+            };
+            assert_eq!(names(f, g), names(g, f), "{f:?} {g:?}");
+            found += names(f, g).len();
+        }
+        assert!(found > 1000, "{found}");
     }
 }

@@ -1,147 +1,324 @@
-//! The arrangement in one face: the cells into which the other operand's surface divides it.
+//! The arrangement in one face: the cells into which the surfaces that meet it divide it.
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::segments::{Crossing, Segment};
+use super::segments::{Cover, Line, Point, Segment};
+use super::surfaces::Surfaces;
 use super::triangulation::{Special, Triangulation, NONE};
 use crate::arith::convert::as_number;
+use crate::arith::Sign;
 use crate::geometry::edge::{LatticeEdge, Ring};
 use crate::geometry::outline::BareEdge;
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
+use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
-use crate::mesh::handle::{FaceId, VertexId};
+use crate::mesh::handle::VertexId;
 
 /// The points and planes that the arrangements of all faces share.
 #[derive(Debug)]
 pub(super) struct Shared<'a> {
-    pub(super) crossings: &'a [Crossing],
-    /// The points of the crossings.
+    pub(super) surfaces: &'a Surfaces<'a>,
+    pub(super) points: &'a [Point],
+    /// The places of the points.
     pub(super) vertices: Vec<Arc<Vertex>>,
-    /// For each operand the planes of its candidates that are cut.
-    pub(super) planes: [Planes; 2],
+    /// The planes of the faces that are divided.
+    pub(super) planes: Planes,
 }
 
-/// The planes of faces, by their numbers among the candidates.
+/// The planes of faces.
 pub(super) type Planes = HashMap<u32, Arc<Plane>>;
 
-/// A face that is cut.
+/// A face that is divided, and what divides it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face<'a> {
+    pub(super) number: u32,
     pub(super) operand: usize,
-    pub(super) id: FaceId,
     pub(super) corners: [Lattice; 3],
     pub(super) vertices: [VertexId; 3],
     pub(super) plane: &'a Arc<Plane>,
     pub(super) segments: &'a [Segment],
+    pub(super) covers: &'a [Cover],
 }
 
 /// A face divided into cells.
 #[derive(Debug)]
 pub(super) struct Arrangement<'a> {
-    face: Face<'a>,
+    pub(super) face: Face<'a>,
     ring: Arc<Ring>,
-    cells: Triangulation,
-    /// For each cell by how much the other operand's winding number exceeds that in the first cell.
-    numbers: Vec<i32>,
+    triangulation: Triangulation,
+    /// For each segment the plane that has what is on its left on the minus side.
+    cuts: Vec<Arc<Plane>>,
+    pub(super) cells: Vec<Cell>,
+}
+
+/// The winding numbers of the other operand around a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cell {
+    /// By how much the number in front exceeds that in front of the first cell.
+    pub(super) in_front: i32,
+    /// By how much the number behind exceeds that in front.
+    pub(super) behind: i32,
+    /// True if another face in the same plane has the cell, too, and comes first.
+    pub(super) is_others: bool,
 }
 
 impl<'a> Arrangement<'a> {
-    /// The arrangement of a face's segments.
+    /// The arrangement in a face.
     ///
     /// # Errors
-    /// `Special` if segments cross, or points coincide: then the other operand overlaps itself.
+    /// `Special` if the other operand is seen to overlap itself, or a segment leaves the face.
     pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Special> {
         let corners = face.corners.map(|c| Arc::new(Vertex::lattice(c)));
-        let mut cells = Triangulation::new(corners, axes(face.plane));
-        let local = insert(&mut cells, &face, shared)?;
+        let mut triangulation = Triangulation::new(corners, axes(face.plane));
+        let places = insert(&mut triangulation, &face, shared)?;
+        let mut cuts: Vec<Arc<Plane>> = Vec::with_capacity(face.segments.len());
         for (number, segment) in (0..).zip(face.segments) {
-            cells.constrain(segment.ends.map(|p| local.of(p)), number)?;
+            let ends = segment.ends.map(|p| places.of(p));
+            let ends = directed(&mut triangulation, ends, segment, &face, shared);
+            cuts.push(cut(segment, &face, shared));
+            let meet = |other: u32| {
+                let other = &cuts[other as usize];
+                let vertex = Vertex::meet(face.plane, &cuts[number as usize], other);
+                Arc::new(vertex.expect("segments that cross lie in different planes"))
+            };
+            triangulation.constrain(ends, number, meet)?;
         }
-        let numbers = numbers(&cells);
-        let ring = Arc::new(Ring::from_slice(&face.corners));
-        Ok(Self {
+        let mut made = Self {
+            ring: Arc::new(Ring::from_slice(&face.corners)),
             face,
-            ring,
-            cells,
-            numbers,
+            triangulation,
+            cuts,
+            cells: Vec::new(),
+        };
+        made.cells = made.numbered();
+        made.cover(shared)?;
+        Ok(made)
+    }
+
+    /// At a corner of the face by how much the number in front exceeds that in front of the first cell.
+    pub(super) fn at_corner(&self, corner: u32) -> i32 {
+        self.cells[self.triangulation.cell_at(corner) as usize].in_front
+    }
+
+    /// A cell, and a point inside it that lies above half steps of two axes, as [`Windings::in_front`]
+    /// needs it; the widest cells are tried first.
+    pub(super) fn probe(&mut self) -> Option<(usize, [i64; 2])> {
+        let mut cells: Vec<usize> = (0..self.cells.len()).collect();
+        let size = |cell: &usize| self.triangulation.size(as_number(*cell));
+        cells.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        cells.into_iter().find_map(|cell| {
+            let doubled = self.triangulation.middle(as_number(cell));
+            let vertex = above(self.face.plane, doubled)?;
+            let is_inside = self.triangulation.holds(as_number(cell), vertex);
+            is_inside.then_some((cell, doubled))
         })
     }
 
-    /// The face.
-    pub(super) fn face(&self) -> &Face<'a> {
-        &self.face
+    /// The corners of a cell.
+    fn corners_of(&self, cell: usize) -> [&Vertex; 3] {
+        let corners = self.triangulation.cells()[cell].corners;
+        corners.map(|c| &**self.triangulation.vertex(c))
     }
 
-    /// At each corner of the face by how much the number exceeds that in the first cell.
-    pub(super) fn at_corners(&self) -> [i32; 3] {
-        [0, 1, 2].map(|corner| self.numbers[self.cells.cell_at(corner) as usize])
-    }
-
-    /// The numbers of all cells.
-    pub(super) fn numbers(&self) -> &[i32] {
-        &self.numbers
-    }
-
-    /// The outline of the cells with some numbers; no two of its edges continue each other.
-    pub(super) fn outline(&self, holds: impl Fn(i32) -> bool, planes: &Planes) -> Vec<BareEdge> {
-        let mut next = self.borders(holds);
-        let mut edges = Vec::new();
-        for start in 0..as_number(next.len()) {
-            let mut at = start;
-            let mut ring: SmallVec<[BareEdge; 8]> = SmallVec::new();
-            while let Some(border) = next[at as usize].take() {
-                join(&mut ring, self.edge(at, border, planes));
-                at = border.to;
+    /// The cells, with the numbers in front of them.
+    fn numbered(&self) -> Vec<Cell> {
+        let cells = self.triangulation.cells();
+        let mut numbers = vec![None; cells.len()];
+        numbers[0] = Some(0);
+        let mut open = vec![0u32];
+        while let Some(at) = open.pop() {
+            let here = numbers[at as usize].unwrap_or(0);
+            for (edge, mate) in cells[at as usize].mates.into_iter().enumerate() {
+                if mate != NONE && numbers[mate as usize].is_none() {
+                    numbers[mate as usize] = Some(here - self.change(at, edge));
+                    open.push(mate);
+                }
             }
-            close(&mut ring);
-            edges.extend(ring);
+        }
+        let cell = |n: Option<i32>| Cell {
+            in_front: n.unwrap_or(0),
+            ..Cell::default()
+        };
+        numbers.into_iter().map(cell).collect()
+    }
+
+    /// By how much the number in front of a cell exceeds that across an edge: what lies on the left of a
+    /// segment is behind the other face.
+    fn change(&self, cell: u32, edge: usize) -> i32 {
+        let change =
+            |(segment, is_along): (u32, bool)| match self.face.segments[segment as usize].line {
+                Line::Directed | Line::Touching { in_front: true, .. } => {
+                    if is_along {
+                        1
+                    } else {
+                        -1
+                    }
+                }
+                Line::Touching { .. } | Line::Edge(_) => 0,
+            };
+        self.triangulation.along_edge(cell, edge).map(change).sum()
+    }
+
+    /// Notes which cells faces of the other operand have, too, that lie in the same plane.
+    ///
+    /// # Errors
+    /// `Special` if two of them have one: then the other operand overlaps itself.
+    fn cover(&mut self, shared: &Shared) -> Result<(), Special> {
+        let axis = self.face.plane.main_axis();
+        let is_up = self.face.plane.normal()[axis] > 0;
+        for Cover { other, .. } in self.face.covers {
+            let corners = shared.surfaces.corners(*other);
+            let outer =
+                [0, 1, 2].map(|i| Plane::beside_edge(&corners[i], &corners[(i + 1) % 3], axis));
+            let turn = LatticeEdge::new(corners[0], corners[1]).sign_beside(&corners[2], axis);
+            // The third corner lies inside, and so does all on its side of the first edge.
+            let is_same = (turn == Sign::Negative) == is_up;
+            let outside = Side::from_sign(-turn);
+            for cell in 0..self.cells.len() {
+                let is_out = |v: &Vertex| outer.iter().any(|plane| v.side_of(plane) == outside);
+                if !self.corners_of(cell).into_iter().any(is_out) {
+                    let cell = &mut self.cells[cell];
+                    if cell.behind != 0 {
+                        return Err(Special);
+                    }
+                    cell.behind = if is_same { 1 } else { -1 };
+                    cell.is_others = *other < self.face.number;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The outline of some cells; no two of its edges continue each other.
+    pub(super) fn outline(&mut self, holds: impl Fn(&Cell) -> bool) -> Vec<BareEdge> {
+        let holds: Vec<bool> = self.cells.iter().map(holds).collect();
+        let is_border = |this: &Self, (cell, edge): (u32, usize)| {
+            let mate = this.triangulation.cells()[cell as usize].mates[edge];
+            mate == NONE || !holds[mate as usize]
+        };
+        let mut is_done = vec![[false; 3]; holds.len()];
+        let mut edges = Vec::new();
+        for start in (0..as_number(holds.len())).flat_map(|c| [(c, 0), (c, 1), (c, 2)]) {
+            if !holds[start.0 as usize]
+                || is_done[start.0 as usize][start.1]
+                || !is_border(self, start)
+            {
+                continue;
+            }
+            let mut ring: SmallVec<[(u32, usize); 8]> = SmallVec::new();
+            let mut at = start;
+            while !std::mem::replace(&mut is_done[at.0 as usize][at.1], true) {
+                ring.push(at);
+                at = (at.0, (at.1 + 1) % 3);
+                while !is_border(self, at) {
+                    at = self.triangulation.across(at);
+                    at.1 = (at.1 + 1) % 3;
+                }
+            }
+            self.add_ring(&ring, &mut edges);
         }
         edges
     }
 
-    /// For each point the border between the cells with some numbers and all others that leaves it: in
-    /// general position there is one at most.
-    fn borders(&self, holds: impl Fn(i32) -> bool) -> Vec<Option<Border>> {
-        let mut next = vec![None; self.cells.len()];
-        let held = |cell: u32| cell != NONE && holds(self.numbers[cell as usize]);
-        for (number, cell) in (0..).zip(self.cells.cells()) {
-            let inside = held(number);
-            for i in (0..3).filter(|i| inside && !held(cell.mates[*i])) {
-                let (to, mark) = (cell.corners[(i + 1) % 3], cell.marks[i]);
-                next[cell.corners[i] as usize] = Some(Border { to, mark });
+    /// Adds a loop of borders, those that continue each other as one.
+    fn add_ring(&mut self, ring: &[(u32, usize)], edges: &mut Vec<BareEdge>) {
+        let turns = |this: &mut Self, i: usize| {
+            let before = ring[(i + ring.len() - 1) % ring.len()];
+            if this.have_one_cut(before, ring[i]) {
+                return false;
             }
+            let ((from, at), (_, to)) = (
+                this.triangulation.ends(before),
+                this.triangulation.ends(ring[i]),
+            );
+            this.triangulation.turn([from, at, to]) != Sign::Zero
+        };
+        let corners: SmallVec<[usize; 8]> = (0..ring.len()).filter(|i| turns(self, *i)).collect();
+        for (k, first) in corners.iter().enumerate() {
+            let (from, _) = self.triangulation.ends(ring[*first]);
+            let (to, _) = self
+                .triangulation
+                .ends(ring[corners[(k + 1) % corners.len()]]);
+            edges.push(BareEdge {
+                from: Arc::clone(self.triangulation.vertex(from)),
+                to: Arc::clone(self.triangulation.vertex(to)),
+                carrier: self.carrier(ring[*first]),
+            });
         }
-        next
     }
 
-    fn edge(&self, from: u32, border: Border, planes: &Planes) -> BareEdge {
-        let carrier = if border.mark == 0 {
-            let edge = self.cells.rim([from, border.to]);
-            Carrier::Edge(LatticeEdge::of_ring(&self.ring, as_number(edge)))
-        } else {
-            let segment = border.mark.unsigned_abs() as usize - 1;
-            let other = self.face.segments[segment].other;
-            // What is behind the other face lies on the segment's left.
-            Carrier::Cut(Arc::clone(&planes[&other]), border.mark < 0)
-        };
-        BareEdge {
-            from: Arc::clone(self.cells.vertex(from)),
-            to: Arc::clone(self.cells.vertex(border.to)),
-            carrier,
+    /// Return whether two edges of cells lie in one plane that cuts the face; may return false negatives.
+    fn have_one_cut(&self, first: (u32, usize), second: (u32, usize)) -> bool {
+        let cut = |(cell, edge)| self.triangulation.along_edge(cell, edge).next();
+        let cuts = cut(first).zip(cut(second));
+        cuts.is_some_and(|((p, _), (q, _))| {
+            let [p, q] = [p, q].map(|segment| &self.cuts[segment as usize]);
+            Arc::ptr_eq(p, q) || p.coincides(q).is_some()
+        })
+    }
+
+    fn carrier(&self, (cell, edge): (u32, usize)) -> Carrier {
+        let (from, to) = self.triangulation.ends((cell, edge));
+        if self.triangulation.cells()[cell as usize].mates[edge] == NONE {
+            let rim = self.triangulation.rim([from, to]);
+            return Carrier::Edge(LatticeEdge::of_ring(&self.ring, as_number(rim)));
+        }
+        let mut along = self.triangulation.along_edge(cell, edge);
+        let (segment, is_along) = along
+            .next()
+            .expect("cells that differ are parted by a segment");
+        Carrier::Cut(Arc::clone(&self.cuts[segment as usize]), !is_along)
+    }
+}
+
+/// The point of a plane above a place given in half steps, as seen along its main axis.
+pub(super) fn above(plane: &Arc<Plane>, doubled: [i64; 2]) -> Option<Arc<Vertex>> {
+    let axis = plane.main_axis();
+    let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
+    Vertex::meet(plane, &cut(1), &cut(2)).map(Arc::new)
+}
+
+/// The plane that cuts a face along a segment.
+fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
+    match segment.line {
+        Line::Directed | Line::Touching { .. } => Arc::clone(&shared.planes[&segment.other]),
+        Line::Edge(edge) => {
+            let corners = shared.surfaces.corners(segment.other);
+            let (a, b) = (&corners[edge], &corners[(edge + 1) % 3]);
+            let plane = Plane::through_edge(a, b, face.plane.main_axis());
+            Arc::new(plane.expect("no edge of a face is parallel to the main axis of its plane"))
         }
     }
 }
 
-/// A border of cells on its left.
-#[derive(Clone, Copy, Debug)]
-struct Border {
-    to: u32,
-    /// As a cell's.
-    mark: i32,
+/// The ends of a segment in the order in which what lies on its left is on the minus side of its cut.
+fn directed(
+    cells: &mut Triangulation,
+    [from, to]: [u32; 2],
+    segment: &Segment,
+    face: &Face,
+    shared: &Shared,
+) -> [u32; 2] {
+    let (corner, side) = match segment.line {
+        Line::Directed => return [from, to],
+        Line::Touching { corner, side, .. } => (corner, side),
+        Line::Edge(_) => {
+            let plane = cut(segment, face, shared);
+            let sides = face.corners.each_ref().map(|c| plane.side_of_lattice(c));
+            let corner = (0..3).find(|i| sides[*i] != Side::On).unwrap_or(0);
+            (corner, sides[corner])
+        }
+    };
+    let is_left = cells.turn([from, to, as_number(corner)]) == Sign::Positive;
+    if is_left == (side == Side::Minus) {
+        [from, to]
+    } else {
+        [to, from]
+    }
 }
 
 /// The places of a face's points in its triangulation, by their numbers.
@@ -160,19 +337,25 @@ fn insert(cells: &mut Triangulation, face: &Face, shared: &Shared) -> Result<Pla
     points.sort_unstable();
     points.dedup();
     let mut places = SmallVec::with_capacity(points.len());
+    let rims: SmallVec<[Option<usize>; 16]> = points
+        .iter()
+        .map(|p| face.rim(&shared.points[*p as usize]))
+        .collect();
+    let on = |rim: Option<usize>| points.iter().zip(&rims).filter(move |p| *p.1 == rim);
     for edge in 0..3 {
-        let on: SmallVec<[u32; 8]> = points
-            .iter()
-            .copied()
-            .filter(|p| face.rim(&shared.crossings[*p as usize]) == Some(edge))
-            .collect();
+        let on: SmallVec<[u32; 8]> = on(Some(edge)).map(|p| *p.0).collect();
         insert_on_border(cells, face, shared, edge, on, &mut places);
     }
-    for point in points {
-        if face.rim(&shared.crossings[point as usize]).is_none() {
-            let vertex = Arc::clone(&shared.vertices[point as usize]);
-            places.push((point, cells.insert(vertex)?));
-        }
+    for (point, _) in on(None) {
+        let place = match &shared.points[*point as usize] {
+            Point::Corner(at) => face.corners.iter().position(|c| c == at),
+            Point::Through(..) | Point::Edges(_) => None,
+        };
+        let place = match place {
+            Some(corner) => as_number(corner),
+            None => cells.insert(Arc::clone(&shared.vertices[*point as usize]))?,
+        };
+        places.push((*point, place));
     }
     places.sort_unstable();
     Ok(Places(places))
@@ -196,20 +379,30 @@ fn insert_on_border(
         points.reverse();
     }
     let (mut last, end) = (as_number(edge), as_number((edge + 1) % 3));
-    for point in points {
-        last = cells.divide_border([last, end], Arc::clone(vertex(point)));
-        places.push((point, last));
+    for (i, point) in points.iter().enumerate() {
+        let is_known = i > 0 && vertex(points[i - 1]).same(vertex(*point));
+        if !is_known {
+            last = cells.divide_border([last, end], Arc::clone(vertex(*point)));
+        }
+        places.push((*point, last));
     }
 }
 
 impl Face<'_> {
-    /// The edge of the face that a crossing lies on.
-    fn rim(&self, crossing: &Crossing) -> Option<usize> {
-        let is_it = |i: &usize| {
-            let [a, b] = [self.vertices[*i], self.vertices[(i + 1) % 3]];
-            crossing.edge == [a.min(b), a.max(b)]
+    /// The edge of the face that a point is named by.
+    fn rim(&self, point: &Point) -> Option<usize> {
+        let of = |(operand, ends): &(usize, [VertexId; 2])| {
+            let is_it = |i: &usize| {
+                let [a, b] = [self.vertices[*i], self.vertices[(i + 1) % 3]];
+                *ends == [a.min(b), a.max(b)]
+            };
+            (0..3).find(is_it).filter(|_| *operand == self.operand)
         };
-        (0..3).find(is_it).filter(|_| crossing.of == self.operand)
+        match point {
+            Point::Corner(_) => None,
+            Point::Through(edge, _) => of(edge),
+            Point::Edges(edges) => edges.iter().find_map(of),
+        }
     }
 }
 
@@ -221,51 +414,5 @@ fn axes(plane: &Plane) -> [usize; 2] {
         [u, v]
     } else {
         [v, u]
-    }
-}
-
-/// For each cell the number beyond that of the first: it changes by one across each segment.
-fn numbers(cells: &Triangulation) -> Vec<i32> {
-    let cells = cells.cells();
-    let mut numbers = vec![None; cells.len()];
-    numbers[0] = Some(0);
-    let mut open = vec![0u32];
-    while let Some(at) = open.pop() {
-        let cell = &cells[at as usize];
-        let here = numbers[at as usize].unwrap_or(0);
-        for (mate, mark) in cell.mates.iter().zip(cell.marks) {
-            if *mate != NONE && numbers[*mate as usize].is_none() {
-                // A cell on the left of a segment is behind the other face, its mate is in front.
-                numbers[*mate as usize] = Some(here - mark.signum());
-                open.push(*mate);
-            }
-        }
-    }
-    numbers.into_iter().map(|n| n.unwrap_or(0)).collect()
-}
-
-/// Adds an edge to a loop, or makes the last one longer by it.
-fn join(ring: &mut SmallVec<[BareEdge; 8]>, edge: BareEdge) {
-    match ring.last_mut() {
-        Some(last) if continues(last, &edge) => last.to = edge.to,
-        _ => ring.push(edge),
-    }
-}
-
-/// Joins the last edge of a loop to the first one, if it is continued by that.
-fn close(ring: &mut SmallVec<[BareEdge; 8]>) {
-    if let [first, .., last] = &mut ring[..]
-        && continues(last, first)
-    {
-        first.from = Arc::clone(&last.from);
-        ring.pop();
-    }
-}
-
-/// Return whether two edges that follow each other in a face lie on one line.
-fn continues(edge: &BareEdge, next: &BareEdge) -> bool {
-    match (&edge.carrier, &next.carrier) {
-        (Carrier::Cut(p, _), Carrier::Cut(q, _)) => Arc::ptr_eq(p, q) || p.coincides(q).is_some(),
-        _ => false,
     }
 }

@@ -5,9 +5,13 @@
 
 use std::cmp::Ordering;
 
+use smallvec::SmallVec;
+
 use super::candidates::{Operand, Windings};
 use super::triangulation::Special;
 use crate::arith::convert::as_number;
+use crate::geometry::plane::Plane;
+use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
@@ -22,18 +26,25 @@ pub(super) struct Labels<'a> {
     above: Vec<i32>,
     /// The number at the root of a class.
     known: Vec<Option<i32>>,
+    /// By vertex, whether it lies on the other operand; empty if none does.
+    touching: Vec<bool>,
 }
 
 impl<'a> Labels<'a> {
     /// The numbers of one operand around the vertices of another: nothing is known.
-    pub(super) fn new(of: Operand<'a>, around: Operand<'a>) -> Self {
+    pub(super) fn new(of: Operand<'a>, around: Operand<'a>, on_faces: &[VertexId]) -> Self {
         let vertices = of.mesh.vertices.len();
+        let mut touching = vec![false; if on_faces.is_empty() { 0 } else { vertices }];
+        for vertex in on_faces {
+            touching[vertex.place()] = true;
+        }
         Self {
             of,
             windings: Windings::of(around),
             parents: (0..as_number(vertices)).collect(),
             above: vec![0; vertices],
             known: vec![None; vertices],
+            touching,
         }
     }
 
@@ -62,11 +73,20 @@ impl<'a> Labels<'a> {
         self.join_roots(of_a, of_b, more).map(|_| ())
     }
 
-    /// Notes that the number is the same at the corners of a face.
+    /// Notes that the number is the same at all corners of a face that do not lie on the other operand.
     ///
     /// # Errors
     /// As for [`Self::join`].
     pub(super) fn join_corners(&mut self, corners: [VertexId; 3]) -> Result<(), Special> {
+        if corners.iter().any(|v| self.is_touching(*v)) {
+            let free: SmallVec<[VertexId; 3]> = corners
+                .into_iter()
+                .filter(|v| !self.is_touching(*v))
+                .collect();
+            return free
+                .windows(2)
+                .try_for_each(|pair| self.join(pair[0], pair[1], 0));
+        }
         let [a, b, c] = corners.map(|v| self.root(v));
         let joined = self.join_roots(a, b, 0)?;
         // What was c's root may be the root that has just got a parent.
@@ -76,6 +96,16 @@ impl<'a> Labels<'a> {
             c
         };
         self.join_roots(joined, c, 0).map(|_| ())
+    }
+
+    /// Return whether a vertex lies on the other operand: then no number is that around it.
+    pub(super) fn is_touching(&self, vertex: VertexId) -> bool {
+        self.touching.get(vertex.place()).is_some_and(|t| *t)
+    }
+
+    /// The number in front of a plane at a point.
+    pub(super) fn in_front(&mut self, plane: &Plane, point: &Vertex, doubled: [i64; 2]) -> i32 {
+        self.windings.in_front(plane, point, doubled)
     }
 
     /// Joins two classes, given as roots and what vertices have above them; returns that of the first
@@ -108,7 +138,7 @@ impl<'a> Labels<'a> {
     pub(super) fn note_beyond(&mut self) {
         for (vertex, place) in VertexId::all().zip(&self.of.mesh.vertices) {
             poll();
-            if self.windings.are_zero_at(place) {
+            if self.windings.are_zero_at(place) && !self.is_touching(vertex) {
                 let (root, above) = self.root(vertex);
                 self.known[root].get_or_insert(-above);
             }

@@ -36,7 +36,7 @@ pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(),
         for (other, _) in others.filter(|(_, others)| bounds.meets(others)) {
             met += 1;
             let other = Facing::of(&operands[1].triangle(*other));
-            if met > CROWD * SAMPLE || contact(&facing, &other) == Contact::Special {
+            if met > CROWD * SAMPLE || matches!(contact(&facing, &other), Contact::Touching(_)) {
                 return Err(Special);
             }
         }

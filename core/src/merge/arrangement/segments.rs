@@ -1,14 +1,16 @@
-//! The segments in which faces of two operands cross, and the points at their ends.
+//! The segments in which faces meet, and the points at their ends.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::candidates::{Candidates, Operand};
-use super::contact::{contact, Contact, End};
+use super::contact::{contact, Contact, End, Spot, Touching};
+use super::surfaces::Surfaces;
 use super::triangulation::Special;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::Facing;
+use crate::geometry::plane::Lattice;
+use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::Worth;
@@ -17,108 +19,237 @@ use crate::mesh::tasks::Worth;
 /// sweeps of the descent do.
 const PAIRS_FOR_EACH: usize = 24;
 
-/// A point in which an edge of one operand goes through a face of the other.
+/// An edge: the operand, and its ends there, the lower number first.
+pub(super) type Edge = (usize, [VertexId; 2]);
+
+/// A point in which faces meet, by what goes through it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Crossing {
-    /// The operand that the edge is of.
-    pub(super) of: usize,
-    /// The ends of the edge, the lower number first.
-    pub(super) edge: [VertexId; 2],
-    /// The face, by its number among the other operand's candidates.
-    pub(super) face: u32,
+pub(super) enum Point {
+    /// A corner of a face.
+    Corner(Lattice),
+    /// An edge goes through the inside of a face.
+    Through(Edge, u32),
+    /// Two edges cross.
+    Edges([Edge; 2]),
 }
 
-/// A segment in a face. In front of the face, what is behind the other face lies on its left.
+/// A segment that a face has in common with another one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
-    /// The face, by its number among the candidates.
+    /// The face.
     pub(super) face: u32,
-    /// The face of the other operand, the same way.
+    /// The other face.
     pub(super) other: u32,
     /// The points at the ends.
     pub(super) ends: [u32; 2],
+    /// The line that it lies on.
+    pub(super) line: Line,
 }
 
-/// Where two operands cross.
+/// The line of a segment in a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Line {
+    /// That of both planes, directed so that in front of the face what is behind the other face lies on
+    /// its left.
+    Directed,
+    /// That of both planes.
+    Touching {
+        /// A corner of the face that does not lie on it.
+        corner: usize,
+        /// The side of the other face's plane on which that corner lies.
+        side: Side,
+        /// True if something of the other face lies in front of the face.
+        in_front: bool,
+    },
+    /// An edge of the other face, which lies in the same plane, by the corner in which it starts.
+    Edge(usize),
+}
+
+/// Faces in one plane that have an area in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Cover {
+    /// The face.
+    pub(super) face: u32,
+    /// The other face.
+    pub(super) other: u32,
+}
+
+/// Where faces meet.
 #[derive(Debug, Default)]
-pub(super) struct Segments {
-    /// The points, each once.
-    pub(super) points: Vec<Crossing>,
-    /// The segments by operand, those of a face one after the other.
-    pub(super) of: [Vec<Segment>; 2],
+pub(super) struct Contacts {
+    /// The points, each once for what goes through it.
+    pub(super) points: Vec<Point>,
+    /// The segments, those of a face one after the other.
+    pub(super) segments: Vec<Segment>,
+    /// Faces in one plane, both ways, ascending.
+    pub(super) covers: Vec<Cover>,
+    /// Faces that touch others other than by crossing them; ascending.
+    pub(super) touched: Vec<u32>,
+    /// For each operand the vertices that lie on faces of the other one.
+    pub(super) touching: [Vec<VertexId>; 2],
+    numbers: HashMap<Point, u32>,
 }
 
-/// Two candidates that cross, and the ends of the segment as the first one has it.
+/// Two faces that meet.
 struct Met {
     pair: [u32; 2],
-    ends: [End; 2],
+    how: How,
 }
 
-/// The segments of all pairs.
+enum How {
+    Crossing([End; 2]),
+    Touching(Box<Touching>),
+}
+
+/// Where the candidates of two operands meet.
 ///
 /// # Errors
-/// `Special` if faces meet in another way than that edges go through faces, or are crowded.
-pub(super) fn segments(
-    operands: &[Operand; 2],
-    candidates: &[Candidates; 2],
-    worth: Worth,
-) -> Result<Segments, Special> {
-    let faces: usize = candidates.iter().map(|c| c.faces.len()).sum();
-    let left = AtomicUsize::new(PAIRS_FOR_EACH * faces);
+/// `Special` if they are crowded.
+pub(super) fn contacts(surfaces: &Surfaces, worth: Worth) -> Result<Contacts, Special> {
+    let [first, second] = &surfaces.candidates;
+    let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.faces.len() + second.faces.len()));
     let visit = |block: &[[u32; 2]]| {
         let take = |left: usize| left.checked_sub(block.len());
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
             .map_err(|_| Special)?;
-        met(candidates, block).inspect_err(|_| left.store(0, Ordering::Relaxed))
+        Ok(met(surfaces, block))
     };
-    let [first, second] = candidates;
     let met = first.tree.each_block(&second.tree, worth, visit)?;
-    Ok(numbered(operands, candidates, met))
+    let mut contacts = Contacts::default();
+    for Met { pair, how } in met.into_iter().flatten() {
+        poll();
+        match how {
+            How::Crossing(ends) => contacts.cross(surfaces, pair, ends),
+            How::Touching(touching) => contacts.touch(surfaces, pair, &touching),
+        }
+    }
+    contacts.sort();
+    Ok(contacts)
 }
 
-fn met(candidates: &[Candidates; 2], pairs: &[[u32; 2]]) -> Result<Vec<Met>, Special> {
+fn met(surfaces: &Surfaces, pairs: &[[u32; 2]]) -> Vec<Met> {
     spend(pairs.len());
+    let [ours, theirs] = &surfaces.candidates;
     let mut found = Vec::new();
     for run in pairs.chunk_by(|p, q| p[0] == q[0]) {
-        let first = Facing::of(&candidates[0].triangles[run[0][0] as usize]);
-        for pair in run {
-            let second = Facing::of(&candidates[1].triangles[pair[1] as usize]);
-            match contact(&first, &second) {
-                Contact::Apart => {}
-                Contact::Crossing(ends) => found.push(Met { pair: *pair, ends }),
-                Contact::Special => return Err(Special),
-            }
+        let first = Facing::of(&ours.triangles[run[0][0] as usize]);
+        for &[f, g] in run {
+            let second = Facing::of(&theirs.triangles[g as usize]);
+            let how = match contact(&first, &second) {
+                Contact::Apart => continue,
+                Contact::Crossing(ends) => How::Crossing(ends),
+                Contact::Touching(touching) => How::Touching(touching),
+            };
+            let pair = [f, surfaces.second + g];
+            found.push(Met { pair, how });
         }
     }
-    Ok(found)
+    found
 }
 
-/// Gives each point one number: both faces at an edge find it.
-fn numbered(operands: &[Operand; 2], candidates: &[Candidates; 2], met: Vec<Vec<Met>>) -> Segments {
-    let mut segments = Segments::default();
-    let mut numbers: HashMap<Crossing, u32> = HashMap::default();
-    for Met { pair, ends } in met.into_iter().flatten() {
-        poll();
-        let ends = ends.map(|end| {
-            let corners = candidates[end.of].corners(operands[end.of].mesh, pair[end.of]);
-            let [a, b] = end.edge.map(|i| corners[i]);
-            let crossing = Crossing {
-                of: end.of,
-                edge: [a.min(b), a.max(b)],
-                face: pair[1 - end.of],
-            };
-            *numbers.entry(crossing).or_insert_with(|| {
-                segments.points.push(crossing);
-                as_number(segments.points.len() - 1)
-            })
-        });
-        for (k, ends) in [ends, [ends[1], ends[0]]].into_iter().enumerate() {
-            let (face, other) = (pair[k], pair[1 - k]);
-            segments.of[k].push(Segment { face, other, ends });
+impl Contacts {
+    fn cross(&mut self, surfaces: &Surfaces, pair: [u32; 2], ends: [End; 2]) {
+        let [from, to] = ends.map(|end| self.point(surfaces, pair, Spot::Through(end)));
+        for (k, ends) in [[from, to], [to, from]].into_iter().enumerate() {
+            self.segments.push(Segment {
+                face: pair[k],
+                other: pair[1 - k],
+                ends,
+                line: Line::Directed,
+            });
         }
     }
-    for list in &mut segments.of {
-        list.sort_unstable_by_key(|s| (s.face, s.other));
+
+    fn touch(&mut self, surfaces: &Surfaces, pair: [u32; 2], touching: &Touching) {
+        self.touched.extend(pair);
+        for spot in &touching.spots {
+            self.note_corners(surfaces, pair, *spot);
+        }
+        for stretch in &touching.stretches {
+            let ends = stretch.ends.map(|spot| self.point(surfaces, pair, spot));
+            for (k, (face, other)) in [(pair[0], pair[1]), (pair[1], pair[0])]
+                .into_iter()
+                .enumerate()
+            {
+                let line = match stretch.along {
+                    Some((of, edge)) if of != k => Line::Edge(edge),
+                    Some(_) => continue,
+                    None => line(&touching.sides[k], &touching.sides[1 - k]),
+                };
+                self.segments.push(Segment {
+                    face,
+                    other,
+                    ends,
+                    line,
+                });
+            }
+        }
+        if touching.overlap {
+            let [face, other] = pair;
+            self.covers.extend([
+                Cover { face, other },
+                Cover {
+                    face: other,
+                    other: face,
+                },
+            ]);
+        }
     }
-    segments
+
+    /// Notes the vertices that lie on the other operand.
+    fn note_corners(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) {
+        let Spot::Corner(of, corner) = spot else {
+            return;
+        };
+        let vertex = surfaces.vertices(pair[of])[corner];
+        self.touching[surfaces.operand_of(pair[of])].push(vertex);
+        let place = surfaces.place(pair[of], corner);
+        let other = pair[1 - of];
+        if let Some(twin) = surfaces.corners(other).iter().position(|p| *p == place) {
+            let vertex = surfaces.vertices(other)[twin];
+            self.touching[surfaces.operand_of(other)].push(vertex);
+        }
+    }
+
+    /// The number of a point: all faces that meet there find it.
+    fn point(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> u32 {
+        let edge = |of: usize, ends: [usize; 2]| {
+            let corners = surfaces.vertices(pair[of]);
+            let [a, b] = ends.map(|i| corners[i]);
+            (surfaces.operand_of(pair[of]), [a.min(b), a.max(b)])
+        };
+        let edge_from = |of: usize, i: usize| edge(of, [i, (i + 1) % 3]);
+        let point = match spot {
+            Spot::Corner(of, corner) => Point::Corner(surfaces.place(pair[of], corner)),
+            Spot::Through(end) => Point::Through(edge(end.of, end.edge), pair[1 - end.of]),
+            Spot::Edges(first, second) => {
+                let mut edges = [edge_from(0, first), edge_from(1, second)];
+                edges.sort_unstable();
+                Point::Edges(edges)
+            }
+        };
+        *self.numbers.entry(point).or_insert_with(|| {
+            self.points.push(point);
+            as_number(self.points.len() - 1)
+        })
+    }
+
+    fn sort(&mut self) {
+        self.segments
+            .sort_unstable_by_key(|s| (s.face, s.other, s.ends));
+        self.covers.sort_unstable();
+        self.touched.sort_unstable();
+        self.touched.dedup();
+    }
+}
+
+/// The line in which the planes of two faces meet, as one of them has it, by the sides of the other's
+/// plane on which corners lie.
+fn line(ours: &[Side], theirs: &[Side]) -> Line {
+    let corner = ours.iter().position(|s| *s != Side::On).unwrap_or(0);
+    Line::Touching {
+        corner,
+        side: ours[corner],
+        in_front: theirs.contains(&Side::Plus),
+    }
 }

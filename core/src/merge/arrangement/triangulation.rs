@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use crate::arith::convert::as_number;
+use crate::arith::convert::{as_number, as_whole};
 use crate::arith::{Int, Sign};
 use crate::geometry::doubles::turn;
 use crate::geometry::vertex::{Homogeneous, Vertex};
@@ -31,9 +31,19 @@ pub(super) struct Cell {
     pub(super) corners: [u32; 3],
     /// The triangles across the edges.
     pub(super) mates: [u32; 3],
-    /// For each edge the segment that it is part of, by its number and one more; negative if the
-    /// segment runs the other way, 0 if there is none.
-    pub(super) marks: [i32; 3],
+    /// For each edge the place of the last segment that runs along it among the runs, and one more;
+    /// negative if the runs there are told as seen from across, 0 if there is none.
+    marks: [i32; 3],
+}
+
+/// A segment that runs along an edge.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    segment: u32,
+    /// True if the segment has the direction of the edge, as the mark is positive there.
+    is_forward: bool,
+    /// The mark of the segments that ran there before.
+    before: i32,
 }
 
 /// A point of the face as seen along an axis.
@@ -56,6 +66,7 @@ pub(super) struct Triangulation {
     /// A triangle at each point.
     incident: Vec<u32>,
     cells: Vec<Cell>,
+    runs: Vec<Run>,
     last: u32,
     random: u32,
 }
@@ -68,6 +79,7 @@ impl Triangulation {
             places: Vec::with_capacity(8),
             incident: vec![0; 3],
             cells: Vec::with_capacity(8),
+            runs: Vec::new(),
             last: 0,
             random: 1,
         };
@@ -92,15 +104,54 @@ impl Triangulation {
         &self.places[place as usize].vertex
     }
 
-    /// The number of points.
-    pub(super) fn len(&self) -> usize {
-        self.places.len()
-    }
-
     /// The edge of the face on which two points of its border lie.
     pub(super) fn rim(&self, ends: [u32; 2]) -> usize {
         let [a, b] = ends.map(|p| self.places[p as usize].rims);
         (a & b).trailing_zeros() as usize
+    }
+
+    /// The ends of an edge of a triangle.
+    pub(super) fn ends(&self, (cell, edge): (u32, usize)) -> (u32, u32) {
+        let corners = self.cells[cell as usize].corners;
+        (corners[edge], corners[(edge + 1) % 3])
+    }
+
+    /// An edge of a triangle as its neighbour has it.
+    pub(super) fn across(&self, (cell, edge): (u32, usize)) -> (u32, usize) {
+        let mate = self.cells[cell as usize].mates[edge];
+        (mate, self.edge_to(mate, cell))
+    }
+
+    /// Twice the area of a triangle, about.
+    pub(super) fn size(&self, cell: u32) -> f64 {
+        let [a, b, c] = self.cells[cell as usize]
+            .corners
+            .map(|i| &self.places[i as usize]);
+        let ([ux, uy], [vx, vy]) = (a.to(b), a.to(c));
+        ux * vy - uy * vx
+    }
+
+    /// The half step of the lattice next to the middle of a triangle, doubled, in the order of the axes.
+    pub(super) fn middle(&self, cell: u32) -> [i64; 2] {
+        let corners = self.cells[cell as usize].corners;
+        let at = |i: usize| corners.map(|c| self.places[c as usize].at[i]);
+        let [u, v] = [0, 1].map(|i| as_whole((at(i).iter().sum::<f64>() * 2.0 / 3.0).round()));
+        if (self.axes[0] + 1) % 3 == self.axes[1] {
+            [u, v]
+        } else {
+            [v, u]
+        }
+    }
+
+    /// Return whether a point lies strictly inside a triangle.
+    pub(super) fn holds(&mut self, cell: u32, vertex: Arc<Vertex>) -> bool {
+        let [a, b, c] = self.cells[cell as usize].corners;
+        let point = self.add(vertex, 0);
+        let is_left = |(p, q)| self.turn([p, q, point]) == Sign::Positive;
+        let is_inside = [(a, b), (b, c), (c, a)].into_iter().all(is_left);
+        self.places.pop();
+        self.incident.pop();
+        is_inside
     }
 
     /// A triangle at a point.
@@ -142,7 +193,7 @@ impl Triangulation {
     }
 
     /// Sign of the turn at three points, positive to the left; exact.
-    fn turn(&mut self, [a, b, c]: [u32; 3]) -> Sign {
+    pub(super) fn turn(&mut self, [a, b, c]: [u32; 3]) -> Sign {
         let [p, q, r] = [a, b, c].map(|i| &self.places[i as usize]);
         if p.rims & q.rims & r.rims != 0 {
             return Sign::Zero;
@@ -216,26 +267,39 @@ impl Triangulation {
         point
     }
 
-    /// Adds a point inside the face.
+    /// Adds a point of the face; returns its number, or that of the point that is there.
     ///
     /// # Errors
-    /// `Special` if it is one of the points that are there, or lies on the border.
+    /// `Special` if it lies outside.
     pub(super) fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Special> {
         let point = self.add(vertex, 0);
         let (cell, on) = self.locate(point)?;
-        let changed = match on {
-            None => self.split_cell(cell, point),
-            Some(edge) => self.split_edge(cell, edge, point),
+        self.last = cell;
+        let Cell { corners, mates, .. } = self.cells[cell as usize];
+        let changed = match on[..] {
+            [] => self.split_cell(cell, point),
+            [edge] => {
+                if mates[edge] == NONE {
+                    let rim = self.rim([corners[edge], corners[(edge + 1) % 3]]);
+                    self.places[point as usize].rims = 1 << rim;
+                }
+                self.split_edge(cell, edge, point)
+            }
+            _ => {
+                self.places.pop();
+                self.incident.pop();
+                let is_end = |i: &usize| on.contains(i) && on.contains(&((i + 2) % 3));
+                return Ok(corners[(0..3).find(is_end).unwrap_or(0)]);
+            }
         };
         self.legalize(point, changed);
-        self.last = cell;
         Ok(point)
     }
 
-    /// The triangle that holds a point, and the edge on which it lies.
+    /// The triangle that holds a point, and the edges on which it lies.
     ///
     /// A walk may go in circles if it tries edges in the same order each time.
-    fn locate(&mut self, point: u32) -> Result<(u32, Option<usize>), Special> {
+    fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Special> {
         let mut at = self.last;
         'walk: loop {
             poll();
@@ -258,11 +322,7 @@ impl Triangulation {
                     Sign::Zero => on.push(i),
                 }
             }
-            return match on[..] {
-                [] => Ok((at, None)),
-                [edge] if cell.mates[edge] != NONE => Ok((at, Some(edge))),
-                _ => Err(Special),
-            };
+            return Ok((at, on));
         }
     }
 
@@ -271,23 +331,23 @@ impl Triangulation {
         let Cell {
             corners: [a, b, c],
             mates,
-            ..
+            marks,
         } = self.cells[number as usize];
         let (second, third) = (as_number(self.cells.len()), as_number(self.cells.len() + 1));
-        let cell = |corners, mates| Cell {
+        let cell = |corners, mates, mark| Cell {
             corners,
             mates,
-            marks: [0; 3],
+            marks: [mark, 0, 0],
         };
-        self.put(number, cell([a, b, m], [mates[0], second, third]));
-        self.put(second, cell([b, c, m], [mates[1], third, number]));
-        self.put(third, cell([c, a, m], [mates[2], number, second]));
+        self.put(number, cell([a, b, m], [mates[0], second, third], marks[0]));
+        self.put(second, cell([b, c, m], [mates[1], third, number], marks[1]));
+        self.put(third, cell([c, a, m], [mates[2], number, second], marks[2]));
         self.relink(mates[1], number, second);
         self.relink(mates[2], number, third);
         SmallVec::from_slice(&[number, second, third])
     }
 
-    /// Divides an edge that no segment runs along; returns the triangles there.
+    /// Divides an edge; returns the triangles there.
     fn split_edge(&mut self, number: u32, edge: usize, m: u32) -> SmallVec<[u32; 4]> {
         let across = self.cells[number as usize].mates[edge];
         let second = as_number(self.cells.len());
@@ -324,7 +384,7 @@ impl Triangulation {
             Cell {
                 corners: [a, m, apex],
                 mates: [first_mate, second, old.mates[last]],
-                marks: [0, 0, old.marks[last]],
+                marks: [old.marks[edge], 0, old.marks[last]],
             },
         );
         self.put(
@@ -332,7 +392,7 @@ impl Triangulation {
             Cell {
                 corners: [m, b, apex],
                 mates: [second_mate, old.mates[next], number],
-                marks: [0, old.marks[next], 0],
+                marks: [old.marks[edge], old.marks[next], 0],
             },
         );
         self.relink(old.mates[next], number, second);
@@ -376,7 +436,8 @@ impl Triangulation {
             };
             let edge = (k + 1) % 3;
             let across = cell.mates[edge];
-            if across != NONE && self.should_flip(number, edge) {
+            let is_free = across != NONE && cell.marks[edge] == 0;
+            if is_free && self.should_flip(number, edge) {
                 self.flip(number, edge);
                 open.extend([number, across]);
             }
@@ -420,71 +481,144 @@ impl Triangulation {
         terms.iter().sum::<f64>() > CLEAR * size
     }
 
-    /// Makes a segment an edge.
+    /// Makes a segment a chain of edges. Where it crosses another segment is a new point, which `meet`
+    /// gives by the other segment's number.
     ///
     /// # Errors
-    /// `Special` if it meets another segment, or a point other than its ends.
-    pub(super) fn constrain(&mut self, ends: [u32; 2], segment: u32) -> Result<(), Special> {
-        let [from, to] = ends;
-        if self.edge_between(from, to).is_none() && self.edge_between(to, from).is_none() {
-            let crossed = self.crossed(from, to)?;
-            self.remove(crossed, from, to);
-        }
-        self.mark(from, to, segment)
-    }
-
-    /// Marks an edge as a part of a segment.
-    fn mark(&mut self, from: u32, to: u32, segment: u32) -> Result<(), Special> {
-        let sign = i32::try_from(segment + 1).map_err(|_| Special)?;
-        for ([from, to], mark) in [([from, to], sign), ([to, from], -sign)] {
-            if let Some((cell, edge)) = self.edge_between(from, to) {
-                let known = &mut self.cells[cell as usize].marks[edge];
-                if *known != 0 {
-                    return Err(Special);
+    /// `Special` if it leaves the face.
+    pub(super) fn constrain(
+        &mut self,
+        [from, to]: [u32; 2],
+        segment: u32,
+        meet: impl Fn(u32) -> Arc<Vertex>,
+    ) -> Result<(), Special> {
+        let (mut at, mut goals) = (from, vec![to]);
+        while let Some(goal) = goals.last().copied() {
+            poll();
+            if at == goal {
+                goals.pop();
+                continue;
+            }
+            match self.way(at, goal)? {
+                Way::Free(end, crossed) => {
+                    self.remove(crossed, at, end);
+                    self.mark(at, end, segment)?;
+                    at = end;
                 }
-                *known = mark;
+                Way::Blocked(cell, edge) => {
+                    let mark = self.cells[cell as usize].marks[edge];
+                    let (other, _) = self.along(mark).next().ok_or(Special)?;
+                    let point = self.add(meet(other), 0);
+                    self.split_edge(cell, edge, point);
+                    goals.push(point);
+                }
             }
         }
         Ok(())
     }
 
-    /// The edges that a segment crosses, in their order along it.
-    fn crossed(&mut self, from: u32, to: u32) -> Result<Vec<[u32; 2]>, Special> {
-        let (mut at, mut edge) = self.first_crossed(from, to)?;
+    /// The segments with a mark, each with whether it runs the way of the edge.
+    pub(super) fn along(&self, mark: i32) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let is_turned = mark < 0;
+        let mut next = mark.unsigned_abs();
+        std::iter::from_fn(move || {
+            let run = self.runs[next.checked_sub(1)? as usize];
+            next = run.before.unsigned_abs();
+            Some((run.segment, run.is_forward != is_turned))
+        })
+    }
+
+    /// The segments along an edge of a triangle, each with whether it runs the way of the edge.
+    pub(super) fn along_edge(
+        &self,
+        cell: u32,
+        edge: usize,
+    ) -> impl Iterator<Item = (u32, bool)> + '_ {
+        self.along(self.cells[cell as usize].marks[edge])
+    }
+
+    /// Marks an edge as a part of a segment.
+    fn mark(&mut self, from: u32, to: u32, segment: u32) -> Result<(), Special> {
+        let edges = [self.edge_between(from, to), self.edge_between(to, from)];
+        let known = |at: &Option<(u32, usize)>| at.map(|(c, e)| self.cells[c as usize].marks[e]);
+        let before = known(&edges[0])
+            .or_else(|| known(&edges[1]).map(|m| -m))
+            .unwrap_or(0);
+        self.runs.push(Run {
+            segment,
+            is_forward: before >= 0,
+            before,
+        });
+        let sign = if before < 0 { -1 } else { 1 };
+        let mark = i32::try_from(self.runs.len()).map_err(|_| Special)? * sign;
+        for (at, mark) in edges.into_iter().zip([mark, -mark]) {
+            if let Some((cell, edge)) = at {
+                self.cells[cell as usize].marks[edge] = mark;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first stretch of the way from a point to another one.
+    fn way(&mut self, from: u32, to: u32) -> Result<Way, Special> {
+        if self.edge_between(from, to).is_some() || self.edge_between(to, from).is_some() {
+            return Ok(Way::Free(to, Vec::new()));
+        }
+        let (mut at, mut edge) = match self.first_crossed(from, to)? {
+            Start::Edge(cell, edge) => (cell, edge),
+            Start::Along(point) => return Ok(Way::Free(point, Vec::new())),
+        };
         let mut crossed = Vec::new();
         loop {
             poll();
             let cell = self.cells[at as usize];
+            if cell.marks[edge] != 0 {
+                return Ok(Way::Blocked(at, edge));
+            }
             let across = cell.mates[edge];
-            if cell.marks[edge] != 0 || across == NONE {
+            if across == NONE {
                 return Err(Special);
             }
             crossed.push([cell.corners[edge], cell.corners[(edge + 1) % 3]]);
             let back = self.edge_to(across, at);
             let next = self.cells[across as usize].corners[(back + 2) % 3];
             if next == to {
-                return Ok(crossed);
+                return Ok(Way::Free(to, crossed));
             }
             at = across;
             edge = match self.turn([from, to, next]) {
+                Sign::Zero => return Ok(Way::Free(next, crossed)),
                 Sign::Positive => (back + 1) % 3,
                 Sign::Negative => (back + 2) % 3,
-                Sign::Zero => return Err(Special),
             };
         }
     }
 
-    /// The first edge that the way from a point to another one crosses.
-    fn first_crossed(&mut self, from: u32, to: u32) -> Result<(u32, usize), Special> {
+    /// The first edge that the way from a point to another one crosses, or runs along.
+    fn first_crossed(&mut self, from: u32, to: u32) -> Result<Start, Special> {
         for (number, k) in self.fan(from) {
             let corners = self.cells[number as usize].corners;
             let [right, left] = [1, 2].map(|i| corners[(k + i) % 3]);
             let sides = [right, left].map(|corner| self.turn([from, to, corner]));
+            for (corner, side) in [right, left].into_iter().zip(sides) {
+                if side == Sign::Zero && self.is_ahead(from, to, corner) {
+                    return Ok(Start::Along(corner));
+                }
+            }
             if sides == [Sign::Negative, Sign::Positive] {
-                return Ok((number, (k + 1) % 3));
+                return Ok(Start::Edge(number, (k + 1) % 3));
             }
         }
         Err(Special)
+    }
+
+    /// Return whether a point of the line through two others lies on the second one's side of the first.
+    fn is_ahead(&self, from: u32, to: u32, point: u32) -> bool {
+        let [from, to, point] = [from, to, point].map(|p| &self.places[p as usize]);
+        let width = |i: usize| (to.at[i] - from.at[i]).abs();
+        let axis = self.axes[usize::from(width(1) > width(0))];
+        let order = |p: &Place| from.vertex.compare_along(&p.vertex, axis);
+        order(point) == order(to)
     }
 
     /// Flips edges until none crosses a segment.
@@ -512,6 +646,22 @@ impl Triangulation {
             }
         }
     }
+}
+
+/// The first stretch of a way.
+enum Way {
+    /// It leads to a point, across edges that no segment runs along.
+    Free(u32, Vec<[u32; 2]>),
+    /// It meets an edge of a triangle that segments run along.
+    Blocked(u32, usize),
+}
+
+/// How a way leaves a point.
+enum Start {
+    /// Across an edge of a triangle.
+    Edge(u32, usize),
+    /// Along the edge to a point.
+    Along(u32),
 }
 
 impl Place {
@@ -552,7 +702,7 @@ fn turn_of([a, b, c]: [&Homogeneous; 3], [u, v]: [usize; 2]) -> Sign {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::plane::Lattice;
+    use crate::geometry::plane::Plane;
 
     fn vertex([x, y]: [i64; 2]) -> Arc<Vertex> {
         Arc::new(Vertex::lattice([x, y, 0]))
@@ -562,104 +712,108 @@ mod tests {
         Triangulation::new([[0, 0], [64, 0], [0, 64]].map(vertex), [0, 1])
     }
 
-    fn at(cells: &Triangulation, place: u32) -> Lattice {
-        *cells.vertex(place).as_lattice().expect("a lattice point")
+    fn at(cells: &Triangulation, place: u32) -> [f64; 2] {
+        cells.places[place as usize].at
+    }
+
+    /// Adds all segments between points, one after the other.
+    fn constrain_all(cells: &mut Triangulation, segments: &[[u32; 2]]) {
+        let plane = |[a, b]: [u32; 2]| {
+            let [a, b] = [a, b].map(|p| *cells.vertex(p).as_lattice().expect("a lattice point"));
+            Arc::new(Plane::beside_edge(&a, &b, 2))
+        };
+        let floor = Arc::new(Plane::axis_cut(2, 0));
+        let planes: Vec<Arc<Plane>> = segments.iter().map(|s| plane(*s)).collect();
+        for (number, ends) in (0..).zip(segments) {
+            let meet = |other: u32| {
+                let [p, q] = [number, other].map(|i| &planes[i as usize]);
+                Arc::new(Vertex::meet(&floor, p, q).expect("they cross"))
+            };
+            cells
+                .constrain(*ends, number, meet)
+                .expect("inside the face");
+        }
     }
 
     /// Twice the area of all triangles, each of which must turn left and know its neighbours.
-    fn area(cells: &Triangulation) -> i64 {
-        let mut sum = 0;
+    fn area(cells: &Triangulation) -> f64 {
+        let mut sum = 0.0;
         for (number, cell) in (0..).zip(cells.cells()) {
-            let [a, b, c] = cell.corners.map(|p| at(cells, p));
-            let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-            assert!(turn > 0);
-            sum += turn;
+            assert!(cells.size(number) > 0.0);
+            sum += cells.size(number);
             for i in (0..3).filter(|i| cell.mates[*i] != NONE) {
-                let mate = &cells.cells()[cell.mates[i] as usize];
-                let back = mate
-                    .mates
-                    .iter()
-                    .position(|m| *m == number)
-                    .expect("a mate");
-                assert_eq!(mate.corners[back], cell.corners[(i + 1) % 3]);
-                assert_eq!(mate.marks[back], -cell.marks[i]);
+                let (mate, back) = cells.across((number, i));
+                let (from, to) = cells.ends((number, i));
+                assert_eq!(cells.ends((mate, back)), (to, from));
+                assert_eq!(cells.cells()[mate as usize].marks[back], -cell.marks[i]);
+            }
+        }
+        sum
+    }
+
+    /// The length of all edges that a segment runs along.
+    fn length(cells: &Triangulation, segment: u32) -> f64 {
+        let mut sum = 0.0;
+        for (cell, edge) in
+            (0..as_number(cells.cells().len())).flat_map(|c| [0, 1, 2].map(|e| (c, e)))
+        {
+            let (from, to) = cells.ends((cell, edge));
+            if cells
+                .along_edge(cell, edge)
+                .any(|run| run == (segment, true))
+            {
+                let [[a, b], [c, d]] = [from, to].map(|p| at(cells, p));
+                sum += (c - a).hypot(d - b);
             }
         }
         sum
     }
 
     #[test]
-    fn points_and_segments_are_in_the_triangulation() {
+    fn points_are_in_the_triangulation_once() {
         let mut cells = face();
         let rim = cells.divide_border([0, 1], vertex([20, 0]));
         cells.divide_border([rim, 1], vertex([30, 0]));
-        let inner: Vec<u32> = (0..40)
-            .map(|k| {
-                cells
-                    .insert(vertex([1 + k * 13 % 31, 1 + k * 7 % 29]))
-                    .expect("a new point")
-            })
+        let inner = |k: i64| vertex([1 + k * 13 % 31, 1 + k * 7 % 29]);
+        let points: Vec<u32> = (0..40)
+            .map(|k| cells.insert(inner(k)).expect("inside"))
             .collect();
-        assert_eq!(area(&cells), 64 * 64);
-        for (number, ends) in (0..).zip([[rim, inner[3]], [inner[9], inner[30]], [2, inner[17]]]) {
-            if cells.constrain(ends, number) == Ok(()) {
-                let (cell, edge) = cells.edge_between(ends[0], ends[1]).expect("an edge");
-                assert_eq!(
-                    cells.cells()[cell as usize].marks[edge],
-                    i32::try_from(number).unwrap() + 1
-                );
-            }
-        }
-        assert_eq!(area(&cells), 64 * 64);
+        let again: Vec<u32> = (0..40)
+            .map(|k| cells.insert(inner(k)).expect("inside"))
+            .collect();
+        assert_eq!(points, again);
+        assert_eq!(cells.insert(vertex([20, 0])), Ok(rim));
+        assert_eq!(cells.insert(vertex([64, 0])), Ok(1));
+        let on_border = cells.insert(vertex([32, 32])).expect("on the border");
+        assert_eq!(cells.rim([on_border, 2]), 1);
+        assert_eq!(cells.insert(vertex([40, 40])), Err(Special));
+        assert!((area(&cells) - 4096.0).abs() < 1e-9);
     }
 
     #[test]
-    fn all_segments_between_points_become_edges_unless_they_meet_others() {
+    fn all_segments_between_points_become_edges() {
         for k in 0..200i64 {
             let mut cells = face();
             let places = (0..12).map(|i| [1 + (k * 5 + i * 17) % 31, 1 + (k * 3 + i * 11) % 29]);
             let points: Vec<u32> = places
-                .filter_map(|p| cells.insert(vertex(p)).ok())
+                .map(|p| cells.insert(vertex(p)).expect("inside"))
                 .collect();
-            let mut made: Vec<[Lattice; 2]> = Vec::new();
-            for (number, pair) in (0..).zip(points.chunks_exact(2)) {
-                let ends = [pair[0], pair[1]];
-                let places = ends.map(|p| at(&cells, p));
-                let is_clear = made.iter().all(|other| !meet(places, *other))
-                    && points
-                        .iter()
-                        .filter(|p| !ends.contains(p))
-                        .all(|p| !holds(places, at(&cells, *p)));
-                assert_eq!(cells.constrain(ends, number).is_ok(), is_clear, "{k}");
-                assert_eq!(area(&cells), 64 * 64);
-                if is_clear {
-                    made.push(places);
-                }
+            let pairs = points
+                .windows(2)
+                .chain(points.chunks_exact(3).map(|c| &c[1..]));
+            let segments: Vec<[u32; 2]> = pairs
+                .map(|p| [p[0], p[1]])
+                .filter(|[a, b]| a != b)
+                .collect();
+            constrain_all(&mut cells, &segments);
+            assert!((area(&cells) - 4096.0).abs() < 1e-9);
+            for (number, ends) in (0..).zip(segments) {
+                let [[a, b], [c, d]] = ends.map(|p| at(&cells, p));
+                assert!(
+                    (length(&cells, number) - (c - a).hypot(d - b)).abs() < 1e-9,
+                    "{k}"
+                );
             }
         }
-    }
-
-    fn side([a, b]: [Lattice; 2], p: Lattice) -> i64 {
-        ((b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])).signum()
-    }
-
-    fn holds(segment: [Lattice; 2], p: Lattice) -> bool {
-        let [a, b] = segment;
-        let along = (p[0] - a[0]) * (p[0] - b[0]) + (p[1] - a[1]) * (p[1] - b[1]);
-        side(segment, p) == 0 && along <= 0
-    }
-
-    fn meet(s: [Lattice; 2], t: [Lattice; 2]) -> bool {
-        let crosses = side(s, t[0]) * side(s, t[1]) < 0 && side(t, s[0]) * side(t, s[1]) < 0;
-        crosses || t.iter().any(|p| holds(s, *p)) || s.iter().any(|p| holds(t, *p))
-    }
-
-    #[test]
-    fn points_that_coincide_are_special() {
-        let mut cells = face();
-        cells.insert(vertex([9, 9])).expect("a new point");
-        assert_eq!(cells.insert(vertex([9, 9])), Err(Special));
-        assert_eq!(cells.insert(vertex([32, 32])), Err(Special));
-        assert_eq!(cells.insert(vertex([40, 40])), Err(Special));
     }
 }
