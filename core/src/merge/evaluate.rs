@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 
-use super::arrangement::{arranged, POOL};
+use super::arrangement::{arranged, united, United, POOL};
 use super::descent::counters::Counters;
 use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
+use super::places::overlaps_at;
 use super::rule::Rule;
-use super::simple::{
-    overlaps_at, simple_shells, simplicity_and_pairs, united_where_it_overlaps, Simplicity, Unclear,
-};
 use super::twins::without_twins;
 use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
@@ -210,7 +208,7 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
 /// # Errors
 /// `Internal`.
 pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
-    if let Some(known) = found_simple(solid)?.0 {
+    if let Some(known) = found_simple(solid)? {
         return Ok(known);
     }
     if overlaps_at(solid, suspects) {
@@ -229,16 +227,15 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
         return Ok(solid.clone());
     }
     if rule != Rule::Positive {
-        return unite(solid, rule, None);
+        return unite(solid, rule);
+    }
+    if found_simple(solid)? == Some(true) {
+        return Ok(solid.clone());
     }
     if let Some(known) = solid.united().get() {
         return Ok(known.clone());
     }
-    let (simple, pairs) = found_simple(solid)?;
-    if simple == Some(true) {
-        return Ok(solid.clone());
-    }
-    let united = unite(solid, rule, pairs)?;
+    let united = unite(solid, rule)?;
     Ok(solid.united().get_or_make(|| united).clone())
 }
 
@@ -251,98 +248,65 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     if let Some(known) = solid.united().get() {
         return Ok(Some(known.clone()));
     }
-    Ok((found_simple(solid)?.0 == Some(true)).then(|| solid.clone()))
+    Ok((found_simple(solid)? == Some(true)).then(|| solid.clone()))
 }
 
 /// Return whether a solid is simple, if that is known, or once the meshes that decide it have been
-/// checked, and the pairs of its faces that may overlap, if they were looked for.
-fn found_simple(solid: &Solid) -> Result<(Option<bool>, Option<Unclear>)> {
+/// checked.
+fn found_simple(solid: &Solid) -> Result<Option<bool>> {
     if let Some(known) = solid.simple().get() {
-        return Ok((Some(*known), None));
+        return Ok(Some(*known));
     }
     if solid.is_reduced() {
-        return Ok((Some(true), None));
+        return Ok(Some(true));
     }
     let Some(doubts) = solid.doubts() else {
-        return checked(solid);
-    };
-    for mesh in doubts {
-        if checked(mesh)?.0 != Some(true) {
-            return Ok((None, None));
-        }
-    }
-    Ok((Some(*solid.simple().get_or_make(|| true)), None))
-}
-
-/// Return whether a solid is simple, if that is known or it is one mesh, and the pairs of its faces
-/// that may overlap, if they were looked for.
-fn checked(solid: &Solid) -> Result<(Option<bool>, Option<Unclear>)> {
-    if let Some(known) = solid.simple().get() {
-        return Ok((Some(*known), None));
-    }
-    let sources = Sources::new(solid.sources().clone());
-    let (simplicity, pairs) = simplicity_and_pairs(solid, &sources)?;
-    let simple = match simplicity {
-        Simplicity::Simple => true,
-        Simplicity::Overlapping => false,
-        Simplicity::Unasked => return Ok((None, None)),
-    };
-    Ok((Some(*solid.simple().get_or_make(|| simple)), pairs))
-}
-
-/// Unite a solid with itself, given the pairs of its faces that may overlap, if they are known.
-fn unite(solid: &Solid, rule: Rule, pairs: Option<Unclear>) -> Result<Solid> {
-    let sources = Sources::new(solid.sources().clone());
-    let (simple, found) = checked(solid)?;
-    if simple == Some(true) {
-        return Ok(solid.clone().with_reduced(true));
-    }
-    if simple == Some(false)
-        && let Some(united) = union_of_shells(solid, &sources, rule)?
-    {
-        return Ok(united);
-    }
-    if simple == Some(false)
-        && rule == Rule::Positive
-        && let Some(root) = united_where_it_overlaps(solid, &sources, pairs.or(found))
-    {
-        return Ok(Solid::new(
-            root,
-            solid.pitch(),
-            sources.table().clone(),
-            true,
-        ));
-    }
-    let descent = Descent::new(&sources, rule, false, 1);
-    let expression = Expression::new(vec![Term::Operand(0)])?;
-    let root = descent.run(expression, vec![solid.root().clone()])?;
-    let simple = descent.overlapping().is_empty();
-    if *solid.simple().get_or_make(|| simple) {
-        return Ok(solid.clone().with_reduced(true));
-    }
-    let table = sources.table().clone();
-    Ok(Solid::new(root, solid.pitch(), table, true))
-}
-
-/// A mesh as the union of the shells that bound something; `None` if one of them overlaps itself or is
-/// turned inside out, and where that is not what a rule calls inside.
-fn union_of_shells(solid: &Solid, sources: &Sources, rule: Rule) -> Result<Option<Solid>> {
-    let most = if rule == Rule::EvenOdd { 1 } else { usize::MAX };
-    let Some(shells) = simple_shells(solid, sources, most) else {
         return Ok(None);
     };
-    let table = || sources.table().clone();
-    if shells.is_empty() {
-        let nothing = Branch::uniform(solid.root().cell, 0);
-        return Ok(Some(Solid::new(nothing, solid.pitch(), table(), true)));
+    for mesh in doubts {
+        normalize(mesh, Rule::Positive)?;
+        if !mesh.is_reduced() {
+            return Ok(None);
+        }
     }
+    Ok(Some(*solid.simple().get_or_make(|| true)))
+}
+
+/// Unite a solid with itself.
+fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
+    let root = match united(solid, rule) {
+        Some(United::Same) => None,
+        Some(United::Other(root)) => Some(root),
+        Some(United::Shells(shells)) => Some(union(solid, shells)?),
+        None => by_descent(solid, rule)?,
+    };
+    let is_simple = *solid.simple().get_or_make(|| root.is_none());
+    match root.filter(|_| !is_simple) {
+        Some(root) => {
+            let table = solid.sources().clone();
+            Ok(Solid::new(root, solid.pitch(), table, true))
+        }
+        None => Ok(solid.clone().with_reduced(true)),
+    }
+}
+
+/// The root of the union of shells, each of which is simple.
+fn union(solid: &Solid, shells: Vec<Branch>) -> Result<Branch> {
     let count = as_number(shells.len());
     let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
     terms.push(Term::Or((0..count).collect()));
-    let descent = Descent::new(sources, Rule::Positive, true, shells.len());
-    let root = descent.run(Expression::new(terms)?, shells)?;
-    let alone = descent.overlapping().is_empty();
-    Ok(alone.then(|| Solid::new(root, solid.pitch(), table(), true)))
+    let sources = Sources::new(solid.sources().clone());
+    let descent = Descent::new(&sources, Rule::Positive, true, shells.len());
+    descent.run(Expression::new(terms)?, shells)
+}
+
+/// The root of a solid united with itself in all cells; `None` if nothing in them overlaps.
+fn by_descent(solid: &Solid, rule: Rule) -> Result<Option<Branch>> {
+    let sources = Sources::new(solid.sources().clone());
+    let descent = Descent::new(&sources, rule, false, 1);
+    let expression = Expression::new(vec![Term::Operand(0)])?;
+    let root = descent.run(expression, vec![solid.root().clone()])?;
+    Ok((!descent.overlapping().is_empty()).then_some(root))
 }
 
 fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {

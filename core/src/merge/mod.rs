@@ -9,12 +9,12 @@ pub mod kernels;
 pub mod lists;
 pub mod op;
 pub mod pairs;
+mod places;
 pub mod plane;
 pub mod residual;
 pub mod rule;
 #[cfg(test)]
 pub(crate) mod scenes;
-pub mod simple;
 mod twins;
 
 pub use generic::case::SplitCase;

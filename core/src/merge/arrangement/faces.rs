@@ -8,6 +8,7 @@ use smallvec::SmallVec;
 use super::segments::{Cover, Line, Point, Segment};
 use super::surfaces::Surfaces;
 use super::triangulation::{Special, Triangulation, NONE};
+use super::windings::Probe;
 use crate::arith::convert::as_number;
 use crate::arith::Sign;
 use crate::geometry::edge::{LatticeEdge, Ring};
@@ -55,14 +56,16 @@ pub(super) struct Arrangement<'a> {
     pub(super) cells: Vec<Cell>,
 }
 
-/// The winding numbers of the other operand around a cell.
+/// The winding numbers around a cell: of the other operand, or of the mesh that is compared with itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Cell {
     /// By how much the number in front exceeds that in front of the first cell.
     pub(super) in_front: i32,
-    /// By how much the number behind exceeds that in front.
+    /// By how much the number behind exceeds that in front, but for the face itself.
     pub(super) behind: i32,
-    /// True if another face in the same plane has the cell, too, and comes first.
+    /// The number of other faces in the same plane that have the cell, too.
+    pub(super) covers: u32,
+    /// True if one of these comes first.
     pub(super) is_others: bool,
 }
 
@@ -70,7 +73,7 @@ impl<'a> Arrangement<'a> {
     /// The arrangement in a face.
     ///
     /// # Errors
-    /// `Special` if the other operand is seen to overlap itself, or a segment leaves the face.
+    /// `Special` if a segment leaves the face: there is a defect.
     pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Special> {
         let corners = face.corners.map(|c| Arc::new(Vertex::lattice(c)));
         let mut triangulation = Triangulation::new(corners, axes(face.plane));
@@ -95,7 +98,7 @@ impl<'a> Arrangement<'a> {
             cells: Vec::new(),
         };
         made.cells = made.numbered();
-        made.cover(shared)?;
+        made.cover(shared);
         Ok(made)
     }
 
@@ -104,18 +107,9 @@ impl<'a> Arrangement<'a> {
         self.cells[self.triangulation.cell_at(corner) as usize].in_front
     }
 
-    /// A cell, and a point inside it that lies above half steps of two axes, as [`Windings::in_front`]
-    /// needs it; the widest cells are tried first.
-    pub(super) fn probe(&mut self) -> Option<(usize, [i64; 2])> {
-        let mut cells: Vec<usize> = (0..self.cells.len()).collect();
-        let size = |cell: &usize| self.triangulation.size(as_number(*cell));
-        cells.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        cells.into_iter().find_map(|cell| {
-            let doubled = self.triangulation.middle(as_number(cell));
-            let vertex = above(self.face.plane, doubled)?;
-            let is_inside = self.triangulation.holds(as_number(cell), vertex);
-            is_inside.then_some((cell, doubled))
-        })
+    /// A point inside a cell, at which numbers can be counted.
+    pub(super) fn probe(&mut self) -> Option<(usize, Probe)> {
+        probe(&mut self.triangulation, self.face.plane)
     }
 
     /// The corners of a cell.
@@ -163,11 +157,8 @@ impl<'a> Arrangement<'a> {
         self.triangulation.along_edge(cell, edge).map(change).sum()
     }
 
-    /// Notes which cells faces of the other operand have, too, that lie in the same plane.
-    ///
-    /// # Errors
-    /// `Special` if two of them have one: then the other operand overlaps itself.
-    fn cover(&mut self, shared: &Shared) -> Result<(), Special> {
+    /// Notes which cells other faces have, too, that lie in the same plane.
+    fn cover(&mut self, shared: &Shared) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
         for Cover { other, .. } in self.face.covers {
@@ -182,15 +173,12 @@ impl<'a> Arrangement<'a> {
                 let is_out = |v: &Vertex| outer.iter().any(|plane| v.side_of(plane) == outside);
                 if !self.corners_of(cell).into_iter().any(is_out) {
                     let cell = &mut self.cells[cell];
-                    if cell.behind != 0 {
-                        return Err(Special);
-                    }
-                    cell.behind = if is_same { 1 } else { -1 };
-                    cell.is_others = *other < self.face.number;
+                    cell.behind += if is_same { 1 } else { -1 };
+                    cell.covers += 1;
+                    cell.is_others |= *other < self.face.number;
                 }
             }
         }
-        Ok(())
     }
 
     /// The outline of some cells; no two of its edges continue each other.
@@ -275,11 +263,22 @@ impl<'a> Arrangement<'a> {
     }
 }
 
-/// The point of a plane above a place given in half steps, as seen along its main axis.
-pub(super) fn above(plane: &Arc<Plane>, doubled: [i64; 2]) -> Option<Arc<Vertex>> {
-    let axis = plane.main_axis();
-    let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
-    Vertex::meet(plane, &cut(1), &cut(2)).map(Arc::new)
+/// A point inside a face; `None` if it is too thin.
+pub(super) fn probe_of_face(corners: &[Lattice; 3], plane: &Arc<Plane>) -> Option<Probe> {
+    let corners = corners.map(|c| Arc::new(Vertex::lattice(c)));
+    let mut face = Triangulation::new(corners, axes(plane));
+    probe(&mut face, plane).map(|(_, probe)| probe)
+}
+
+/// A point inside a cell, the widest first.
+fn probe(cells: &mut Triangulation, plane: &Arc<Plane>) -> Option<(usize, Probe)> {
+    let mut order: Vec<u32> = (0..as_number(cells.cells().len())).collect();
+    order.sort_by(|a, b| cells.size(*b).total_cmp(&cells.size(*a)));
+    order.into_iter().find_map(|cell| {
+        let probe = Probe::above(cells.middle(cell), plane)?;
+        let is_inside = cells.holds(cell, Arc::clone(&probe.point));
+        is_inside.then_some((cell as usize, probe))
+    })
 }
 
 /// The plane that cuts a face along a segment.

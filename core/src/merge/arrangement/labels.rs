@@ -5,15 +5,18 @@
 
 use std::cmp::Ordering;
 
+use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::candidates::{Operand, Windings};
+use super::candidates::Operand;
+use super::faces::{probe_of_face, Arrangement};
 use super::triangulation::Special;
-use crate::arith::convert::as_number;
-use crate::geometry::plane::Plane;
-use crate::geometry::vertex::Vertex;
+use super::windings::Windings;
+use crate::arith::convert::{as_double, as_number};
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Triangle;
 use crate::interrupt::poll;
-use crate::mesh::handle::VertexId;
+use crate::mesh::handle::{FaceId, VertexId};
 
 /// The winding numbers around the vertices of one mesh, as far as they are known: classes of vertices
 /// with the differences between them.
@@ -32,12 +35,8 @@ pub(super) struct Labels<'a> {
 
 impl<'a> Labels<'a> {
     /// The numbers of one operand around the vertices of another: nothing is known.
-    pub(super) fn new(of: Operand<'a>, around: Operand<'a>, on_faces: &[VertexId]) -> Self {
+    pub(super) fn new(of: Operand<'a>, around: Operand<'a>, touching: Vec<bool>) -> Self {
         let vertices = of.mesh.vertices.len();
-        let mut touching = vec![false; if on_faces.is_empty() { 0 } else { vertices }];
-        for vertex in on_faces {
-            touching[vertex.place()] = true;
-        }
         Self {
             of,
             windings: Windings::of(around),
@@ -103,9 +102,40 @@ impl<'a> Labels<'a> {
         self.touching.get(vertex.place()).is_some_and(|t| *t)
     }
 
-    /// The number in front of a plane at a point.
-    pub(super) fn in_front(&mut self, plane: &Plane, point: &Vertex, doubled: [i64; 2]) -> i32 {
-        self.windings.in_front(plane, point, doubled)
+    /// Notes the differences between the numbers at the corners of a face that was divided.
+    ///
+    /// # Errors
+    /// As for [`Self::join`].
+    pub(super) fn join_cells(&mut self, face: &Arrangement) -> Result<(), Special> {
+        let corners = [0, 1, 2].map(|i| (face.face.vertices[i], face.at_corner(as_number(i))));
+        let free = corners.into_iter().filter(|(v, _)| !self.is_touching(*v));
+        let free: SmallVec<[_; 3]> = free.collect();
+        free.windows(2)
+            .try_for_each(|pair| self.join(pair[1].0, pair[0].0, pair[1].1 - pair[0].1))
+    }
+
+    /// The number in front of the first cell of a face.
+    ///
+    /// # Errors
+    /// `Special` if that is not known at a corner, and all cells are too thin to count it.
+    pub(super) fn in_front_of(&mut self, face: &mut Arrangement) -> Result<i32, Special> {
+        let mut corners = (0..).zip(face.face.vertices);
+        match corners.find(|(_, v)| !self.is_touching(*v)) {
+            Some((i, vertex)) => Ok(self.at(vertex) - face.at_corner(i)),
+            None => self.counted(face),
+        }
+    }
+
+    /// The number in front of the first cell of a face, counted along a ray.
+    fn counted(&mut self, face: &mut Arrangement) -> Result<i32, Special> {
+        let (cell, probe) = face.probe().ok_or(Special)?;
+        Ok(self.windings.in_front(face.face.plane, &probe) - face.cells[cell].in_front)
+    }
+
+    /// The number at the corners of a face that nothing divides; `None` if all lie on other faces.
+    pub(super) fn at_corners(&mut self, corners: [VertexId; 3]) -> Option<i32> {
+        let free = corners.into_iter().find(|v| !self.is_touching(*v));
+        free.map(|vertex| self.at(vertex))
     }
 
     /// Joins two classes, given as roots and what vertices have above them; returns that of the first
@@ -155,4 +185,69 @@ impl<'a> Labels<'a> {
         self.known[root] = Some(number - above);
         number
     }
+
+    /// Counts the number in front of the widest face of each class.
+    ///
+    /// # Errors
+    /// `Special` if one is too thin for it.
+    pub(super) fn note_widest<'b>(
+        &mut self,
+        arranged: &mut [Arrangement],
+        others: impl Iterator<Item = &'b FaceId>,
+    ) -> Result<(), Special> {
+        let mut widest: HashMap<usize, (f64, Widest)> = HashMap::default();
+        let divided = arranged.iter().map(|a| a.face.vertices);
+        let divided = divided.enumerate().map(|(i, v)| (Widest::Divided(i), v));
+        let mesh = self.of.mesh;
+        let whole = others.map(|id| (Widest::Whole(*id), mesh.vertices_of(*id)));
+        for (face, corners) in whole.chain(divided) {
+            poll();
+            if let Some(free) = corners.into_iter().find(|v| !self.is_touching(*v)) {
+                let width = width(&corners.map(|v| mesh.vertices[v.place()].map(as_double)));
+                let (root, _) = self.root(free);
+                let known = widest.entry(root).or_insert((width, face));
+                if width > known.0 {
+                    *known = (width, face);
+                }
+            }
+        }
+        for (root, (_, face)) in widest {
+            let (corner, number) = match face {
+                Widest::Whole(id) => (mesh.vertices_of(id), self.in_front_of_whole(id)?),
+                Widest::Divided(i) => (arranged[i].face.vertices, self.counted(&mut arranged[i])?),
+            };
+            let free = (0..3).find(|i| !self.is_touching(corner[*i])).unwrap_or(0);
+            let more = match face {
+                Widest::Whole(_) => 0,
+                Widest::Divided(i) => arranged[i].at_corner(as_number(free)),
+            };
+            let (_, above) = self.root(corner[free]);
+            self.known[root] = Some(number + more - above);
+        }
+        Ok(())
+    }
+
+    /// The number in front of a face that nothing divides, counted along a ray.
+    fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Special> {
+        let plane = self.of.source.plane(face);
+        let probe = probe_of_face(&self.of.mesh.corners(face), &plane).ok_or(Special)?;
+        Ok(self.windings.in_front(&plane, &probe))
+    }
+}
+
+/// The widest face of a class.
+#[derive(Clone, Copy)]
+enum Widest {
+    Whole(FaceId),
+    Divided(usize),
+}
+
+/// The square of a triangle's area, about.
+fn width([a, b, c]: &Triangle) -> f64 {
+    let (u, v) = (each_axis(|i| b[i] - a[i]), each_axis(|i| c[i] - a[i]));
+    let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
+    [minor(0, 1), minor(1, 2), minor(2, 0)]
+        .map(|m| m * m)
+        .iter()
+        .sum()
 }

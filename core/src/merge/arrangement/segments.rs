@@ -4,20 +4,21 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rustc_hash::FxHashMap as HashMap;
 
+use super::candidates::Candidates;
 use super::contact::{contact, Contact, End, Spot, Touching};
 use super::surfaces::Surfaces;
 use super::triangulation::Special;
+use super::PAIRS_FOR_EACH;
 use crate::arith::convert::as_number;
-use crate::geometry::doubles::Facing;
+use crate::geometry::doubles::{Facing, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
-use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::Worth;
+use crate::mesh::handle::{FaceId, VertexId};
+use crate::mesh::tasks::{each, Worth};
 
-/// Pairs for each candidate beyond which faces are crowded: boxes do not tell needles apart, and the
-/// sweeps of the descent do.
-const PAIRS_FOR_EACH: usize = 24;
+/// Pairs of one operand that are looked at together.
+const BLOCK: usize = 1 << 9;
 
 /// An edge: the operand, and its ends there, the lower number first.
 pub(super) type Edge = (usize, [VertexId; 2]);
@@ -85,8 +86,9 @@ pub(super) struct Contacts {
     pub(super) covers: Vec<Cover>,
     /// Faces that touch others other than by crossing them; ascending.
     pub(super) touched: Vec<u32>,
-    /// For each operand the vertices that lie on faces of the other one.
-    pub(super) touching: [Vec<VertexId>; 2],
+    /// For each operand, by vertex, whether other faces than those that have it as a corner may reach it;
+    /// empty if none do.
+    pub(super) touching: [Vec<bool>; 2],
     numbers: HashMap<Point, u32>,
 }
 
@@ -105,42 +107,60 @@ enum How {
 ///
 /// # Errors
 /// `Special` if they are crowded.
-pub(super) fn contacts(surfaces: &Surfaces, worth: Worth) -> Result<Contacts, Special> {
-    let [first, second] = &surfaces.candidates;
-    let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.faces.len() + second.faces.len()));
+pub(super) fn contacts_of(
+    surfaces: &Surfaces,
+    candidates: &[Candidates; 2],
+    worth: Worth,
+) -> Result<Contacts, Special> {
+    let [first, second] = candidates;
+    let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.triangles.len() + second.triangles.len()));
     let visit = |block: &[[u32; 2]]| {
         let take = |left: usize| left.checked_sub(block.len());
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
             .map_err(|_| Special)?;
-        Ok(met(surfaces, block))
+        let triangle = |k: usize| move |face: u32| candidates[k].triangles[face as usize];
+        Ok(met([&triangle(0), &triangle(1)], block, surfaces.second))
     };
     let met = first.tree.each_block(&second.tree, worth, visit)?;
-    let mut contacts = Contacts::default();
-    for Met { pair, how } in met.into_iter().flatten() {
-        poll();
-        match how {
-            How::Crossing(ends) => contacts.cross(surfaces, pair, ends),
-            How::Touching(touching) => contacts.touch(surfaces, pair, &touching),
-        }
-    }
-    contacts.sort();
-    Ok(contacts)
+    Ok(Contacts::new(surfaces, met))
 }
 
-fn met(surfaces: &Surfaces, pairs: &[[u32; 2]]) -> Vec<Met> {
+/// Where faces of one operand meet, of some pairs of them; vertices that are not regular count as touching.
+pub(super) fn contacts_among(
+    surfaces: &Surfaces,
+    pairs: &[[u32; 2]],
+    irregular: Vec<bool>,
+    worth: Worth,
+) -> Contacts {
+    let blocks = pairs.chunks(BLOCK).collect();
+    let operand = &surfaces.operands[0];
+    let triangle = |face: u32| operand.triangle(FaceId(face));
+    let met = each(worth, blocks, |block: &[[u32; 2]]| {
+        met([&triangle, &triangle], block, 0)
+    });
+    let mut contacts = Contacts::new(surfaces, met);
+    for (touches, more) in contacts.touching[0].iter_mut().zip(&irregular) {
+        *touches |= more;
+    }
+    if contacts.touching[0].is_empty() {
+        contacts.touching[0] = irregular;
+    }
+    contacts
+}
+
+fn met([ours, theirs]: [&dyn Fn(u32) -> Triangle; 2], pairs: &[[u32; 2]], second: u32) -> Vec<Met> {
     spend(pairs.len());
-    let [ours, theirs] = &surfaces.candidates;
     let mut found = Vec::new();
     for run in pairs.chunk_by(|p, q| p[0] == q[0]) {
-        let first = Facing::of(&ours.triangles[run[0][0] as usize]);
+        let first = Facing::of(&ours(run[0][0]));
         for &[f, g] in run {
-            let second = Facing::of(&theirs.triangles[g as usize]);
-            let how = match contact(&first, &second) {
+            let other = Facing::of(&theirs(g));
+            let how = match contact(&first, &other) {
                 Contact::Apart => continue,
                 Contact::Crossing(ends) => How::Crossing(ends),
                 Contact::Touching(touching) => How::Touching(touching),
             };
-            let pair = [f, surfaces.second + g];
+            let pair = [f, second + g];
             found.push(Met { pair, how });
         }
     }
@@ -148,6 +168,24 @@ fn met(surfaces: &Surfaces, pairs: &[[u32; 2]]) -> Vec<Met> {
 }
 
 impl Contacts {
+    /// Return whether no face divides or covers another one.
+    pub(super) fn divide_nothing(&self) -> bool {
+        self.segments.is_empty() && self.covers.is_empty()
+    }
+
+    fn new(surfaces: &Surfaces, met: Vec<Vec<Met>>) -> Self {
+        let mut contacts = Self::default();
+        for Met { pair, how } in met.into_iter().flatten() {
+            poll();
+            match how {
+                How::Crossing(ends) => contacts.cross(surfaces, pair, ends),
+                How::Touching(touching) => contacts.touch(surfaces, pair, &touching),
+            }
+        }
+        contacts.sort();
+        contacts
+    }
+
     fn cross(&mut self, surfaces: &Surfaces, pair: [u32; 2], ends: [End; 2]) {
         let [from, to] = ends.map(|end| self.point(surfaces, pair, Spot::Through(end)));
         for (k, ends) in [[from, to], [to, from]].into_iter().enumerate() {
@@ -161,9 +199,20 @@ impl Contacts {
     }
 
     fn touch(&mut self, surfaces: &Surfaces, pair: [u32; 2], touching: &Touching) {
+        let are_neighbours = || {
+            let is_common = |spot: &Spot| is_common_vertex(surfaces, pair, *spot);
+            touching.spots.iter().all(is_common)
+        };
+        if !touching.overlap && are_neighbours() {
+            return;
+        }
         self.touched.extend(pair);
         for spot in &touching.spots {
             self.note_corners(surfaces, pair, *spot);
+        }
+        let is_beside = !touching.overlap && touching.sides[0].iter().all(|s| *s == Side::On);
+        if is_beside {
+            return;
         }
         for stretch in &touching.stretches {
             let ends = stretch.ends.map(|spot| self.point(surfaces, pair, spot));
@@ -196,18 +245,19 @@ impl Contacts {
         }
     }
 
-    /// Notes the vertices that lie on the other operand.
+    /// Notes the vertices at a point: other faces reach them.
     fn note_corners(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) {
         let Spot::Corner(of, corner) = spot else {
             return;
         };
-        let vertex = surfaces.vertices(pair[of])[corner];
-        self.touching[surfaces.operand_of(pair[of])].push(vertex);
         let place = surfaces.place(pair[of], corner);
-        let other = pair[1 - of];
-        if let Some(twin) = surfaces.corners(other).iter().position(|p| *p == place) {
-            let vertex = surfaces.vertices(other)[twin];
-            self.touching[surfaces.operand_of(other)].push(vertex);
+        for face in pair {
+            if let Some(corner) = surfaces.corners(face).iter().position(|p| *p == place) {
+                let operand = surfaces.operand_of(face);
+                let touching = &mut self.touching[operand];
+                touching.resize(surfaces.operands[operand].mesh.vertices.len(), false);
+                touching[surfaces.vertices(face)[corner].place()] = true;
+            }
         }
     }
 
@@ -241,6 +291,18 @@ impl Contacts {
         self.touched.sort_unstable();
         self.touched.dedup();
     }
+}
+
+/// Return whether a point is a corner of two faces by the number of its vertex: faces of one operand hang
+/// together there.
+fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> bool {
+    let Spot::Corner(of, corner) = spot else {
+        return false;
+    };
+    let [ours, others] = [pair[of], pair[1 - of]];
+    let vertex = surfaces.vertices(ours)[corner];
+    let is_one = surfaces.operand_of(ours) == surfaces.operand_of(others);
+    is_one && surfaces.vertices(others).contains(&vertex)
 }
 
 /// The line in which the planes of two faces meet, as one of them has it, by the sides of the other's

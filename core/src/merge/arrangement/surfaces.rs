@@ -1,19 +1,36 @@
-//! The candidates of all operands, in one numbering.
+//! The faces of all operands that may meet others, in one numbering.
 
-use super::candidates::{Candidates, Operand};
+use super::candidates::Operand;
+use crate::arith::convert::as_number;
 use crate::geometry::plane::Lattice;
 use crate::mesh::handle::{FaceId, VertexId};
 
-/// Two operands and the faces of them that may meet: those of the first, then those of the second.
+/// One operand or two, and the faces of them that may meet others: those of the first, then those of the
+/// second.
 #[derive(Debug)]
 pub(super) struct Surfaces<'a> {
-    pub(super) operands: [Operand<'a>; 2],
-    pub(super) candidates: [Candidates; 2],
+    pub(super) operands: Vec<Operand<'a>>,
+    faces: Vec<Vec<FaceId>>,
     /// The number of the second operand's first face.
     pub(super) second: u32,
 }
 
 impl<'a> Surfaces<'a> {
+    pub(super) fn new(operands: Vec<Operand<'a>>, faces: Vec<Vec<FaceId>>) -> Self {
+        let second = as_number(faces[0].len());
+        Self {
+            operands,
+            faces,
+            second,
+        }
+    }
+
+    /// The faces of an operand.
+    pub(super) fn of_operand(&self, operand: usize) -> std::ops::Range<u32> {
+        let first = if operand == 0 { 0 } else { self.second };
+        first..first + as_number(self.faces[operand].len())
+    }
+
     /// The operand that a face is of.
     pub(super) fn operand_of(&self, face: u32) -> usize {
         usize::from(face >= self.second)
@@ -28,13 +45,14 @@ impl<'a> Surfaces<'a> {
         }) as usize
     }
 
+    /// The mesh that a face is of.
     pub(super) fn operand(&self, face: u32) -> &Operand<'a> {
         &self.operands[self.operand_of(face)]
     }
 
     /// A face as its mesh numbers it.
     pub(super) fn id(&self, face: u32) -> FaceId {
-        self.candidates[self.operand_of(face)].faces[self.local(face)]
+        self.faces[self.operand_of(face)][self.local(face)]
     }
 
     /// The vertices at a face's corners.

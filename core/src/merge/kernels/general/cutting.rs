@@ -57,16 +57,6 @@ impl<'a> Face<'a> {
         !self.rims().iter().any(beyond)
     }
 
-    /// Return whether a segment in the plane of the face has at most a point in common with the face
-    /// or its border; errs on no.
-    fn is_left_by(&self, segment: &Chord) -> bool {
-        let beyond = |rim: &Plane| {
-            let sides = [segment[0].side_of(rim), segment[1].side_of(rim)];
-            !sides.contains(&Side::Minus) && sides.contains(&Side::Plus)
-        };
-        self.rims().iter().any(beyond)
-    }
-
     /// Return whether a point in the plane of the face lies in it or on its border.
     fn holds(&self, point: &Vertex) -> bool {
         self.rims()
@@ -142,52 +132,27 @@ struct Crossing {
 /// `Simplicity`: no further digits settle it, only a way that needs no rule.
 pub(super) struct Special;
 
-/// The faces that divide a polygon.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Faces {
-    /// Those that truly cross it; what is special ends the cutting.
-    InGeneralPosition,
-    /// All that have more than a point of it; ties are made only where one face alone is crossed.
-    Any,
-}
-
 struct Partition<'a> {
     support: Arc<Plane>,
     cutters: &'a [Cutter<'a>],
-    faces: Faces,
     knots: Vec<Knot>,
     pieces: Vec<Polygon>,
 }
 
 /// Cuts a polygon up by those of the given faces that cross it.
 pub fn cut_up(polygon: Polygon, cutters: &[Cutter]) -> Option<Cutting> {
-    let partition = Partition::of(polygon, cutters, Faces::InGeneralPosition)?;
+    let partition = Partition::of(polygon, cutters)?;
     let ties = partition.ties()?;
     let pieces = partition.pieces;
     Some(Cutting { pieces, ties })
 }
 
-/// Cuts a polygon up by those of the given faces that have more than points of it, the last first, in
-/// whatever position they are. All faces are of one operand, and all that meet the polygon in a line are among them.
-///
-/// The ties may leave pieces alone.
-pub fn cut_up_by_any(polygon: Polygon, cutters: &[Cutter]) -> Cutting {
-    let Some(partition) = Partition::of(polygon, cutters, Faces::Any) else {
-        return Cutting::default();
-    };
-    let ties = partition.knots.iter().filter_map(|k| partition.tie(k));
-    let ties = ties.collect();
-    let pieces = partition.pieces;
-    Cutting { pieces, ties }
-}
-
 impl<'a> Partition<'a> {
     /// A polygon divided by some faces; `None` where something is special.
-    fn of(polygon: Polygon, cutters: &'a [Cutter<'a>], faces: Faces) -> Option<Self> {
+    fn of(polygon: Polygon, cutters: &'a [Cutter<'a>]) -> Option<Self> {
         let mut partition = Self {
             support: Arc::clone(polygon.support()),
             cutters,
-            faces,
             knots: Vec::new(),
             pieces: Vec::new(),
         };
@@ -217,15 +182,6 @@ impl Partition<'_> {
         self.polygon(cutter).support()
     }
 
-    /// Return whether a piece is to be divided along a chord in a cutter's plane.
-    fn divides(&self, cutter: u32, chord: &Chord) -> bool {
-        let face = self.cutters[cutter as usize].face;
-        match self.faces {
-            Faces::InGeneralPosition => face.meets(chord),
-            Faces::Any => !face.is_left_by(chord),
-        }
-    }
-
     fn grow(&mut self, task: Task, open: &mut Vec<Task>) -> Option<Child> {
         let mut rest = task.cutters;
         let whole = task.parent.is_none();
@@ -234,9 +190,7 @@ impl Partition<'_> {
             self.pieces.push(task.polygon);
             return Some(Child::Piece(as_number(self.pieces.len()) - 1));
         };
-        if self.faces == Faces::InGeneralPosition {
-            self.leave_coplanar(&found, &mut rest)?;
-        }
+        self.leave_coplanar(&found, &mut rest)?;
         let cut = self.plane(found.cutter);
         let (minus, plus) = task.polygon.divided(cut, &found.sides, &found.chord);
         let knot = NodeId::of(self.knots.len());
@@ -265,19 +219,15 @@ impl Partition<'_> {
         while let Some(cutter) = list.pop() {
             poll();
             let plane = self.plane(cutter);
-            if self.faces == Faces::Any && !boxes_meet(piece, self.polygon(cutter)) {
-                continue;
-            }
             let sides = piece.sides(plane);
             if straddle(&sides) != (true, true) {
-                let general = self.faces == Faces::InGeneralPosition;
-                if general && !whole && sides.iter().filter(|s| **s == Side::On).count() > 1 {
+                if !whole && sides.iter().filter(|s| **s == Side::On).count() > 1 {
                     return Err(Special);
                 }
                 continue;
             }
             let chord = piece.chord(plane, &sides);
-            if self.divides(cutter, &chord) {
+            if self.cutters[cutter as usize].face.meets(&chord) {
                 return Ok(Some(Crossing {
                     cutter,
                     sides,
@@ -346,16 +296,12 @@ impl Partition<'_> {
 
     fn tie(&self, knot: &Knot) -> Option<Tie> {
         let cutter = self.cutters[knot.cutter as usize];
-        let [minus, plus] = match (self.faces, knot.children) {
-            (Faces::InGeneralPosition, [Child::Piece(minus), Child::Piece(plus)]) => [minus, plus],
-            (_, children) => {
+        let [minus, plus] = match knot.children {
+            [Child::Piece(minus), Child::Piece(plus)] => [minus, plus],
+            children => {
                 let link = self.link(knot.cutter, &knot.chord)?;
                 let (minus, link) = self.beside(children[0], link, knot.cutter)?;
-                let (plus, link) = self.beside(children[1], link, knot.cutter)?;
-                let is_plain = || self.crosses_alone(knot.cutter, &link);
-                if self.faces == Faces::Any && !is_plain() {
-                    return None;
-                }
+                let (plus, _) = self.beside(children[1], link, knot.cutter)?;
                 [minus, plus]
             }
         };
@@ -365,23 +311,6 @@ impl Partition<'_> {
             operand: cutter.operand,
             change: -cutter.weight,
         })
-    }
-
-    /// Return whether a link runs through the inside of its cutter, and no other face has more than
-    /// points of it. Faces in the polygon's plane do not count: both sides of the link are before
-    /// them, or behind.
-    fn crosses_alone(&self, cutter: u32, link: &Chord) -> bool {
-        let lie_in = |plane: &Plane| link.iter().all(|end| end.side_of(plane) == Side::On);
-        let is_beside = |other: &u32| {
-            let face = self.cutters[*other as usize].face;
-            let plane = self.plane(*other);
-            *other == cutter
-                || !lie_in(plane)
-                || plane.coincides(&self.support).is_some()
-                || face.is_left_by(link)
-        };
-        let rims = self.cutters[cutter as usize].face.rims();
-        !rims.iter().any(lie_in) && (0..as_number(self.cutters.len())).all(|o| is_beside(&o))
     }
 
     /// A piece that some part of a link borders, and that part.
@@ -407,12 +336,6 @@ impl Partition<'_> {
             }
         }
     }
-}
-
-/// Return whether the boxes around two polygons meet; errs on yes.
-fn boxes_meet(a: &Polygon, b: &Polygon) -> bool {
-    let ((low, high), (others_low, others_high)) = (a.bounds(), b.bounds());
-    (0..3).all(|i| low[i] <= others_high[i] && others_low[i] <= high[i])
 }
 
 /// The ways in which a face may meet a polygon.
@@ -503,51 +426,6 @@ mod tests {
             }
         }
         assert!(known.len() == 4 && known.iter().all(|k| *k));
-    }
-
-    /// The ties of the triangle cut by all of some faces, in whatever position.
-    fn tied_by(walls: &[[Lattice; 3]]) -> (usize, Vec<i32>) {
-        let face = |c: &[Lattice; 3]| Face::new(Cow::Owned(triangle(*c)));
-        let faces: Vec<Face> = walls.iter().map(face).collect();
-        let cutter = |face| Cutter {
-            face,
-            operand: 0,
-            weight: 1,
-        };
-        let cutters: Vec<Cutter> = faces.iter().map(cutter).collect();
-        let cutting = cut_up_by_any(triangle([[0, 0, 0], [16, 0, 0], [0, 16, 0]]), &cutters);
-        let changes = cutting.ties.iter().map(|tie| tie.change).collect();
-        (cutting.pieces.len(), changes)
-    }
-
-    #[test]
-    fn a_face_that_crosses_alone_ties_two_pieces() {
-        assert_eq!(tied_by(&[WALL]), (2, vec![-1]));
-        // The other half of a wall, and a face that meets the triangle in a point of the cut.
-        let half = [[4, 30, 1], [4, 30, 30], [4, -9, 30]];
-        let tip = [[4, 2, 0], [3, 2, 9], [5, 3, 9]];
-        assert_eq!(tied_by(&[half, WALL]), (2, vec![-1]));
-        assert_eq!(tied_by(&[tip, WALL]), (2, vec![-1]));
-        let flat = [[1, 1, 0], [8, 1, 0], [1, 8, 0]];
-        assert_eq!(tied_by(&[flat, WALL]), (2, vec![-1]));
-    }
-
-    #[test]
-    fn faces_that_meet_a_polygon_in_one_line_tie_nothing() {
-        // The same wall twice, another one through the same line, and one that stands on it.
-        let across = [[3, -9, -9], [4, 30, 0], [5, -9, 9]];
-        let standing = [[4, -9, 0], [4, 30, 0], [9, -9, 9]];
-        let upright = [[4, -9, 0], [4, 30, 0], [4, -9, 9]];
-        for other in [WALL, across, standing, upright] {
-            assert_eq!(tied_by(&[WALL, other]), (2, Vec::new()), "{other:?}");
-            assert_eq!(tied_by(&[other, WALL]), (2, Vec::new()), "{other:?}");
-        }
-    }
-
-    #[test]
-    fn a_face_that_ends_in_a_polygon_ties_nothing_there() {
-        let upright = [[4, -9, 0], [4, 30, 0], [4, -9, 9]];
-        assert_eq!(tied_by(&[upright]), (2, Vec::new()));
     }
 
     #[test]

@@ -27,7 +27,6 @@ use super::kept::{assemble, Kept};
 use super::problem::{CellProblem, Kernel};
 use crate::merge::rule::Rule;
 use crate::tree::node::Node;
-pub(in crate::merge) use cutting::{cut_up_by_any, Cutter, Cutting, Face};
 use scene::Scene;
 
 /// More operands than this do not meet in one small cell, or are left to the local trees.

@@ -23,7 +23,6 @@ pub(in crate::merge) use fragment::Fragment;
 use local_tree::{LocalTree, Sided};
 pub use operand::LeafTree;
 use operand::Operand;
-pub(in crate::merge) use overlay::disjoint;
 
 /// Pushes fragments through local trees.
 ///

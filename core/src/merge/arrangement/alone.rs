@@ -1,0 +1,169 @@
+//! A mesh compared with itself: whether it overlaps itself, and what its winding numbers hold.
+
+use std::sync::Arc;
+
+use super::candidates::Operand;
+use super::kept::Kept;
+use super::near::{Pairs, View};
+use super::scene::Scene;
+use super::segments::{contacts_among, Contacts};
+use super::shells::{is_outward, shells, Shell};
+use super::star::is_star_shaped;
+use super::surfaces::Surfaces;
+use super::POOL;
+use crate::geometry::cell::Cell;
+use crate::geometry::side::Orientation;
+use crate::merge::rule::Rule;
+use crate::mesh::handle::{FaceId, Slot};
+use crate::mesh::source::Source;
+use crate::mesh::tasks::Worth;
+use crate::tree::node::{Branch, Node};
+use crate::tree::solid::Solid;
+
+/// A mesh united with itself.
+#[derive(Debug)]
+pub enum United {
+    /// It is the reduced boundary of what it holds.
+    Same,
+    /// It is not: the root of the solid that is.
+    Other(Branch),
+    /// It is the union of these shells, and some of them overlap.
+    Shells(Vec<Branch>),
+}
+
+/// A mesh as it was given, united with itself: what a rule calls inside. `None` if the solid is no such
+/// mesh, if faces are crowded, or where they are too thin to count winding numbers.
+///
+/// # Example
+/// ```
+/// use std::sync::Arc;
+///
+/// use bspcsg::merge::arrangement::{united, United};
+/// use bspcsg::merge::rule::Rule;
+/// use bspcsg::mesh::import::import;
+/// use bspcsg::tree::solid::Solid;
+///
+/// let vertices = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let solid = Solid::of_source(Arc::new(import(&vertices, &faces, None)?), false);
+/// assert!(matches!(united(&solid, Rule::Positive), Some(United::Same)));
+/// # Ok::<(), bspcsg::error::Error>(())
+/// ```
+pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
+    let root = solid.root();
+    let is_plain = !root.complement && root.outside == 0;
+    let source = solid.whole_mesh().filter(|_| is_plain)?;
+    let operand = Operand::new(Slot(0), source)?;
+    if source.open_vertices().is_empty() && is_star_shaped(operand.mesh) {
+        return Some(United::Same);
+    }
+    let irregular = irregular(source);
+    let view = View::new(source, &irregular)?;
+    let alone = Alone {
+        scene: Scene::alone(operand, root.cell, rule),
+        view,
+        irregular: &irregular,
+    };
+    let shells = shells(operand.mesh);
+    if shells.len() == 1 || rule == Rule::EvenOdd {
+        return alone.united(alone.view.pairs(&alone.scene.near[0]));
+    }
+    match alone.view.pairs_unless_overlapping(&alone.scene.near[0]) {
+        Pairs::Many if alone.are_simple(&shells) => {
+            let branches = shells.into_iter().map(|shell| shell.branch(source));
+            Some(United::Shells(branches.collect()))
+        }
+        Pairs::Many => alone.united(alone.view.pairs(&alone.scene.near[0])),
+        few @ Pairs::Few(_) => alone.united(few),
+    }
+}
+
+/// A mesh that is compared with itself.
+struct Alone<'a> {
+    scene: Scene<'a>,
+    view: View<'a>,
+    irregular: &'a [bool],
+}
+
+impl Alone<'_> {
+    /// The mesh united with itself, by the pairs of faces that may overlap.
+    fn united(&self, pairs: Pairs) -> Option<United> {
+        let found = self.contacts(pairs)?;
+        let root = self.scene.root(&found).ok()?;
+        Some(
+            if is_all_of(&root, self.scene.surfaces.operands[0].source) {
+                United::Same
+            } else {
+                United::Other(root)
+            },
+        )
+    }
+
+    /// Where faces meet; `None` if they are crowded.
+    fn contacts(&self, pairs: Pairs) -> Option<Contacts> {
+        let Pairs::Few(pairs) = pairs else {
+            return None;
+        };
+        let surfaces = &self.scene.surfaces;
+        Some(contacts_among(
+            surfaces,
+            &pairs,
+            self.irregular.to_vec(),
+            self.scene.worth,
+        ))
+    }
+
+    /// Return whether each shell is the reduced boundary of what it holds.
+    fn are_simple(&self, shells: &[Shell]) -> bool {
+        let mesh = self.scene.surfaces.operands[0].mesh;
+        let is_closed = !self.irregular.contains(&true);
+        let is_simple = |shell: &Shell| {
+            is_outward(mesh, &shell.faces)
+                && self
+                    .contacts(self.view.pairs(&shell.faces))
+                    .is_some_and(|found| found.divide_nothing())
+        };
+        is_closed && shells.iter().all(is_simple)
+    }
+}
+
+impl<'a> Scene<'a> {
+    /// A mesh that is compared with itself.
+    fn alone(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
+        let all: Vec<FaceId> = operand.mesh.face_ids().collect();
+        Self {
+            worth: Worth::pool_if(all.len() >= POOL),
+            surfaces: Surfaces::new(vec![operand], vec![all.clone()]),
+            near: vec![all],
+            cell,
+            kept: Kept::Alone(rule),
+        }
+    }
+}
+
+/// By vertex, whether surfaces may meet there that pairs of faces do not show.
+fn irregular(source: &Source) -> Vec<bool> {
+    let count = source.mesh().map_or(0, |mesh| mesh.vertices.len());
+    let mut irregular = vec![false; count];
+    for vertex in source
+        .irregular_vertices()
+        .iter()
+        .chain(source.open_vertices())
+    {
+        irregular[vertex.place()] = true;
+    }
+    irregular
+}
+
+/// Return whether a leaf lists all faces of a mesh as they are, and nothing else.
+fn is_all_of(root: &Branch, source: &Arc<Source>) -> bool {
+    let Node::Deferred(leaf) = &*root.node else {
+        return false;
+    };
+    let as_given = leaf
+        .groups
+        .iter()
+        .filter(|g| g.orientation == Orientation::Same);
+    let count: usize = as_given.map(|g| g.faces.len()).sum();
+    leaf.parts.is_empty() && count == leaf.len() && count == source.face_count()
+}

@@ -1,0 +1,114 @@
+//! What stays of faces, by the winding numbers in front of them and behind.
+
+use super::faces::Cell;
+use super::triangulation::Special;
+use crate::geometry::side::Orientation;
+use crate::merge::expression::Expression;
+use crate::merge::rule::Rule;
+
+/// The orientation in which faces stay, by the numbers of the mesh that they are compared with.
+#[derive(Debug)]
+pub(super) enum Kept {
+    /// Of two operands, by the other one's numbers.
+    Pair(Pair),
+    /// Of a mesh that is compared with itself, by its own numbers.
+    Alone(Rule),
+}
+
+/// What stays of two operands.
+#[derive(Debug)]
+pub(super) struct Pair {
+    /// By operand, by whether the other one holds what is in front of a face, and what is behind.
+    of: [[[Option<Orientation>; 2]; 2]; 2],
+    /// The value outside of both operands.
+    outside: bool,
+}
+
+impl Pair {
+    fn of(expression: &Expression) -> Self {
+        let mut scratch = Vec::new();
+        let mut value = |inside: [bool; 2]| expression.value(|k| inside[k as usize], &mut scratch);
+        let mut stays = |operand: usize, in_front: bool, behind: bool| {
+            let mut at = |own: bool, other: bool| {
+                let mut inside = [other; 2];
+                inside[operand] = own;
+                value(inside)
+            };
+            between(at(false, in_front), at(true, behind))
+        };
+        let of = [0, 1].map(|operand| {
+            [false, true].map(|front| [false, true].map(|behind| stays(operand, front, behind)))
+        });
+        let outside = value([false; 2]);
+        Self { of, outside }
+    }
+
+    fn at(&self, operand: usize, numbers: [i32; 2]) -> Result<Option<Orientation>, Special> {
+        let [in_front, behind] = numbers.map(usize::try_from);
+        let by_front = self.of[operand].get(in_front.map_err(|_| Special)?);
+        let stays = by_front.and_then(|b| b.get(behind.ok()?));
+        stays.copied().ok_or(Special)
+    }
+}
+
+/// The orientation of a face between what is in front of it and what is behind.
+fn between(in_front: bool, behind: bool) -> Option<Orientation> {
+    (behind != in_front).then(|| Orientation::turned_around(in_front))
+}
+
+impl Kept {
+    /// What stays in the value of an expression over two operands.
+    pub(super) fn of(expression: &Expression) -> Self {
+        Self::Pair(Pair::of(expression))
+    }
+
+    /// The value far away.
+    pub(super) fn outside(&self) -> bool {
+        match self {
+            Self::Pair(pair) => pair.outside,
+            Self::Alone(_) => false,
+        }
+    }
+
+    /// Return whether it depends on numbers what stays of an operand's faces.
+    pub(super) fn is_divided(&self, operand: usize) -> bool {
+        match self {
+            Self::Pair(Pair { of, .. }) => {
+                let first = of[operand][0][0];
+                of[operand].as_flattened().iter().any(|k| *k != first)
+            }
+            Self::Alone(_) => true,
+        }
+    }
+
+    /// The orientation in which a face stays that no other one covers, by the number in front of it.
+    ///
+    /// # Errors
+    /// `Special` where the other operand winds around the place neither once nor not at all.
+    pub(super) fn at(&self, operand: usize, in_front: i32) -> Result<Option<Orientation>, Special> {
+        match self {
+            Self::Pair(pair) => pair.at(operand, [in_front; 2]),
+            Self::Alone(rule) => Ok(between(rule.inside(in_front), rule.inside(in_front + 1))),
+        }
+    }
+
+    /// The same for a cell of a face, by the number in front of the face's first cell.
+    ///
+    /// # Errors
+    /// As for [`Self::at`], and where two faces of the other operand cover the cell.
+    pub(super) fn of_cell(
+        &self,
+        operand: usize,
+        cell: &Cell,
+        first: i32,
+    ) -> Result<Option<Orientation>, Special> {
+        let in_front = first + cell.in_front;
+        let behind = in_front + cell.behind;
+        let stays = match self {
+            Self::Pair(_) if cell.covers > 1 => return Err(Special),
+            Self::Pair(pair) => pair.at(operand, [in_front, behind])?,
+            Self::Alone(rule) => between(rule.inside(in_front), rule.inside(behind + 1)),
+        };
+        Ok(stays.filter(|_| !cell.is_others))
+    }
+}

@@ -1,0 +1,273 @@
+//! The pairs of faces of one mesh that may overlap: boxes find pairs that are near each other, and a
+//! quick look at each tells nearly all of them clear.
+
+use rustc_hash::FxHashMap as HashMap;
+
+use super::looked::Looked;
+use super::PAIRS_FOR_EACH;
+use crate::arith::convert::{as_double, as_number};
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Point;
+use crate::geometry::plane::Lattice;
+use crate::interrupt::poll;
+use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
+use crate::mesh::faces::Faces;
+use crate::mesh::handle::FaceId;
+use crate::mesh::source::Source;
+use crate::mesh::tasks::{each_chunk, CHUNK};
+use crate::mesh::terrains::terrains;
+use crate::mesh::topology::NONE;
+use crate::mesh::triangles::TriangleMesh;
+
+/// Pairs that are looked at together, by several threads where there are any.
+const BATCH: usize = 8 * CHUNK;
+
+/// As many are looked at first where the search may end; then twice as many each time.
+const FIRST: usize = 256;
+
+/// A mesh as quick looks at its faces need it.
+pub(super) struct View<'a> {
+    mesh: &'a TriangleMesh,
+    /// By vertex, whether surfaces may meet there that pairs of faces do not show.
+    irregular: &'a [bool],
+    /// By face, its terrain.
+    terrains: Vec<u32>,
+    /// The lowest corner of a box around all vertices.
+    origin: Lattice,
+    /// By how many bits the steps are coarser in which boxes are compared.
+    shift: u32,
+}
+
+/// The pairs of some faces.
+#[derive(Debug)]
+pub(super) enum Pairs {
+    /// Those that may have more in common than corners and edges, each once, ascending.
+    Few(Vec<[u32; 2]>),
+    /// They are many, or two certainly overlap where one such pair was enough.
+    Many,
+}
+
+impl<'a> View<'a> {
+    /// `None` of what is no mesh, or has no vertices.
+    pub(super) fn new(source: &'a Source, irregular: &'a [bool]) -> Option<Self> {
+        let mesh = source.mesh()?;
+        let (origin, high) = mesh.bounds()?;
+        let extent = each_axis(|i| high[i].abs_diff(origin[i]));
+        Some(Self {
+            mesh,
+            irregular,
+            terrains: all_terrains(source, mesh),
+            origin,
+            shift: shift_of(extent.into_iter().max().unwrap_or(0)),
+        })
+    }
+
+    /// The pairs among some faces, unless they are many.
+    pub(super) fn pairs(&self, faces: &[FaceId]) -> Pairs {
+        self.search(faces, false)
+    }
+
+    /// The pairs among some faces, unless they are many or two certainly overlap.
+    pub(super) fn pairs_unless_overlapping(&self, faces: &[FaceId]) -> Pairs {
+        self.search(faces, true)
+    }
+
+    fn search(&self, faces: &[FaceId], until_overlap: bool) -> Pairs {
+        let mut sorted = faces.to_vec();
+        sorted.sort_unstable_by_key(|f| (self.party(*f), *f));
+        let boxed = |(number, face): (usize, &FaceId)| {
+            let [low, high] = self.box_of(*face);
+            let party = self.party(*face);
+            Boxed::new(party, as_number(number), [&low, &high], self.shift)
+        };
+        let boxes = sorted.iter().enumerate().map(boxed).collect();
+        let mut search = Search {
+            view: self,
+            until_overlap,
+            batch: if until_overlap { FIRST } else { BATCH },
+            waiting: Vec::new(),
+            found: Vec::new(),
+        };
+        let face = |number: u32| sorted[number as usize];
+        let swept = |number: u32| self.swept(face(number));
+        let add = |a: u32, b: u32| search.add([face(a), face(b)]);
+        let all = pairs_of_many(Part::of(boxes, self.shift), swept, add);
+        if all.and_then(|()| search.look()).is_none() {
+            return Pairs::Many;
+        }
+        search.found.sort_unstable();
+        search.found.dedup();
+        Pairs::Few(search.found)
+    }
+}
+
+impl View<'_> {
+    /// A face prepared for quick looks.
+    fn of(&self, face: FaceId) -> Looked {
+        let terrain = self.terrains[face.place()];
+        Looked::at(self.mesh, face, self.irregular, terrain)
+    }
+
+    /// The party of a face: faces of one terrain are not compared with each other.
+    fn party(&self, face: FaceId) -> usize {
+        match self.terrains[face.place()] {
+            NONE => self.mesh.faces.len() + face.place(),
+            terrain => terrain as usize,
+        }
+    }
+
+    /// The box around a face, measured from the origin.
+    fn box_of(&self, face: FaceId) -> [Lattice; 2] {
+        let (low, high) = self.mesh.face_box(face);
+        [low, high].map(|end| each_axis(|i| end[i] - self.origin[i]))
+    }
+
+    fn swept(&self, face: FaceId) -> Swept {
+        let [low, high] = self.box_of(face);
+        let corners = self.mesh.corners(face);
+        Swept {
+            operand: self.party(face),
+            low,
+            high,
+            corners: Some(corners.map(|c| each_axis(|i| as_double(c[i] - self.origin[i])))),
+        }
+    }
+}
+
+/// A search for pairs.
+struct Search<'a> {
+    view: &'a View<'a>,
+    until_overlap: bool,
+    /// So many pairs are looked at together: first few, if the search may end.
+    batch: usize,
+    /// Pairs that are near each other and were not looked at yet.
+    waiting: Vec<[FaceId; 2]>,
+    found: Vec<[u32; 2]>,
+}
+
+impl Search<'_> {
+    /// Adds a pair; `None` if the search ends.
+    fn add(&mut self, pair: [FaceId; 2]) -> Option<()> {
+        self.waiting.push(pair);
+        if self.waiting.len() < self.batch {
+            return Some(());
+        }
+        self.batch = BATCH.min(2 * self.batch);
+        self.look()
+    }
+
+    /// Looks at the pairs that wait; `None` if the search ends.
+    fn look(&mut self) -> Option<()> {
+        let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
+        self.waiting.clear();
+        let found: Vec<[FaceId; 2]> = found.into_iter().flatten().collect();
+        let overlap = |[a, b]: &[FaceId; 2]| self.view.of(*a).overlaps(&self.view.of(*b));
+        if self.until_overlap && found.iter().any(overlap) {
+            return None;
+        }
+        let ascending = found.iter().map(|[a, b]| [a.0.min(b.0), a.0.max(b.0)]);
+        self.found.extend(ascending);
+        (self.found.len() <= PAIRS_FOR_EACH * self.view.mesh.faces.len()).then_some(())
+    }
+}
+
+/// For each face the number of its terrain; `NONE` where there is none, and where the mesh is not closed by
+/// index.
+fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
+    let all: Vec<u32> = (0..as_number(mesh.faces.len())).collect();
+    if !source.open_vertices().is_empty() {
+        return vec![NONE; all.len()];
+    }
+    let vertices: Vec<Point> = mesh.vertices.iter().map(|v| v.map(as_double)).collect();
+    let faces = Faces {
+        vertices: &vertices,
+        triangles: &mesh.faces,
+    };
+    terrains(&faces, &all)
+}
+
+/// Those of some pairs that a quick look does not tell clear.
+fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
+    let mut looks = Looks {
+        view,
+        places: HashMap::default(),
+        looked: Vec::new(),
+    };
+    let is_unclear = |pair: &&[FaceId; 2]| {
+        poll();
+        let [a, b] = pair.map(|face| looks.at(face));
+        !looks.looked[a].is_clear_of(&looks.looked[b])
+    };
+    pairs.iter().filter(is_unclear).copied().collect()
+}
+
+/// The faces that were looked at: pairs that are found one after the other are of few faces.
+struct Looks<'a> {
+    view: &'a View<'a>,
+    places: HashMap<FaceId, usize>,
+    looked: Vec<Looked>,
+}
+
+impl Looks<'_> {
+    /// The place of a face.
+    fn at(&mut self, face: FaceId) -> usize {
+        *self.places.entry(face).or_insert_with(|| {
+            self.looked.push(self.view.of(face));
+            self.looked.len() - 1
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::cuboids;
+    use crate::mesh::handle::Slot;
+
+    /// The pairs among all faces of some boxes.
+    fn pairs_of(boxes: &[[Lattice; 2]]) -> Option<Vec<[u32; 2]>> {
+        let solid = cuboids(boxes.iter().copied());
+        let source = solid.sources().get(Slot(0));
+        let irregular = vec![false; source.mesh()?.vertices.len()];
+        let faces: Vec<FaceId> = source.mesh()?.face_ids().collect();
+        let view = View::new(source, &irregular)?;
+        let overlap = matches!(view.pairs_unless_overlapping(&faces), Pairs::Many);
+        match view.pairs(&faces) {
+            Pairs::Few(pairs) => {
+                assert_eq!(overlap, !pairs.is_empty());
+                Some(pairs)
+            }
+            Pairs::Many => None,
+        }
+    }
+
+    #[test]
+    fn faces_that_cross_are_found_and_neighbours_are_not() {
+        let boxes = [
+            [[0; 3], [9; 3]],
+            [[3, 3, 3], [6, 6, 15]],
+            [[20; 3], [29; 3]],
+        ];
+        let found = pairs_of(&boxes).expect("few pairs");
+        let across = |[a, b]: &[u32; 2]| *a < 12 && (12..24).contains(b);
+        assert!(!found.is_empty() && found.iter().all(across) && found.is_sorted());
+    }
+
+    #[test]
+    fn a_search_gives_up_where_most_faces_overlap_most_others() {
+        let boxes = vec![[[0; 3], [9; 3]]; 4 * PAIRS_FOR_EACH];
+        assert!(pairs_of(&boxes).is_none());
+    }
+
+    /// Twice as many boxes in a row, each across the next, are twice as many pairs.
+    #[test]
+    fn pairs_follow_what_overlaps() {
+        let row = |count: i64| {
+            let place = |i: i64| [[10 * i, i % 2, 0], [10 * i + 14, 9 + i % 2, 9 - i % 2]];
+            let boxes: Vec<[Lattice; 2]> = (0..count).map(place).collect();
+            pairs_of(&boxes).expect("few pairs").len()
+        };
+        let (half, whole) = (row(200), row(400));
+        assert!(half > 0 && whole <= 2 * half + 100, "{half} {whole}");
+    }
+}

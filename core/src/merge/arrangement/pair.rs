@@ -1,0 +1,147 @@
+//! Two meshes as they were given: which of their faces may meet.
+
+use super::candidates::Operand;
+use super::kept::Kept;
+use super::occupancy::Occupancy;
+use super::probe::probe;
+use super::scene::Scene;
+use super::segments::contacts_of;
+use super::surfaces::Surfaces;
+use super::POOL;
+use crate::arith::convert::as_double;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Point;
+use crate::geometry::plane::Lattice;
+use crate::merge::expression::Expression;
+use crate::merge::lists::list::Sources;
+use crate::mesh::tasks::{both, Worth};
+use crate::tree::node::Branch;
+use crate::tree::solid::Solid;
+
+/// What two operands leave, and how many faces were compared.
+#[derive(Debug)]
+pub struct Arranged {
+    /// The root of the result.
+    pub root: Branch,
+    /// The faces in the box that the operands have in common.
+    pub compared: usize,
+}
+
+/// The value of an expression over two meshes as they were given; `None` if the operands are something
+/// else, or lie apart, or overlap themselves where they meet, or are crowded.
+pub fn arranged(expression: &Expression, solids: &[Solid], sources: &Sources) -> Option<Arranged> {
+    let operands = operands(expression, solids, sources)?;
+    let window = window(operands.each_ref().map(|o| o.bounds))?;
+    let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
+    let worth = Worth::pool_if(faces >= POOL);
+    let within = for_both(worth, |k| operands[k].within(&window));
+    probe(&operands, &within).ok()?;
+    let compared = within.iter().map(|w| w.faces.len()).sum();
+    let occupied = for_both(worth, |k| {
+        let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);
+        Occupancy::of(&window, &within[k].boxes, triangle, compared)
+    });
+    let mut candidates = for_both(worth, |k| {
+        operands[k].candidates(&within[k], &occupied[1 - k], &window[0])
+    });
+    let surfaces = Surfaces::new(
+        operands.to_vec(),
+        candidates
+            .each_mut()
+            .map(|c| std::mem::take(&mut c.faces))
+            .to_vec(),
+    );
+    let found = contacts_of(&surfaces, &candidates, worth).ok()?;
+    let scene = Scene {
+        surfaces,
+        near: within.map(|w| w.faces).to_vec(),
+        cell: solids[0].root().cell.join(&solids[1].root().cell),
+        kept: Kept::of(expression),
+        worth,
+    };
+    let root = scene.root(&found).ok()?;
+    Some(Arranged { root, compared })
+}
+
+/// A value for each operand, made at the same time where that pays.
+fn for_both<T: Send>(worth: Worth, value: impl Fn(usize) -> T + Sync) -> [T; 2] {
+    both(worth, || value(0), || value(1)).into()
+}
+
+/// The operands, if they are two different meshes as they were given.
+fn operands<'a>(
+    expression: &Expression,
+    solids: &'a [Solid],
+    sources: &Sources,
+) -> Option<[Operand<'a>; 2]> {
+    let [first, second] = solids else {
+        return None;
+    };
+    let operand = |solid: &'a Solid| {
+        let source = solid.whole_mesh().filter(|_| !solid.root().complement)?;
+        Operand::new(sources.slot(source), source)
+    };
+    let operands = [operand(first)?, operand(second)?];
+    let are_in_order = operands[0].slot < operands[1].slot;
+    (are_in_order && expression.operands() == [0, 1]).then_some(operands)
+}
+
+/// The box that two boxes have in common.
+fn window([[low, high], [others_low, others_high]]: [[Lattice; 2]; 2]) -> Option<[Point; 2]> {
+    let low = each_axis(|i| low[i].max(others_low[i]));
+    let high = each_axis(|i| high[i].min(others_high[i]));
+    let meet = (0..3).all(|i| low[i] <= high[i]);
+    meet.then(|| [low, high].map(|corner| corner.map(as_double)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::expression::Term;
+    use crate::merge::scenes::{both as expression_of_both, cuboid, cuboids, tetrahedra};
+    use crate::tree::node::Node;
+
+    fn sources(solids: &[Solid; 2]) -> Sources {
+        Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect())
+    }
+
+    /// The number of whole faces and of parts that an arrangement leaves.
+    fn counts(solids: &[Solid; 2], term: fn(Vec<u32>) -> Term) -> Option<[usize; 2]> {
+        let found = arranged(&expression_of_both(term), solids, &sources(solids))?;
+        Some(match &*found.root.node {
+            Node::Deferred(leaf) => [leaf.len() - leaf.parts.len(), leaf.parts.len()],
+            _ => [0; 2],
+        })
+    }
+
+    #[test]
+    fn only_faces_that_cross_are_divided() {
+        let solids = tetrahedra();
+        assert_eq!(counts(&solids, Term::And), Some([0, 4]));
+        assert_eq!(counts(&solids, Term::Or), Some([4, 4]));
+    }
+
+    #[test]
+    fn faces_in_one_plane_are_divided_by_each_other() {
+        let touching = [cuboid([0; 3], [4; 3]), cuboid([4, 1, 1], [8, 3, 3])];
+        assert_eq!(counts(&touching, Term::Or), Some([20, 2]));
+        assert_eq!(counts(&touching, Term::And), Some([0; 2]));
+    }
+
+    #[test]
+    fn overlapping_meshes_are_left_to_others() {
+        let first = cuboid([0; 3], [4; 3]);
+        let twice = cuboids([[[-9, 1, 1], [9, 3, 3]], [[-9, 2, 2], [9, 5, 5]]]);
+        assert_eq!(counts(&[first.clone(), twice], Term::Or), None);
+        let apart = [first, cuboid([5; 3], [8; 3])];
+        assert_eq!(counts(&apart, Term::Or), None);
+    }
+
+    #[test]
+    fn a_mesh_inside_another_has_numbers_without_crossings() {
+        let solids = [cuboid([0; 3], [9; 3]), cuboid([3, 4, 3], [5, 6, 7])];
+        assert_eq!(counts(&solids, Term::And), Some([12, 0]));
+        assert_eq!(counts(&solids, Term::Or), Some([12, 0]));
+        assert_eq!(counts(&solids, Term::Xor), Some([24, 0]));
+    }
+}

@@ -1,0 +1,381 @@
+//! What stays of meshes, given where their faces meet.
+
+use std::sync::Arc;
+
+use super::candidates::Operand;
+use super::faces::{Arrangement, Cell as FaceCell, Face, Planes, Shared};
+use super::kept::Kept;
+use super::labels::Labels;
+use super::segments::{Contacts, Cover, Edge, Point as CommonPoint, Segment};
+use super::surfaces::Surfaces;
+use super::triangulation::Special;
+use crate::geometry::axes::each_axis;
+use crate::geometry::cell::Cell;
+use crate::geometry::edge::LatticeEdge;
+use crate::geometry::plane::{normal, Plane};
+use crate::geometry::side::Orientation;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::mesh::handle::{FaceId, VertexId};
+use crate::mesh::tasks::{each, Worth};
+use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
+
+/// Work that is handed to other threads at once.
+const TASK: usize = 32;
+
+/// Two meshes, or one that is compared with itself.
+#[derive(Debug)]
+pub(super) struct Scene<'a> {
+    pub(super) surfaces: Surfaces<'a>,
+    /// For each operand the faces that others may lie in front of.
+    pub(super) near: Vec<Vec<FaceId>>,
+    /// The cell of the result.
+    pub(super) cell: Cell,
+    pub(super) kept: Kept,
+    pub(super) worth: Worth,
+}
+
+/// What becomes of a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Fate {
+    Gone,
+    /// It stays as it is; true if it touches others.
+    Whole(Orientation, bool),
+    Cut,
+}
+
+impl Fate {
+    fn of(stays: Option<Orientation>, touches: bool) -> Self {
+        stays.map_or(Self::Gone, |orientation| Self::Whole(orientation, touches))
+    }
+
+    /// Notes that the face touches others.
+    fn touch(&mut self) {
+        if let Self::Whole(_, touches) = self {
+            *touches = true;
+        }
+    }
+}
+
+/// What stays of a face that was arranged: all of it one way, or a part each way.
+enum Left {
+    Whole(Option<Orientation>),
+    Parts([Option<PartElement>; 2]),
+}
+
+impl<'a> Scene<'a> {
+    /// The leaf of all that stays, given where faces meet.
+    ///
+    /// # Errors
+    /// `Special` if the faces do not show what stays.
+    pub(super) fn root(&self, found: &Contacts) -> Result<Branch, Special> {
+        let shared = self.shared(found);
+        let mut leaf = Deferred {
+            corner: i32::from(self.kept.outside()),
+            worked: true,
+            ..Deferred::default()
+        };
+        let operands = (0..self.surfaces.operands.len()).collect();
+        for left in each(self.worth, operands, |k| self.left(k, found, &shared)) {
+            let (groups, parts) = left?;
+            leaf.groups.extend(groups);
+            leaf.parts.extend(parts);
+        }
+        if leaf.is_empty() {
+            return Ok(Branch::uniform(self.cell, leaf.corner));
+        }
+        Ok(Branch {
+            cell: self.cell,
+            outside: leaf.corner,
+            complement: false,
+            node: Arc::new(Node::Deferred(leaf)),
+        })
+    }
+
+    /// The points and planes of all that meets.
+    fn shared<'b>(&'b self, found: &'b Contacts) -> Shared<'b> {
+        let planes = self.planes(found);
+        let blocks = found.points.chunks(TASK).collect();
+        let vertices = each(self.worth, blocks, |block: &[CommonPoint]| {
+            let vertex = |point: &CommonPoint| Arc::new(self.vertex(point, &planes));
+            block.iter().map(vertex).collect::<Vec<_>>()
+        });
+        Shared {
+            surfaces: &self.surfaces,
+            points: &found.points,
+            vertices: vertices.concat(),
+            planes,
+        }
+    }
+
+    /// The planes of the faces that meet others.
+    fn planes(&self, found: &Contacts) -> Planes {
+        let faces = self.arranged_faces(found);
+        let planes = each(
+            self.worth,
+            faces.chunks(TASK).collect(),
+            |block: &[u32]| {
+                let planes = block
+                    .iter()
+                    .map(|f| self.surfaces.operand(*f).source.plane(self.surfaces.id(*f)));
+                planes.collect::<Vec<_>>()
+            },
+        );
+        faces.into_iter().zip(planes.concat()).collect()
+    }
+
+    /// The faces that others divide or cover, and those of which all corners lie on others; ascending.
+    fn arranged_faces(&self, found: &Contacts) -> Vec<u32> {
+        let segments = found.segments.iter().map(|s| s.face);
+        let covered = found.covers.iter().map(|c| c.face);
+        let mut faces: Vec<u32> = segments.chain(covered).collect();
+        faces.dedup();
+        for k in 0..self.surfaces.operands.len() {
+            let touches = |v: &VertexId| found.touching[k].get(v.place()).is_some_and(|t| *t);
+            let of_operand = self.surfaces.of_operand(k);
+            faces.extend(of_operand.filter(|f| self.surfaces.vertices(*f).iter().all(touches)));
+        }
+        faces.sort_unstable();
+        faces.dedup();
+        faces
+    }
+
+    fn vertex(&self, point: &CommonPoint, planes: &Planes) -> Vertex {
+        let edge = |(operand, ends): &Edge| {
+            let places = &self.surfaces.operands[*operand].mesh.vertices;
+            let [from, to] = ends.map(|v| places[v.place()]);
+            LatticeEdge::new(from, to)
+        };
+        match point {
+            CommonPoint::Corner(place) => Vertex::lattice(*place),
+            CommonPoint::Through(through, face) => Vertex::on_edge(&edge(through), &planes[face])
+                .expect("an edge with ends on both sides of a plane meets it"),
+            CommonPoint::Edges([first, second]) => crossing(&edge(first), &edge(second)),
+        }
+    }
+
+    /// The arrangements in all faces of an operand that meet the other one.
+    fn arrangements<'b>(
+        &self,
+        operand: usize,
+        found: &'b Contacts,
+        shared: &'b Shared,
+    ) -> Result<Vec<Arrangement<'b>>, Special> {
+        let mut faces: Vec<u32> = shared.planes.keys().copied().collect();
+        faces.retain(|f| self.surfaces.operand_of(*f) == operand);
+        faces.sort_unstable();
+        let arranged = |number: u32| {
+            let face = Face {
+                number,
+                operand,
+                corners: self.surfaces.corners(number),
+                vertices: self.surfaces.vertices(number),
+                plane: &shared.planes[&number],
+                segments: run(&found.segments, number, |s: &Segment| s.face),
+                covers: run(&found.covers, number, |c: &Cover| c.face),
+            };
+            Arrangement::new(face, shared)
+        };
+        let found = each(
+            self.worth,
+            faces.chunks(TASK).collect(),
+            |block: &[u32]| {
+                let block = block.iter().map(|number| arranged(*number));
+                block.collect::<Result<Vec<_>, Special>>()
+            },
+        );
+        let found: Result<Vec<Vec<_>>, Special> = found.into_iter().collect();
+        Ok(found?.into_iter().flatten().collect())
+    }
+
+    /// What stays of an operand: whole faces, and parts of those that are divided.
+    fn left(
+        &self,
+        operand: usize,
+        found: &Contacts,
+        shared: &Shared,
+    ) -> Result<(Vec<Group>, Vec<PartElement>), Special> {
+        let count = self.surfaces.operands[operand].mesh.faces.len();
+        let mut fates = vec![Fate::of(self.kept.at(operand, 0)?, false); count];
+        let mut parts = Vec::new();
+        if self.kept.is_divided(operand) {
+            let mut arranged = self.arrangements(operand, found, shared)?;
+            for arrangement in &arranged {
+                fates[self.surfaces.id(arrangement.face.number).place()] = Fate::Cut;
+            }
+            let mut labels = self.labels(operand, &mut arranged, &fates, found)?;
+            let firsts = arranged.iter_mut().map(|a| labels.in_front_of(a));
+            let firsts = firsts.collect::<Result<Vec<i32>, Special>>()?;
+            self.decide(operand, &mut labels, &mut fates)?;
+            for face in &found.touched {
+                if self.surfaces.operand_of(*face) == operand {
+                    fates[self.surfaces.id(*face).place()].touch();
+                }
+            }
+            parts = self.parts(operand, arranged, firsts, &mut fates)?;
+        }
+        Ok((self.groups(operand, &fates), parts))
+    }
+
+    /// Decides the faces of an operand that may have others around them, but for those that were arranged.
+    fn decide(
+        &self,
+        operand: usize,
+        labels: &mut Labels,
+        fates: &mut [Fate],
+    ) -> Result<(), Special> {
+        let mesh = self.surfaces.operands[operand].mesh;
+        for id in &self.near[operand] {
+            poll();
+            if fates[id.place()] != Fate::Cut {
+                let number = labels.at_corners(mesh.vertices_of(*id)).ok_or(Special)?;
+                fates[id.place()] = Fate::of(self.kept.at(operand, number)?, false);
+            }
+        }
+        Ok(())
+    }
+
+    /// The winding numbers around the vertices of an operand.
+    fn labels(
+        &self,
+        operand: usize,
+        arranged: &mut [Arrangement],
+        fates: &[Fate],
+        found: &Contacts,
+    ) -> Result<Labels<'a>, Special> {
+        let of = self.surfaces.operands[operand];
+        let around = self.surfaces.operands[self.surfaces.operands.len() - 1 - operand];
+        let mut labels = Labels::new(of, around, found.touching[operand].clone());
+        for arrangement in arranged.iter() {
+            labels.join_cells(arrangement)?;
+        }
+        let others = || {
+            self.near[operand]
+                .iter()
+                .filter(|id| fates[id.place()] != Fate::Cut)
+        };
+        for id in others() {
+            poll();
+            labels.join_corners(of.mesh.vertices_of(*id))?;
+        }
+        match self.kept {
+            Kept::Pair(_) => labels.note_beyond(),
+            Kept::Alone(_) => labels.note_widest(arranged, others())?,
+        }
+        Ok(labels)
+    }
+
+    /// The faces of an operand that stay whole.
+    fn groups(&self, operand: usize, fates: &[Fate]) -> Vec<Group> {
+        let Operand { mesh, source, .. } = self.surfaces.operands[operand];
+        let group = |(touching, orientation)| Group {
+            touching,
+            source: Arc::clone(source),
+            orientation,
+            faces: Vec::new(),
+        };
+        let kinds = [false, true].map(|touching| Orientation::BOTH.map(|o| (touching, o)));
+        let mut groups = kinds
+            .as_flattened()
+            .iter()
+            .copied()
+            .map(group)
+            .collect::<Vec<_>>();
+        for (id, fate) in mesh.face_ids().zip(fates) {
+            if let Fate::Whole(orientation, touching) = fate {
+                let kind = 2 * usize::from(*touching) + usize::from(orientation.is_opposite());
+                groups[kind].faces.push(id);
+            }
+        }
+        groups.retain(|g| !g.faces.is_empty());
+        groups
+    }
+
+    /// The parts that stay of an operand's faces that were arranged, in the order of a leaf.
+    fn parts(
+        &self,
+        operand: usize,
+        mut arranged: Vec<Arrangement>,
+        firsts: Vec<i32>,
+        fates: &mut [Fate],
+    ) -> Result<Vec<PartElement>, Special> {
+        let numbered = arranged.iter_mut().zip(firsts);
+        let mut all: Vec<(FaceId, &mut Arrangement, i32)> = numbered
+            .map(|(a, first)| (self.surfaces.id(a.face.number), a, first))
+            .collect();
+        all.sort_unstable_by_key(|(id, ..)| *id);
+        let ids: Vec<FaceId> = all.iter().map(|(id, ..)| *id).collect();
+        let blocks = all.chunks_mut(TASK).collect();
+        let found = each(
+            self.worth,
+            blocks,
+            |block: &mut [(FaceId, &mut Arrangement, i32)]| {
+                let left = block
+                    .iter_mut()
+                    .map(|(_, a, first)| self.left_of(operand, a, *first));
+                left.collect::<Result<Vec<_>, Special>>()
+            },
+        );
+        let found: Vec<Vec<Left>> = found.into_iter().collect::<Result<_, _>>()?;
+        let mut parts = [Vec::new(), Vec::new()];
+        for (id, left) in ids.into_iter().zip(found.into_iter().flatten()) {
+            match left {
+                Left::Whole(stays) => fates[id.place()] = Fate::of(stays, true),
+                Left::Parts(of_face) => {
+                    for (all, part) in parts.iter_mut().zip(of_face) {
+                        all.extend(part);
+                    }
+                }
+            }
+        }
+        Ok(parts.concat())
+    }
+
+    /// What stays of a face, given the number in front of its first cell.
+    fn left_of(
+        &self,
+        operand: usize,
+        arrangement: &mut Arrangement,
+        first: i32,
+    ) -> Result<Left, Special> {
+        let stays = |cell: &FaceCell| self.kept.of_cell(operand, cell, first);
+        let all = arrangement
+            .cells
+            .iter()
+            .map(stays)
+            .collect::<Result<Vec<_>, Special>>()?;
+        if all.iter().all(|s| *s == all[0]) {
+            return Ok(Left::Whole(all[0]));
+        }
+        let id = self.surfaces.id(arrangement.face.number);
+        let mut part = |orientation: Orientation| {
+            let edges = arrangement.outline(|cell| stays(cell) == Ok(Some(orientation)));
+            (!edges.is_empty()).then(|| {
+                let source = Arc::clone(self.surfaces.operands[operand].source);
+                let part = Arc::new(Part::new(source, id, self.cell, edges));
+                PartElement { part, orientation }
+            })
+        };
+        Ok(Left::Parts(Orientation::BOTH.map(&mut part)))
+    }
+}
+
+/// Those of some sorted rows that are of a face.
+fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
+    let first = rows.partition_point(|row| of(row) < face);
+    let count = rows[first..]
+        .iter()
+        .take_while(|row| of(row) == face)
+        .count();
+    &rows[first..first + count]
+}
+
+/// The point in which two edges cross.
+fn crossing(first: &LatticeEdge, second: &LatticeEdge) -> Vertex {
+    let ((a, b), (c, d)) = (first.ends(), second.ends());
+    let place = each_axis(|i| a[i] + d[i] - c[i]);
+    let normal = normal(a, b, &place);
+    let axis = (0..3).max_by_key(|i| normal[*i].abs()).unwrap_or(0);
+    let plane = Arc::new(Plane::beside_edge(c, d, axis));
+    Vertex::on_edge(first, &plane).expect("edges that cross have different directions")
+}

@@ -1,0 +1,84 @@
+//! The shells of a mesh: its faces by what hangs together.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap as HashMap;
+
+use crate::arith::{Int, Sign};
+use crate::geometry::cell::Cell;
+use crate::geometry::flux::fixed::sixfold_flux;
+use crate::geometry::side::Orientation;
+use crate::interrupt::poll;
+use crate::mesh::handle::FaceId;
+use crate::mesh::source::Source;
+use crate::mesh::triangles::TriangleMesh;
+use crate::tree::node::{Branch, Deferred, Group, Node};
+
+/// Faces that hang together by vertices, ascending.
+#[derive(Debug, Default)]
+pub(super) struct Shell {
+    pub(super) faces: Vec<FaceId>,
+}
+
+impl Shell {
+    /// The shell as a subtree of its own.
+    pub(super) fn branch(self, source: &Arc<Source>) -> Branch {
+        let around = source.box_around(&self.faces);
+        let cell = around.map_or(Cell::UNIVERSE, |(low, high)| Cell::around(&low, &high));
+        let group = Group {
+            touching: false,
+            source: Arc::clone(source),
+            orientation: Orientation::Same,
+            faces: self.faces,
+        };
+        let leaf = Deferred {
+            groups: vec![group],
+            ..Deferred::default()
+        };
+        Branch::of_node(cell, Node::Deferred(leaf))
+    }
+}
+
+/// The shells of a mesh, in the order of their first faces.
+pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
+    let mut parents: Vec<usize> = (0..mesh.vertices.len()).collect();
+    for face in mesh.face_ids() {
+        poll();
+        let [a, b, c] = mesh
+            .vertices_of(face)
+            .map(|v| root(&mut parents, v.place()));
+        let first = a.min(b).min(c);
+        for other in [a, b, c] {
+            parents[other] = first;
+        }
+    }
+    let mut numbers: HashMap<usize, usize> = HashMap::default();
+    let mut shells: Vec<Shell> = Vec::new();
+    for face in mesh.face_ids() {
+        let root = root(&mut parents, mesh.vertices_of(face)[0].place());
+        let number = *numbers.entry(root).or_insert_with(|| {
+            shells.push(Shell::default());
+            shells.len() - 1
+        });
+        shells[number].faces.push(face);
+    }
+    shells
+}
+
+/// The root of a class; each second one on the way becomes a child of its parent's parent.
+fn root(parents: &mut [usize], mut at: usize) -> usize {
+    while parents[at] != at {
+        parents[at] = parents[parents[at]];
+        at = parents[at];
+    }
+    at
+}
+
+/// Return whether faces enclose more inside than outside.
+pub(super) fn is_outward(mesh: &TriangleMesh, faces: &[FaceId]) -> bool {
+    let mut volume = Int::<4>::ZERO;
+    for face in faces {
+        volume += sixfold_flux(&mesh.corners(*face));
+    }
+    volume.sign() == Sign::Positive
+}

@@ -1,0 +1,115 @@
+//! Winding numbers of a mesh, counted along rays.
+
+use std::sync::Arc;
+
+use super::boxes::Bounds;
+use super::candidates::{Candidates, Operand};
+use crate::arith::convert::as_double;
+use crate::geometry::axes::each_axis;
+use crate::geometry::doubles::Point;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::side::Side;
+use crate::geometry::vertex::Vertex;
+use crate::geometry::winding::crossing::{triangle_change, Segment};
+
+/// A point of a face's plane, and the half steps that it lies above as seen along the plane's main axis.
+#[derive(Clone, Debug)]
+pub(super) struct Probe {
+    pub(super) point: Arc<Vertex>,
+    pub(super) doubled: [i64; 2],
+}
+
+impl Probe {
+    /// The point of a plane above half steps; `None` if the plane is parallel to the main axis: never.
+    pub(super) fn above(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
+        let axis = plane.main_axis();
+        let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
+        let point = Arc::new(Vertex::meet(plane, &cut(1), &cut(2))?);
+        Some(Self { point, doubled })
+    }
+}
+
+/// How often a mesh winds around points: its faces by their places, once somebody asks.
+#[derive(Debug)]
+pub(super) struct Windings<'a> {
+    operand: Operand<'a>,
+    faces: Option<Candidates>,
+}
+
+impl<'a> Windings<'a> {
+    pub(super) fn of(operand: Operand<'a>) -> Self {
+        Self {
+            operand,
+            faces: None,
+        }
+    }
+
+    /// Return whether a point lies outside of the box around the mesh.
+    pub(super) fn are_zero_at(&self, place: &Lattice) -> bool {
+        let [low, high] = &self.operand.bounds;
+        (0..3).any(|i| place[i] < low[i] || place[i] > high[i])
+    }
+
+    /// The winding number around a lattice point that lies on no face.
+    pub(super) fn around(&mut self, place: &Lattice) -> i32 {
+        let Operand { mesh, bounds, .. } = self.operand;
+        let way = Segment {
+            from: place.map(|x| 2 * x),
+            axis: 0,
+            to: 2 * bounds[1][0] + 2,
+        };
+        let faces = self.faces.get_or_insert_with(|| self.operand.tree());
+        let from: Point = place.map(as_double);
+        let to = each_axis(|i| {
+            if i == 0 {
+                as_double(bounds[1][0])
+            } else {
+                from[i]
+            }
+        });
+        let mut change = 0;
+        faces.tree.each_meeting(&Bounds::between(&from, &to), |i| {
+            change += triangle_change(&mesh.corners(faces.faces[i]), &way);
+        });
+        -change
+    }
+
+    /// The winding number in front of a plane at a point of it that lies on no face in another plane.
+    pub(super) fn in_front(&mut self, plane: &Plane, probe: &Probe) -> i32 {
+        let Probe { point, doubled } = probe;
+        let Operand { mesh, bounds, .. } = self.operand;
+        let axis = plane.main_axis();
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut from = [0; 3];
+        (from[axis], from[u], from[v]) = (2 * bounds[0][axis] - 2, doubled[0], doubled[1]);
+        let to = 2 * bounds[1][axis] + 2;
+        let way = Segment { from, axis, to };
+        let is_up = plane.normal()[axis] > 0;
+        let faces = self.faces.get_or_insert_with(|| self.operand.tree());
+        let (low, high) = (point.approx(), point.approx());
+        let reach = |i: usize, low: f64, end: i64| if i == axis { as_double(end) } else { low };
+        let low = each_axis(|i| reach(i, low[i], bounds[0][i]));
+        let high = each_axis(|i| reach(i, high[i], bounds[1][i]));
+        let mut number = 0;
+        faces.tree.each_meeting(&Bounds::between(&low, &high), |i| {
+            let corners = mesh.corners(faces.faces[i]);
+            let change = triangle_change(&corners, &way);
+            if change == 0 {
+                return;
+            }
+            let [a, b, c] = &corners;
+            let Some(other) = Plane::through(a, b, c) else {
+                return;
+            };
+            // Upwards the number grows where the way leads from in front of the face to behind it.
+            let is_above = match point.side_of(&other) {
+                Side::On => return,
+                side => (side == Side::Plus) == (change > 0),
+            };
+            if is_above == is_up {
+                number += if is_up { -change } else { change };
+            }
+        });
+        number
+    }
+}

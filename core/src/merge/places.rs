@@ -1,0 +1,84 @@
+//! A look at a solid around given places: enough where its boundary is seen to cross itself.
+
+use crate::geometry::cell::Cell;
+use crate::geometry::plane::Lattice;
+use crate::geometry::side::Half;
+use crate::interrupt::poll;
+use crate::merge::descent::choice::LEAF;
+use crate::merge::kernels::trees::LeafTree;
+use crate::merge::lists::list::{List, Sources};
+use crate::tree::node::{Branch, Node};
+use crate::tree::solid::Solid;
+
+/// Elements of a list for which a local tree is grown where halving separates no more.
+const STUCK: usize = 256;
+
+/// Return whether a small cell around one of the places shows that a solid is not the reduced
+/// boundary; may return false negatives.
+///
+/// # Cost
+/// Lists are divided where places are, and one local tree is grown for each place at most.
+pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
+    let sources = Sources::new(solid.sources().clone());
+    let mut open: Vec<(Branch, Vec<Lattice>)> = vec![(solid.root().clone(), places.to_vec())];
+    while let Some((branch, mut places)) = open.pop() {
+        poll();
+        places.retain(|p| branch.cell.holds_box(p, p));
+        if places.is_empty() {
+            continue;
+        }
+        match &*branch.node {
+            Node::Leaf(_) => {}
+            Node::Deferred(leaf) => {
+                let list = List::open(leaf, &branch, &sources);
+                if overlaps_in(&sources, branch.cell, list, places) {
+                    return true;
+                }
+            }
+            Node::Cut(halves) => {
+                let children = halves.children.each_ref();
+                open.extend(children.map(|c| (Branch::child(&branch, c), places.clone())));
+            }
+        }
+    }
+    false
+}
+
+/// Return whether elements of a list overlap in one of the small cells around places.
+fn overlaps_in(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) -> bool {
+    let mut open = vec![(cell, list, places)];
+    while let Some((cell, list, places)) = open.pop() {
+        poll();
+        if places.is_empty() || list.is_empty() {
+            continue;
+        }
+        let is_stuck = || list.len() <= STUCK && list.reaching_out(&cell) * 8 > list.len() * 7;
+        let Some(cut) = cell.cut().filter(|_| list.len() > LEAF && !is_stuck()) else {
+            if list.len() <= STUCK && !LeafTree::new(&list, &cell, sources).is_simple() {
+                return true;
+            }
+            continue;
+        };
+        let (below, above) = places.into_iter().partition(|p| p[cut.axis] < cut.at);
+        let (minus, plus) = list.divide(&cell, cut, sources);
+        for (half, list, places) in [(Half::Minus, minus, below), (Half::Plus, plus, above)] {
+            open.push((cell.half(cut, half), list, places));
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::cuboids;
+
+    /// Two rows of boxes side by side; the two in the middle overlap.
+    #[test]
+    fn an_overlap_is_seen_where_it_is_and_nowhere_else() {
+        let apart = |i: i64| [[8 * i; 3], [8 * i + 4; 3]];
+        let solid = cuboids((0..9).map(apart).chain([[[34; 3], [38; 3]]]));
+        assert!(overlaps_at(&solid, &[[2; 3], [35; 3]]));
+        assert!(!overlaps_at(&solid, &[[2; 3], [66; 3], [900; 3]]));
+    }
+}
