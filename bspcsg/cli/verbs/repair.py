@@ -39,7 +39,7 @@ _DEFECTS = {
 @click.option(
     "--steps",
     metavar="STEPS",
-    default="weld,dedup,split,orient,fill",
+    default="weld,dedup,drop,split,orient,fill",
     show_default=True,
     help="Which steps to take, apart by commas.",
 )
@@ -64,8 +64,10 @@ _DEFECTS = {
 def repair(file: Path, target: Path, **given: Any) -> int:
     """Close and orient a mesh with pymeshlab, and say what changed.
 
-    The steps: weld joins vertices; dedup drops repeated and flat triangles; split takes edges with
-    more than two triangles apart; orient turns triangles the same way round; fill closes holes.
+    The steps: weld joins vertices; dedup drops repeated and flat triangles; drop takes away stray
+    fragments, which bound nothing, such as a loose triangle beside a closed shell; split takes
+    edges with more than two triangles apart; orient turns triangles the same way round; fill closes
+    holes.
     The file is written even if it still is no solid; then the exit code is 1. The names of several
     objects and all attributes, such as colours, are lost, which is said.
     """
@@ -135,6 +137,7 @@ class _Repairing:
             "after": after.to_dict(),
             "steps_failed": made.failed,
             "turned": made.turned,
+            "dropped": made.dropped,
             "findings": output.finding_values(findings),
         }
         self._out.result(self._text(before, after, made), document)
@@ -144,6 +147,8 @@ class _Repairing:
         lines = [table_text(("", "before", "after"), rows, right=("before", "after"))]
         if made.turned:
             lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were turned round.")
+        if made.dropped:
+            lines.append(f"{counted(made.dropped, 'triangle')} of stray fragments were dropped.")
         told = "a solid" if after.is_solid else f"still no solid: {after.verdict}"
         lines.append(f"{shown(self._target.path)}: {told}")
         return "\n".join(lines)
