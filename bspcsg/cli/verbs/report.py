@@ -33,7 +33,7 @@ _FORMATS = ("html", "md", "json", "junit")
 @click.command(
     "report", short_help="Make a page, or JUnit, of what validate found.", epilog=_EPILOG
 )
-@files_argument("RESULTS.jsonl [...]")
+@files_argument("RESULTS.jsonl [...]", opens=False)
 @click.option(
     "-o",
     "--output",

@@ -51,7 +51,7 @@ _FILE = FilePath()
 
 
 @click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)
-@files_argument("CASES...", "paths")
+@files_argument("CASES...", "paths", also=(".csg",))
 @click.option(
     "--op",
     "operations",

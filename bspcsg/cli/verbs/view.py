@@ -34,7 +34,7 @@ _LARGE = 20_000_000
 
 
 @click.command("view", short_help="Show meshes in a browser, as one page.", epilog=_EPILOG)
-@files_argument("FILE [...]")
+@files_argument("FILE [...]", opens=False)
 @click.option(
     "-o",
     "--output",
