@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 _EPILOG = """\b
 Examples:
   bspcsg info part.3mf
-  bspcsg info parts/*.stl --json | jq '.files[].volume'
+  bspcsg info parts/ --json | jq '.files[].volume'
 """
 
 
 @click.command(
     "info", short_help="Say what is in each file: counts, size, volume, findings.", epilog=_EPILOG
 )
-@files_argument("FILE [...]")
+@files_argument("FILE|FOLDER [...]")
 @reading
 @common
 def info(files: tuple[Path, ...], **given: Any) -> int:
@@ -80,11 +80,11 @@ class _Entry:
 
 
 def _described(inputs: Inputs, path: Path) -> _Entry:
-    from ...repair.diagnosis import diagnose
+    from ...assembly.examining import examine
 
     try:
         raw = inputs.raw(path)
-        return _Entry(path, (raw, diagnose(raw)))
+        return _Entry(path, (raw, examine(raw).found))
     except BspcsgError as error:
         return _Entry(path, error=error)
 
