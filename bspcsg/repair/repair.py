@@ -122,10 +122,10 @@ def repair(
     points, same = welded(vertices[faces].reshape(-1, 3))
     called = tuple((name, len(faces)) for name, _ in raw.objects) if len(raw.objects) == 1 else ()
     mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), called, raw.unit)
-    return Repair(mesh, said["failed"], turned, said["dropped"], _lost(raw))
+    return Repair(mesh, said["failed"], turned, said["dropped"], losses_of(raw))
 
 
-def _lost(raw: RawMesh) -> tuple[Finding, ...]:
+def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
     """Return the findings about what a repair does not keep of a mesh."""
     objects = [name for name, _ in raw.objects if name] if len(raw.objects) > 1 else []
     attributes = () if raw.attributes is None else raw.attributes.names

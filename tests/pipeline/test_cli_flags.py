@@ -119,7 +119,7 @@ def test_repairs_that_close_nothing(
 ) -> None:
     from bspcsg.repair.repair import Repair
 
-    monkeypatch.setattr("bspcsg.repair.repair.repair", lambda raw: Repair(raw, {}, 0))
+    monkeypatch.setattr("bspcsg.assembly.mending.repair", lambda raw: Repair(raw, {}, 0))
     code, _, err = ran(capsys, "union", "a.off", "open.off", "-o", "x", "--to", "off",
                        "--on-invalid", "repair")  # fmt: skip
     assert code == 4 and "A repair did not close it" in err and not Path("x").exists()

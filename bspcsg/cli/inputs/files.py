@@ -202,9 +202,9 @@ class Inputs:
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ...repair.repair import repair
+        from ...assembly.mending import mended
 
-        made = repair(raw)
+        made = mended(raw)
         try:
             solid = self._solid_of(made.mesh, path)
         except InvalidMeshError as error:

@@ -189,6 +189,23 @@ _MAYBE_OUTPUT = click.option(
     " shows the result.",
 )
 
+_ONE_BY_ONE = [
+    click.option(
+        "-o",
+        "--output",
+        "target",
+        metavar="FILE",
+        type=PATH,
+        help="File to write; with several inputs, % stands for the name of each.",
+    ),
+    click.option(
+        "--outdir",
+        metavar="FOLDER",
+        type=PATH,
+        help="Folder for the files, under their own names; it is made if it is not there.",
+    ),
+]
+
 OVERWRITE = _WRITING[-1]
 
 ALLOW_EMPTY = click.option(
@@ -317,6 +334,11 @@ def sets(command: _Command) -> _Command:
 def writing(command: _Command) -> _Command:
     """Add the options of verbs that write meshes."""
     return _with(_WRITING, command)
+
+
+def one_by_one(command: _Command) -> _Command:
+    """Add the options of verbs that write a file for each that they read."""
+    return _with(_ONE_BY_ONE, command)
 
 
 def drawing(command: _Command) -> _Command:
