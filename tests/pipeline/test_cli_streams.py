@@ -375,7 +375,7 @@ def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
 @POSIX
 @pytest.mark.parametrize("size", [0, 100, 1500])
 def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:
-    line = ["validate", "a.off", "c.stl", "--op", "union", "-j1", "--results", "r.jsonl"]
+    line = ["crosscheck", "a.off", "c.stl", "--op", "union", "-j1", "--results", "r.jsonl"]
     code, out, err = finished(*line, before=at_most(size))
     assert (code, out) == (5, b"")
     assert err == b"bspcsg: error: r.jsonl: cannot write: File too large.\n"

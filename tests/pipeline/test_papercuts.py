@@ -281,7 +281,7 @@ def test_colours_by_convention(
 
 # Found: wrong use with `--json` left standard output empty.
 @pytest.mark.parametrize(
-    "verb", ["union", "info", "convert", "slice", "bench", "validate", "unoin"]
+    "verb", ["union", "info", "convert", "slice", "bench", "crosscheck", "unoin"]
 )
 def test_wrong_use_is_json_too(folder: Path, capsys: Capture, verb: str) -> None:
     code, out, err = ran(capsys, verb, "--no-such-option", "--json")

@@ -51,7 +51,7 @@ def files_argument(
         skipped: Counter[str] = Counter()
         files = tuple(files_of(values, skipped, also))
         context.meta[_SKIPPED] = skipped
-        if skipped and not {"-q", "--quiet"}.intersection(context.find_root().obj or ()):
+        if skipped and not terminal.QUIET.intersection(context.find_root().obj or ()):
             terminal.say("note", f"skipped {_counted(skipped)}.")
         return files
 

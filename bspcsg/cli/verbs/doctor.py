@@ -32,7 +32,7 @@ _REQUIRED = {
     "pillow": "PNG pictures",
     "pyclipper": "offsets",
     "rich": "tables",
-    "rtree": "distances in compare and validate",
+    "rtree": "distances in compare and crosscheck",
     "svgelements": "reading SVG files",
     "uharfbuzz": "text",
 }
@@ -42,14 +42,14 @@ _OPTIONAL = (
     ("pymeshlab", "repair", "repair"),
     ("meshio", "VTK and VTU files", "vtk"),
     ("trimesh", "the trimesh engine, to_trimesh, meshes of bench", "trimesh"),
-    ("distributed", "validate on a cluster", "cluster"),
+    ("distributed", "crosscheck on a cluster", "cluster"),
 )
 
 #: Names under which packages are imported that are called otherwise.
 _MODULES = {"pillow": "PIL"}
 
 #: Optional programs, what each is for, and how to install it.
-_PROGRAMS = (("openscad", ".scad files, validate", "apt-get install openscad"),)
+_PROGRAMS = (("openscad", ".scad files, crosscheck", "apt-get install openscad"),)
 
 #: Seconds to wait for a program that says its version or loads its plug-ins.
 _PATIENCE = 30

@@ -31,7 +31,7 @@ _FORMATS = ("html", "md", "json", "junit")
 
 
 @click.command(
-    "report", short_help="Make a page, or JUnit, of what validate found.", epilog=_EPILOG
+    "report", short_help="Make a page, or JUnit, of what crosscheck found.", epilog=_EPILOG
 )
 @files_argument("RESULTS.jsonl [...]", opens=False)
 @click.option(
@@ -62,7 +62,7 @@ _FORMATS = ("html", "md", "json", "junit")
 )
 @common
 def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
-    """Make one page of the results of bspcsg validate; nothing is computed again.
+    """Make one page of the results of bspcsg crosscheck; nothing is computed again.
 
     Several files, such as the shards of one campaign, become one report; their order does not
     matter. The page is one file that needs no network: a table to sort and filter, and pictures and

@@ -1,4 +1,4 @@
-"""The verb that compares many results with other engines': validate."""
+"""The verb that compares many results with other engines': crosscheck."""
 
 import fnmatch
 import os
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 _EPILOG = """\b
 Examples:
-  bspcsg validate a.stl b.stl
-  bspcsg validate parts/ --poses 500 --results r.jsonl --resume --junit j.xml
-  bspcsg validate model.csg cases.json --against pymeshlab,openscad
+  bspcsg crosscheck a.stl b.stl
+  bspcsg crosscheck parts/ --poses 500 --results r.jsonl --resume --junit j.xml
+  bspcsg crosscheck model.csg cases.json --against pymeshlab,openscad
 """
 
 #: Most failures that are named at the end; the results file has all.
@@ -50,7 +50,7 @@ _REASONS = 3
 _FILE = FilePath()
 
 
-@click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)
+@click.command("crosscheck", short_help="Compare many results with other engines'.", epilog=_EPILOG)
 @files_argument("CASES...", "paths", also=(".csg",))
 @click.option(
     "--op",
@@ -155,7 +155,7 @@ _FILE = FilePath()
     help="Run on the workers of this Dask scheduler, which see the same files.",
 )
 @telling
-def validate(paths: tuple[Path, ...], **given: Any) -> int:
+def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
     """Compare results with manifold3d's, as exact sets, and with further engines in doubt.
 
     CASES are mesh files (every pair of them), folders (every pair of meshes in them, and their
@@ -163,10 +163,10 @@ def validate(paths: tuple[Path, ...], **given: Any) -> int:
     its own that is killed at the limits. Exits with 1 if engines disagree with us, a result is not
     sound, or a case ran into a limit or crashed.
     """
-    return _Validation(paths, given).run()
+    return _Campaign(paths, given).run()
 
 
-class _Validation:
+class _Campaign:
     """A campaign as the options say it."""
 
     def __init__(self, paths: tuple[Path, ...], settings: dict[str, Any]) -> None:
@@ -208,7 +208,7 @@ class _Validation:
             if other != name and not is_dropped(path):
                 raise click.UsageError(f"--{name} would overwrite {path}, which --{other} writes.")
         if Path(STREAM) in self._paths:
-            raise click.UsageError("validate reads files, not standard input.")
+            raise click.UsageError("crosscheck reads files, not standard input.")
 
     def _answering(self) -> "Answering":
         from ...campaign.running.cluster import Cluster
@@ -248,7 +248,7 @@ class _Validation:
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), *draws)
         if not cases:
             raise click.UsageError(
-                "there is nothing to validate; give at least two mesh files, a folder of them, a"
+                "there is nothing to compare; give at least two mesh files, a folder of them, a"
                 " script, or a file of cases."
             )
         if self._settings["only"] is not None:
@@ -337,7 +337,7 @@ class _Validation:
 
         status.end()
         times = TimeElapsedColumn(), TimeRemainingColumn()
-        columns = ("validating", BarColumn(), MofNCompleteColumn(), *times)
+        columns = ("comparing", BarColumn(), MofNCompleteColumn(), *times)
         with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
             task = bar.add_task("", total=count)
 
