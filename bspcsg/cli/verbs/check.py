@@ -15,7 +15,7 @@ from ..console.tables import table_text
 from ..inputs.files import STREAM, Inputs, is_among, is_dropped, repair_command, shown
 from ..inputs.lengths import as_length
 from ..options.patterns import files_argument, skipped_files
-from ..options.shared import FilePath, common, reading
+from ..options.shared import FilePath, common, reading, verb
 from ..pages.written import refuse_page, write_page
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ Examples:
 """
 
 
-@click.command("check", epilog=_EPILOG)
+@verb("check", epilog=_EPILOG)
 @files_argument("FILE|FOLDER [...]")
 @click.option(
     "-o",

@@ -14,7 +14,7 @@ from ..console.output import Output, counted
 from ..inputs.files import Inputs, Target, make_folder, shown
 from ..inputs.lengths import MILLIMETRES
 from ..options.patterns import files_argument
-from ..options.shared import SIMPLIFY, common, one_by_one, reading, writing
+from ..options.shared import SIMPLIFY, common, one_by_one, reading, verb, writing
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -28,7 +28,7 @@ Examples:
 """
 
 
-@click.command("convert", epilog=_EPILOG)
+@verb("convert", epilog=_EPILOG)
 @files_argument("FILE|FOLDER [...]")
 @one_by_one
 @writing

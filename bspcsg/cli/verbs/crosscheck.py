@@ -26,7 +26,7 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import SAMPLES, SECONDS, FilePath, telling
+from ..options.shared import SAMPLES, SECONDS, FilePath, further, telling, verb
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
@@ -50,7 +50,7 @@ _REASONS = 3
 _FILE = FilePath()
 
 
-@click.command("crosscheck", short_help="Compare many results with other engines'.", epilog=_EPILOG)
+@verb("crosscheck", short_help="Compare many results with other engines'.", epilog=_EPILOG)
 @files_argument("CASES...", "paths", also=(".csg",))
 @click.option(
     "--op",
@@ -65,7 +65,7 @@ _FILE = FilePath()
     type=click.IntRange(min=1),
     help="Draw so many pairs, half in random and half in coincident poses.",
 )
-@click.option(
+@further(
     "--pose",
     "pose",
     multiple=True,
@@ -74,16 +74,14 @@ _FILE = FilePath()
     help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw; may be"
     " repeated.",
 )
-@click.option(
-    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws."
-)
-@click.option(
+@further("--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws.")
+@further(
     "--max-triangles",
     metavar="N",
     type=click.IntRange(min=1),
     help="Leave larger files out; files that are no solids are left out of --poses too.",
 )
-@click.option("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
+@further("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
 @click.option(
     "--against",
     metavar="ENGINES",
@@ -95,9 +93,7 @@ _FILE = FilePath()
     "--results", metavar="FILE", type=_FILE, help="JSON lines to append each finished case to."
 )
 @click.option("--junit", metavar="FILE", type=_FILE, help="JUnit XML to write at the end.")
-@click.option(
-    "--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end."
-)
+@further("--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end.")
 @click.option(
     "-j",
     "--jobs",
@@ -114,7 +110,7 @@ _FILE = FilePath()
     show_default=True,
     help="Seconds for a case, after which its process is killed.",
 )
-@click.option(
+@further(
     "--memory",
     metavar="SIZE",
     default="4G",
@@ -122,18 +118,18 @@ _FILE = FilePath()
     callback=as_bytes,
     help="Memory for a case; 0 for no limit.",
 )
-@click.option("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
+@further("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
 @click.option("--resume", is_flag=True, help="Leave out what the results file has already.")
-@click.option(
+@further(
     "--retry-crashed",
     "retry",
     is_flag=True,
     help="With --resume, run again what crashed, as where a worker was lost for want of memory.",
 )
-@click.option(
+@further(
     "--fail-fast/--keep-going", default=False, help="Stop at the first failure, or go on (default)."
 )
-@click.option(
+@further(
     "--keep-meshes",
     "keep",
     metavar="WHICH",
@@ -141,7 +137,7 @@ _FILE = FilePath()
     callback=as_keep,
     help="Meshes to keep beside the results: interesting (default), all, none, or so many more.",
 )
-@click.option(
+@further(
     "--samples",
     metavar="N",
     type=SAMPLES,
@@ -149,7 +145,7 @@ _FILE = FilePath()
     show_default=True,
     help="Points to measure distances from; 0 for none.",
 )
-@click.option(
+@further(
     "--scheduler",
     metavar="ADDRESS|FILE",
     help="Run on the workers of this Dask scheduler, which see the same files.",

@@ -9,14 +9,12 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from typing import Any
 
-import click
-
 from ..._core import __version__
 from ...machine import system
 from ..console import output
 from ..console.output import Output
 from ..console.tables import table_text
-from ..options.shared import common
+from ..options.shared import common, verb
 
 _EPILOG = """\b
 Example:
@@ -79,9 +77,7 @@ class _Part:
     required: bool = False
 
 
-@click.command(
-    "doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG
-)
+@verb("doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG)
 @common
 def doctor(**given: Any) -> int:
     """Say which parts are installed, and how to get those that are not.

@@ -3,15 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ...errors import BspcsgError
 from ..console import output, terminal
 from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, shown
 from ..options.patterns import files_argument
-from ..options.shared import common, reading
+from ..options.shared import common, reading, verb
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -24,7 +22,7 @@ Examples:
 """
 
 
-@click.command(
+@verb(
     "info", short_help="Say what is in each file: counts, size, volume, findings.", epilog=_EPILOG
 )
 @files_argument("FILE|FOLDER [...]")

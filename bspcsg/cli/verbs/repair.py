@@ -11,7 +11,7 @@ from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, Target, make_folder, shown
 from ..options.patterns import files_argument
-from ..options.shared import TIMEOUT, FiniteRange, common, one_by_one, reading, writing
+from ..options.shared import TIMEOUT, FiniteRange, common, one_by_one, reading, verb, writing
 
 if TYPE_CHECKING:
     from ...repair.diagnosis import Diagnosis
@@ -33,7 +33,7 @@ _DEFECTS = {
 }
 
 
-@click.command("repair", short_help="Close and orient meshes with pymeshlab.", epilog=_EPILOG)
+@verb("repair", short_help="Close and orient meshes with pymeshlab.", epilog=_EPILOG)
 @files_argument("FILE|FOLDER [...]")
 @one_by_one
 @writing

@@ -12,7 +12,7 @@ from ..console import clock, output, standard, status
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
 from ..options.patterns import files_argument
-from ..options.shared import PATH, common
+from ..options.shared import PATH, common, verb
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,9 +30,7 @@ _SUFFIXES = {".html": "html", ".htm": "html", ".md": "md", ".json": "json", ".xm
 _FORMATS = ("html", "md", "json", "junit")
 
 
-@click.command(
-    "report", short_help="Make a page, or JUnit, of what crosscheck found.", epilog=_EPILOG
-)
+@verb("report", short_help="Make a page, or JUnit, of what crosscheck found.", epilog=_EPILOG)
 @files_argument("RESULTS.jsonl [...]", opens=False)
 @click.option(
     "-o",
