@@ -145,6 +145,17 @@ def test_companions_of_meshes_are_skipped_and_counted(
     assert code == 0 and b.load("x.ply").volume == 15
 
 
+def test_views_skip_companions_and_open_no_folders(folder: Path, capsys: Capture) -> None:
+    for name in ("in.png", "in.mtl"):
+        Path(name).touch()
+    for meant in ("*", "a.off c.stl in.png in.mtl"):
+        line = ["view", *meant.split(), "-o", "x.html", "--no-open", "--json"]
+        code, out, err = ran(capsys, *line)
+        assert code == 0 and json.loads(out)["files"] == ["a.off", "c.stl"]
+        assert "skipped 2 files that are no meshes" in err
+        Path("x.html").unlink()
+
+
 def test_what_is_named_alone_or_is_of_another_format_is_no_companion(
     folder: Path, capsys: Capture
 ) -> None:

@@ -36,9 +36,9 @@ def files_argument(
     ----------
     metavar, name : str
     opens : bool
-        True if a folder stands for the meshes in it.
+        True if a folder stands for the meshes in it; else it is handed on.
     also : collection of str
-        Endings of other files in folders that are taken, too.
+        Endings of other files in folders and patterns that are taken, too.
     """
 
     def found(
@@ -46,10 +46,8 @@ def files_argument(
     ) -> tuple[Path, ...]:
         if context.resilient_parsing:
             return values
-        if not opens:
-            return tuple(path for value in values for path in matches(value))
         skipped: Counter[str] = Counter()
-        files = tuple(files_of(values, skipped, also))
+        files = tuple(files_of(values, skipped, also, opens=opens))
         context.meta[_SKIPPED] = skipped
         if skipped and not terminal.QUIET.intersection(context.find_root().obj or ()):
             terminal.say("note", f"skipped {_counted(skipped)}.")
@@ -69,7 +67,11 @@ def file_argument(metavar: str = "FILE", name: str = "file") -> Callable[..., An
 
 
 def files_of(
-    values: Sequence[Path], skipped: Counter[str], also: Collection[str] = ()
+    values: Sequence[Path],
+    skipped: Counter[str],
+    also: Collection[str] = (),
+    *,
+    opens: bool = True,
 ) -> list[Path]:
     """Return the files that names, folders and patterns mean; count by endings what is skipped.
 
@@ -84,7 +86,9 @@ def files_of(
     """
     files: list[Path] = []
     for value in values:
-        for path in dict.fromkeys(file for found in matches(value) for file in _inside(found)):
+        found = matches(value)
+        inside = (file for path in found for file in _inside(path)) if opens else found
+        for path in dict.fromkeys(inside):
             if _is_meant(path, value, also, alone=len(values) == 1):
                 files.append(path)
             else:

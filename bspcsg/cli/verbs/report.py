@@ -31,7 +31,7 @@ _FORMATS = ("html", "md", "json", "junit")
 
 
 @verb("report", short_help="Make a page, or JUnit, of what crosscheck found.", epilog=_EPILOG)
-@files_argument("RESULTS.jsonl [...]", opens=False)
+@files_argument("RESULTS.jsonl [...]", opens=False, also=(".jsonl",))
 @click.option(
     "-o",
     "--output",
