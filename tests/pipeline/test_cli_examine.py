@@ -337,6 +337,23 @@ def test_doctor_fails_without_what_is_required(
     assert code == 6 and not json.loads(out)["complete"]
 
 
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+@pytest.mark.parametrize(("height", "code"), [(1.0, 0), (0.75, 1)])
+def test_check_and_clash_agree(
+    folder: Path, capsys: Capture, suffix: str, height: float, code: int
+) -> None:
+    body, lid = b.box((3, 2, 1)), b.box((3, 2, 0.5)).translate(0, 0, height)
+    name = f"box{suffix}"
+    b.Assembly("box", [b.Assembly("body", body), b.Assembly("lid", lid)]).save(name)
+    assert ran(capsys, "clash", name)[0] == code
+    assert ran(capsys, "check", name)[0] == 0
+    assert ran(capsys, "check", name, "--strict")[0] == code
+    told = ran(capsys, "check", name, "-v")[1]
+    assert "box" in told and "\n  lid: solid, 12 triangles" in told
+    assert ("volume in common" in told) == bool(code)
+    assert ("volume in common" in ran(capsys, "info", name)[1]) == bool(code)
+
+
 # Found: `check` told of no file behind a script with a bad mesh.
 def test_check_of_a_bad_script_tells_of_the_others(folder: Path, capsys: Capture) -> None:
     Path("bad.csg").write_text('import("open.stl");')
