@@ -226,7 +226,7 @@ def _parsed(line: str, path: Path, number: int) -> dict[str, Any]:
     known = isinstance(found, dict) and found.get("type") in ("run", "case")
     if not known or (found["type"] == "case" and not isinstance(found.get("key"), str)):
         message = f"{path}:{number}: this is no line of a results file."
-        raise FormatError(f"{message} bspcsg validate --results writes such files.", "malformed")
+        raise FormatError(f"{message} bspcsg crosscheck --results writes such files.", "malformed")
     if found.get("schema") != SCHEMA:
         message = f"{path}:{number}: schema {found.get('schema')!r}, but {SCHEMA} is known."
         raise FormatError(message, "unknown_schema")

@@ -59,7 +59,7 @@ _VERBS = {
     "check": ("check", "check"),
     "repair": ("repair", "repair"),
     "compare": ("compare", "compare"),
-    "validate": ("validate", "validate"),
+    "crosscheck": ("crosscheck", "crosscheck"),
     "report": ("report", "report"),
     "view": ("view", "view"),
     "lecture": ("lecture", "lecture"),
@@ -68,7 +68,10 @@ _VERBS = {
 }
 
 #: Other names of verbs, which the help leaves out.
-_ALIASES = {"cut": "difference"}
+_ALIASES = {"cut": "difference", "validate": "crosscheck"}
+
+#: Those of them that verbs had before, which are to go.
+_FORMER = frozenset({"validate"})
 
 #: The errors of writing to a file or stream that is full, broken or closed.
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)
@@ -96,6 +99,10 @@ class _Verbs(click.Group):
         known = {*_VERBS, *_ALIASES}
         if args and args[0] not in known and not args[0].startswith("-"):
             raise click.UsageError(f"there is no verb {args[0]!r}.{_meant(args[0])}", ctx)
+        if args and args[0] in _FORMER and not terminal.QUIET.intersection(ctx.obj or ()):
+            terminal.say(
+                "note", f"{args[0]} is called {_ALIASES[args[0]]} now; the old name goes later."
+            )
         return super().resolve_command(ctx, args)
 
 
@@ -205,7 +212,7 @@ def _invoked(arguments: list[str]) -> int:
         from click.shell_completion import shell_complete
 
         return shell_complete(commands, {}, "bspcsg", _COMPLETE, os.environ[_COMPLETE])
-    quiet = bool({"-q", "--quiet"}.intersection(arguments))
+    quiet = bool(terminal.QUIET.intersection(arguments))
     with (
         commands.make_context("bspcsg", arguments, obj=tuple(arguments)) as context,
         status.watched(next(iter(arguments), ""), quiet),

@@ -33,6 +33,67 @@ def _dedup(meshes: Any, settings: dict[str, Any]) -> None:
     meshes.meshing_remove_unreferenced_vertices()
 
 
+def _drop(meshes: Any, settings: dict[str, Any]) -> None:
+    import pymeshlab
+
+    mesh = meshes.current_mesh()
+    vertices, faces = mesh.vertex_matrix(), mesh.face_matrix()
+    stray = stray_faces(faces)
+    settings["dropped"] = int(stray.sum())
+    if settings["dropped"]:
+        meshes.add_mesh(pymeshlab.Mesh(vertices, faces[~stray]))
+        meshes.meshing_remove_unreferenced_vertices()
+
+
+def stray_faces(faces: Any) -> Any:
+    """Say which faces belong to stray fragments; none do if nothing else is there.
+
+    A fragment is a bit of surface with one rim, on which all its corners lie, so that it bounds
+    nothing: a loose triangle, a fin, a strip. A tube without caps has two rims and is none, nor is
+    a pyramid without its base, whose tip is off the rim.
+    """
+    faces = faces.astype(np.int64)
+    start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    keys = _keys(np.minimum(start, end), np.maximum(start, end))
+    _, edge, counts = np.unique(keys, return_inverse=True, return_counts=True)
+    uses = counts[edge]
+    order = np.argsort(edge, kind="stable")
+    owner = _joined(order[uses[order] == 2].reshape(-1, 2) // 3, len(faces))
+    _, bits = np.unique(owner, return_inverse=True)
+    at, rim = np.repeat(bits, 3), uses != 2
+    corners, edges = _counts(at, start), _counts(at, edge)
+    rims = _counts(np.tile(at[rim], 2), np.concatenate([start[rim], end[rim]]), len(corners))
+    is_open = np.bincount(at, uses == 1) > 0
+    # Vertices less edges, and faces, make 1 of a disc.
+    is_stray = is_open & (corners - edges + np.bincount(bits) == 1) & (rims == corners)
+    return is_stray[bits] & (not is_stray.all())
+
+
+def _keys(first: Any, second: Any) -> Any:
+    """Return a number for each pair of numbers."""
+    return first * (second.max(initial=0) + 1) + second
+
+
+def _counts(bits: Any, things: Any, size: int = 0) -> Any:
+    """Return how many different things each bit has, from pairs of a bit and a thing in it."""
+    pairs = np.unique(_keys(bits, things))
+    return np.bincount(pairs // (things.max(initial=0) + 1), minlength=size)
+
+
+def _joined(links: Any, count: int) -> Any:
+    """Return for each of so many things the least that links lead to."""
+    least = np.arange(count)
+    while len(links):
+        before = least.copy()
+        lower = least[links].min(axis=1)
+        for side in links.T:
+            np.minimum.at(least, least[side], lower)
+        least = least[least]
+        if np.array_equal(before, least):
+            break
+    return least
+
+
 def _split(meshes: Any, settings: dict[str, Any]) -> None:
     meshes.compute_selection_by_non_manifold_edges_per_face()
     # Asked to split where there is nothing to split, the filter tears sound meshes apart.
@@ -52,6 +113,7 @@ def _fill(meshes: Any, settings: dict[str, Any]) -> None:
 STEPS: dict[str, Callable[[Any, dict[str, Any]], None]] = {
     "weld": _weld,
     "dedup": _dedup,
+    "drop": _drop,
     "split": _split,
     "orient": _orient,
     "fill": _fill,
@@ -84,7 +146,9 @@ def main(folder: Path) -> int:
             failed[name] = str(error).strip().splitlines()[-1]
     found = meshes.current_mesh()
     np.savez(folder / "repaired.npz", vertices=found.vertex_matrix(), faces=found.face_matrix())
-    (folder / "said.json").write_text(json.dumps({"failed": failed}))
+    (folder / "said.json").write_text(
+        json.dumps({"failed": failed, "dropped": settings.get("dropped", 0)})
+    )
     return 0
 
 

@@ -122,7 +122,7 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
         precision=None if proof is None else proof.precision,
         crossings=None if proof is None else len(proof.crossings),
         verdict=verdict,
-        findings=tuple(sorted(findings, key=lambda found: _RANK[found.severity])),
+        findings=by_severity(findings),
         signed_volume=mesh.volume,
         area=mesh.area,
         volume=None if solid is None else solid.volume,
@@ -133,6 +133,11 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
 
 
 _RANK = {"error": 0, "warning": 1, "note": 2}
+
+
+def by_severity(findings: Sequence[Finding]) -> tuple[Finding, ...]:
+    """Return findings, the worst first."""
+    return tuple(sorted(findings, key=lambda found: _RANK[found.severity]))
 
 
 class EdgeUses:

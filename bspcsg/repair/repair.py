@@ -8,6 +8,7 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from ..mesh.weld import welded
 from ..processes import run_program
 
 #: The steps in the order in which they are taken.
-STEPS = ("weld", "dedup", "split", "orient", "fill")
+STEPS = ("weld", "dedup", "drop", "split", "orient", "fill")
 
 _CHILD = Path(__file__).with_name("child.py")
 _MISSING = 6
@@ -43,6 +44,8 @@ class Repair:
         Steps that could not be taken, and why.
     turned : int
         The number of triangles turned round because they faced inwards.
+    dropped : int
+        The number of triangles of stray fragments, which bound nothing and are gone.
     lost : tuple of Finding
         The names and attributes that are gone: no triangle is known by where it came from.
     """
@@ -50,6 +53,7 @@ class Repair:
     mesh: RawMesh
     failed: dict[str, str]
     turned: int
+    dropped: int = 0
     lost: tuple[Finding, ...] = ()
 
 
@@ -61,7 +65,7 @@ def repair(
     max_hole: int = 1000,
     timeout: float | None = None,
 ) -> Repair:
-    """Return a mesh with duplicates dropped, faces oriented and holes filled.
+    """Return a mesh with duplicates and strays dropped, faces oriented and holes filled.
 
     The names of several objects and all attributes are left out, and told as lost.
 
@@ -70,7 +74,8 @@ def repair(
     raw : RawMesh
     steps : sequence of str
         Out of `STEPS`; they are taken in that order: join vertices, drop repeated and flat
-        triangles, split edges with more than two triangles, orient, fill holes.
+        triangles, drop stray fragments, split edges with more than two triangles, orient, fill
+        holes.
     weld : float
         Distance in model units up to which vertices are joined; equal ones always are.
     max_hole : int
@@ -105,7 +110,7 @@ def repair(
             faces=raw.faces,
             settings=np.array(json.dumps(settings)),
         )
-        failed = _asked(Path(folder), timeout)
+        said = _asked(Path(folder), timeout)
         with np.load(Path(folder) / "repaired.npz", allow_pickle=False) as found:
             vertices = np.ascontiguousarray(found["vertices"], dtype=np.float64).reshape(-1, 3)
             faces = np.ascontiguousarray(found["faces"], dtype=np.int64).reshape(-1, 3)
@@ -117,10 +122,10 @@ def repair(
     points, same = welded(vertices[faces].reshape(-1, 3))
     called = tuple((name, len(faces)) for name, _ in raw.objects) if len(raw.objects) == 1 else ()
     mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), called, raw.unit)
-    return Repair(mesh, failed, turned, _lost(raw))
+    return Repair(mesh, said["failed"], turned, said["dropped"], losses_of(raw))
 
 
-def _lost(raw: RawMesh) -> tuple[Finding, ...]:
+def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
     """Return the findings about what a repair does not keep of a mesh."""
     objects = [name for name, _ in raw.objects if name] if len(raw.objects) > 1 else []
     attributes = () if raw.attributes is None else raw.attributes.names
@@ -138,8 +143,8 @@ def _lost(raw: RawMesh) -> tuple[Finding, ...]:
     return tuple(found)
 
 
-def _asked(folder: Path, timeout: float | None) -> dict[str, str]:
-    """Run the child on a folder; return the steps that failed."""
+def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
+    """Run the child on a folder; return the steps that failed, and how many faces it dropped."""
     # Without -P, this package's own folder would hide modules of the standard library.
     command = [sys.executable, "-P", os.fspath(_CHILD), os.fspath(folder)]
     try:
@@ -148,15 +153,14 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, str]:
         message = f"the repair took longer than {timeout:g} s and was stopped."
         raise BspcsgError(message, "timed_out") from error
     path = folder / "said.json"
-    said = json.loads(path.read_text("utf-8")) if path.exists() else {}
+    said: dict[str, Any] = json.loads(path.read_text("utf-8")) if path.exists() else {}
     if done.returncode == _MISSING and "missing" in said:
         raise missing_part("pymeshlab", f"for repairs ({said['missing']})", remedy(said["missing"]))
     if done.returncode != 0:
         last = done.stderr.strip().splitlines()[-1:] or ["no word"]
         message = f"pymeshlab failed with exit code {done.returncode}: {last[0]}"
         raise BspcsgError(message, "repair_failed")
-    failed: dict[str, str] = said["failed"]
-    return failed
+    return said
 
 
 def remedy(reason: str) -> str:

@@ -11,7 +11,7 @@ from .merging import rank
 from .stored import Stored, stored_meshes
 from .viewer.layer import Layer
 from .viewer.packing import packed
-from .viewer.still import camera_for, ring, still
+from .viewer.still import camera_for, rings, still
 from .wording import tone, whole
 
 #: Characters of a page with so many cards; a page with more cards may be longer in proportion.
@@ -69,11 +69,20 @@ class Card:
 
 
 class Purse:
-    """The characters that may still be spent on cards."""
+    """The characters that may still be spent on cards.
 
-    def __init__(self, cards: int, spent: int) -> None:
+    Parameters
+    ----------
+    cards : int
+    spent : int
+        The characters of all else on the page.
+    page : float, optional
+        The characters that the page may have; by default as is usual for so many cards.
+    """
+
+    def __init__(self, cards: int, spent: int, page: float | None = None) -> None:
         self._cards = cards
-        page = _PAGE * max(1.0, cards / _CARDS)
+        page = _PAGE * max(1.0, cards / _CARDS) if page is None else page
         self.left = max(page - spent, _LEAST_SHARE * page)
 
     def spend(self, characters: int) -> None:
@@ -115,7 +124,7 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Ite
             yield Card(address, case, tone(case["verdict"]), [], None, error.message)
             continue
         purse.spend(sum(len(image) for figure in figures for image in figure.images))
-        model, note = _model(stored.layers, purse.allowance())
+        model, note = model_within(stored.layers, purse.allowance())
         purse.spend(len(model["data"]) if model else 0)
         yield Card(address, case, tone(case["verdict"]), figures, model, note)
 
@@ -137,7 +146,7 @@ def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
         found = case["set_difference"]
         place = found["place"] if found else None
         images = [result, still([stored.difference], camera, edges=False)]
-        images += [] if place is None else [ring(place, camera)]
+        images += [] if place is None else [rings([place], camera)]
         caption = f"difference, {found['thickness']:.2g} thick" if found else "difference"
         return [*figures, Figure(caption, [image for image in images if image])]
     return [*figures, _no_difference(case)]
@@ -160,15 +169,26 @@ def _no_difference(case: CaseRecord) -> Figure:
     return Figure(name, text=f"{found['thickness']:.2g} thick, without a surface")
 
 
-def _model(layers: list[Layer], allowance: float) -> tuple[dict[str, Any] | None, str]:
-    """Return what the viewer unpacks, simpler if need be, and what was done to it."""
+def model_within(
+    layers: list[Layer], allowance: float, **told: Any
+) -> tuple[dict[str, Any] | None, str]:
+    """Return what the viewer unpacks, simpler if need be, and what was done to it.
+
+    Parameters
+    ----------
+    layers : list of Layer
+    allowance : float
+        Characters that it may have.
+    **told
+        As for `packed`.
+    """
     if not layers:
         return None, "The result is empty; there is nothing to turn."
-    model = packed(layers, quantised=True)
+    model = packed(layers, quantised=True, **told)
     if len(model["data"]) <= allowance:
         return model, ""
     for cells in _CELLS:
-        simple = packed([layer.simplified(cells) for layer in layers], quantised=True)
+        simple = packed([layer.simplified(cells) for layer in layers], quantised=True, **told)
         if len(simple["data"]) <= allowance:
             before, after = (
                 sum(layer["triangles"] for layer in m["layers"]) for m in (model, simple)

@@ -1,7 +1,8 @@
-"""Campaigns as JUnit XML, which every build server shows."""
+"""JUnit XML, which every build server shows: of campaigns, and of meshes that were checked."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple
 from xml.etree import ElementTree as Xml
 
 from ..campaign.record import CaseRecord, RunRecord
@@ -21,6 +22,19 @@ _ELEMENTS = {
 _UNWRITABLE = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
+class JUnitCase(NamedTuple):
+    """One test case; `element` is "failure", "error" or "skipped", or nothing if it passed."""
+
+    group: str
+    name: str
+    verdict: str
+    element: str = ""
+    reason: str = ""
+    details: str = ""
+    said: str = ""
+    seconds: float | None = None
+
+
 def junit_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> str:
     """Return a suite for each operation, with a test case for each case.
 
@@ -30,56 +44,94 @@ def junit_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -> s
     runs : sequence of RunRecord
         The runs whose commands, versions and machine become properties.
     """
-    root = Xml.Element("testsuites", _counts(cases), name="bspcsg validate")
-    for operation in sorted({case["operation"] for case in cases}):
-        part = [case for case in cases if case["operation"] == operation]
-        suite = Xml.SubElement(root, "testsuite", _counts(part), name=operation)
-        if runs:
-            suite.set("timestamp", runs[0]["started"])
-            _describe_runs(suite, runs)
-        for case in part:
+    suites = {
+        operation: [_case_of(case) for case in cases if case["operation"] == operation]
+        for operation in sorted({case["operation"] for case in cases})
+    }
+    started = runs[0]["started"] if runs else ""
+    return junit_of("bspcsg crosscheck", suites, started, _properties(runs))
+
+
+def junit_of(
+    title: str,
+    suites: Mapping[str, Sequence[JUnitCase]],
+    started: str = "",
+    properties: Sequence[tuple[str, str]] = (),
+) -> str:
+    """Return the document of named suites.
+
+    Parameters
+    ----------
+    title : str
+    suites : mapping of str to sequence of JUnitCase
+    started : str
+        The time at which the run began, if it is to be told.
+    properties : sequence of (str, str)
+        What is to be known about the run, told with every suite.
+    """
+    whole = [case for cases in suites.values() for case in cases]
+    root = Xml.Element("testsuites", _counts(whole), name=title)
+    for name, cases in suites.items():
+        suite = Xml.SubElement(root, "testsuite", _counts(cases), name=_clean(name))
+        if started:
+            suite.set("timestamp", started)
+        if properties:
+            told = Xml.SubElement(suite, "properties")
+            for key, value in properties:
+                Xml.SubElement(told, "property", name=key, value=_clean(value))
+        for case in cases:
             _add_case(suite, case)
     Xml.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{Xml.tostring(root, encoding="unicode")}\n'
 
 
-def _counts(cases: Sequence[CaseRecord]) -> dict[str, str]:
-    kinds = [_ELEMENTS.get(case["verdict"], "passed") for case in cases]
+def _case_of(case: CaseRecord) -> JUnitCase:
+    return JUnitCase(
+        f"{case['kind']}.{case['operation']}",
+        case["case"],
+        case["verdict"],
+        _ELEMENTS.get(case["verdict"], ""),
+        case["reason"],
+        _details(case),
+        case["command"],
+        case["seconds"]["total"],
+    )
+
+
+def _counts(cases: Iterable[JUnitCase]) -> dict[str, str]:
+    kinds = [case.element for case in cases]
     found = {
-        "tests": len(cases),
-        "failures": kinds.count("failure"),
-        "errors": kinds.count("error"),
-        "skipped": kinds.count("skipped"),
+        "tests": str(len(kinds)),
+        "failures": str(kinds.count("failure")),
+        "errors": str(kinds.count("error")),
+        "skipped": str(kinds.count("skipped")),
     }
-    seconds = sum(case["seconds"]["total"] for case in cases)
-    return {**{name: str(count) for name, count in found.items()}, "time": f"{seconds:.3f}"}
+    times = [case.seconds for case in cases if case.seconds is not None]
+    return {**found, "time": f"{sum(times):.3f}"} if times or not kinds else found
 
 
-def _describe_runs(suite: Xml.Element, runs: Sequence[RunRecord]) -> None:
-    properties = Xml.SubElement(suite, "properties")
+def _properties(runs: Sequence[RunRecord]) -> list[tuple[str, str]]:
+    told = []
     for run in runs:
         named = {"command": run["command"], "seed": run["seed"], **run["versions"]}
-        for name, value in {**named, **run["machine"]}.items():
-            Xml.SubElement(properties, "property", name=name, value=_clean(str(value)))
+        told += [(name, str(value)) for name, value in {**named, **run["machine"]}.items()]
+    return told
 
 
-def _add_case(suite: Xml.Element, case: CaseRecord) -> None:
+def _add_case(suite: Xml.Element, case: JUnitCase) -> None:
     element = Xml.SubElement(
-        suite,
-        "testcase",
-        classname=f"{case['kind']}.{case['operation']}",
-        name=_clean(case["case"]),
-        time=f"{case['seconds']['total']:.3f}",
+        suite, "testcase", classname=_clean(case.group), name=_clean(case.name)
     )
-    kind = _ELEMENTS.get(case["verdict"])
-    if kind is not None:
-        message = _clean(f"{case['verdict']}: {case['reason']}".rstrip(": "))
-        found = Xml.SubElement(element, kind, message=message)
-        if kind != "skipped":
-            found.set("type", case["verdict"])
-            found.text = _clean(_details(case))
+    if case.seconds is not None:
+        element.set("time", f"{case.seconds:.3f}")
+    if case.element:
+        message = _clean(f"{case.verdict}: {case.reason}".rstrip(": "))
+        found = Xml.SubElement(element, case.element, message=message)
+        if case.element != "skipped":
+            found.set("type", case.verdict)
+            found.text = _clean(case.details)
     said = Xml.SubElement(element, "system-out")
-    said.text = _clean(f"{case['verdict']}\n{case['command']}")
+    said.text = _clean(f"{case.verdict}\n{case.said}")
 
 
 def _details(case: CaseRecord) -> str:

@@ -45,7 +45,7 @@ def _read(path: str | os.PathLike[str]) -> Results:
     for line, kind in lines:
         fault = departure(line, kind, line["type"])
         if fault:
-            message = f"{os.fspath(path)}: {fault}. bspcsg validate --results writes such files."
+            message = f"{os.fspath(path)}: {fault}. bspcsg crosscheck --results writes such files."
             raise FormatError(message, "malformed")
     return results
 

@@ -187,20 +187,67 @@ def test_nothing_is_not_repaired(folder: Path, capsys: Capture) -> None:
     assert err == "bspcsg: error: none.off: there is nothing in it, so nothing was written.\n"
 
 
-# Found: `repair` and `--on-invalid repair` lost the names of objects and all attributes in
-# silence.
+# Found: `repair` and `--on-invalid repair` lost all attributes in silence.
 def test_repair_tells_what_it_loses(folder: Path, capsys: Capture) -> None:
     vertices, faces = joined(cube(), moved(cube(), (3, 0, 0)))
     said = Attributes(faces, corner={"color": np.full((24, 3, 4), 0.5)})
     objects = (("lid", 12), ("body", 12))
     write(RawMesh(vertices, faces, objects=objects, attributes=said), "two.3mf")
     code, out, err = ran(capsys, "repair", "two.3mf", "-o", "x.3mf", "--json")
-    assert code == 0 and "“lid”, “body” were left out" in err and "“color”" in err
+    assert code == 0 and "“color” were left out" in err
     codes = [finding["code"] for finding in json.loads(out)["findings"]]
-    assert codes == ["names_left_out", "attributes_left_out"]
+    assert codes == ["attributes_left_out"]
+    assert b.io.read("x.3mf").objects == objects
     write(RawMesh(cube()[0], cube()[1][1:], objects=(("lid", 11),)), "open.3mf")
     code, _, err = ran(capsys, "repair", "open.3mf", "-o", "x.3mf")
     assert (code, err) == (0, "") and b.io.read("x.3mf").objects == (("lid", 12),)
+
+
+# Found: where a lid rested on a body, `repair` joined them, and triangles lay over each other.
+def test_objects_are_repaired_by_themselves(folder: Path, capsys: Capture) -> None:
+    lid, body = moved(cube(), (0, 0, 1)), (cube()[0], cube()[1][1:])
+    objects = (("lid", 12), ("body", 11))
+    write(RawMesh(*joined(lid, body), objects=objects), "two.3mf")
+    code, out, _ = ran(capsys, "repair", "two.3mf", "-o", "x.3mf", "--json")
+    after = json.loads(out)["after"]
+    assert (code, after["manifold"], after["triangles"], after["volume"]) == (0, True, 24, 2)
+    assert b.io.read("x.3mf").objects == (("lid", 12), ("body", 12))
+    ran(capsys, "union", "two.3mf", "two.3mf", "-o", "u.3mf", "--on-invalid", "repair")
+    assert b.load("u.3mf").volume == 2
+
+
+def test_a_folder_is_repaired(folder: Path, capsys: Capture) -> None:
+    Path("in").mkdir()
+    put("in/open.off", (cube(2)[0], cube(2)[1][1:]))
+    stray = np.array([[9.0, 9, 9], [9, 9, 8], [9, 8, 9]]), np.array([[0, 1, 2]])
+    put("in/stray.ply", joined(cube(2), stray))
+    Path("in/bad.ply").write_text("ply\n")
+    Path("in/a.png").touch()
+    code, out, err = ran(capsys, "repair", "in", "--outdir", "new/out")
+    assert code == 3 and "error: in/bad.ply" in err and "skipped 1 file" in err
+    assert out.splitlines() == [
+        "new/out/open.off: a solid; 11 triangles became 12",
+        "new/out/stray.ply: a solid; 13 triangles became 12, 1 stray ones dropped",
+    ]
+    assert [b.load(f"new/out/{name}").volume for name in ("open.off", "stray.ply")] == [8, 8]
+    code, out, _ = ran(capsys, "repair", "in", "--outdir", "new", "--to", "stl", "--json")
+    files = json.loads(out)["files"]
+    assert [one.get("dropped") for one in files] == [None, 0, 1] and "error" in files[0]
+    assert sorted(path.name for path in Path("new").glob("*.stl")) == ["open.stl", "stray.stl"]
+
+
+@pytest.mark.parametrize("verb", ["repair", "convert"])
+def test_two_inputs_of_one_output_are_refused_first(
+    folder: Path, capsys: Capture, verb: str
+) -> None:
+    for place in ("in", "in/deep"):
+        Path(place).mkdir()
+        put(f"{place}/a.off", cube(2))
+    code, out, err = ran(capsys, verb, "in", "--outdir", "new", "--to", "off")
+    assert (code, out) == (2, "") and not Path("new").exists()
+    assert "in/a.off and in/deep/a.off would both be written to new/a.off." in err
+    code, _, err = ran(capsys, verb, "in", "--outdir", "in", "--to", "off")
+    assert code == 2 and "in/deep/a.off would be written to in/a.off, which is an input" in err
 
 
 def test_repairs_of_inputs_tell_what_they_lose(folder: Path, capsys: Capture) -> None:
@@ -230,6 +277,8 @@ def test_what_cannot_be_repaired_is_code_1(folder: Path, capsys: Capture) -> Non
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
+        (["a.off"], 2, "either -o FILE or --outdir DIR"),
+        (["a.off", "c.stl", "-o", "x.off"], 2, "or say --outdir"),
         (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is no step"),
         (["a.off", "-o", "x.off", "--steps", ","], 2, "at least one"),
         (["a.off", "-o", "x.off", "--max-hole", "2"], 2, "--max-hole"),
@@ -286,6 +335,23 @@ def test_doctor_fails_without_what_is_required(
     monkeypatch.setattr("bspcsg.cli.verbs.doctor.find_spec", lambda name: name != "rich" or None)
     code, out, _ = ran(capsys, "doctor", "--json")
     assert code == 6 and not json.loads(out)["complete"]
+
+
+@pytest.mark.parametrize("suffix", [".3mf", ".glb"])
+@pytest.mark.parametrize(("height", "code"), [(1.0, 0), (0.75, 1)])
+def test_check_and_clash_agree(
+    folder: Path, capsys: Capture, suffix: str, height: float, code: int
+) -> None:
+    body, lid = b.box((3, 2, 1)), b.box((3, 2, 0.5)).translate(0, 0, height)
+    name = f"box{suffix}"
+    b.Assembly("box", [b.Assembly("body", body), b.Assembly("lid", lid)]).save(name)
+    assert ran(capsys, "clash", name)[0] == code
+    assert ran(capsys, "check", name)[0] == 0
+    assert ran(capsys, "check", name, "--strict")[0] == code
+    told = ran(capsys, "check", name, "-v")[1]
+    assert "box" in told and "\n  lid: solid, 12 triangles" in told
+    assert ("volume in common" in told) == bool(code)
+    assert ("volume in common" in ran(capsys, "info", name)[1]) == bool(code)
 
 
 # Found: `check` told of no file behind a script with a bad mesh.

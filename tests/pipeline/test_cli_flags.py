@@ -119,7 +119,7 @@ def test_repairs_that_close_nothing(
 ) -> None:
     from bspcsg.repair.repair import Repair
 
-    monkeypatch.setattr("bspcsg.repair.repair.repair", lambda raw: Repair(raw, {}, 0))
+    monkeypatch.setattr("bspcsg.assembly.mending.repair", lambda raw: Repair(raw, {}, 0))
     code, _, err = ran(capsys, "union", "a.off", "open.off", "-o", "x", "--to", "off",
                        "--on-invalid", "repair")  # fmt: skip
     assert code == 4 and "A repair did not close it" in err and not Path("x").exists()
@@ -212,7 +212,7 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
     [
         "compare a.off c.stl --tol nan",
         "compare a.off c.stl --samples 99999999999999999999",
-        "validate a.off c.stl --samples 99999999999999999999",
+        "crosscheck a.off c.stl --samples 99999999999999999999",
         "repair a.off -o x.ply --timeout nan",
         "repair a.off -o x.ply --timeout inf",
         "repair a.off -o x.ply --timeout 1e10",
@@ -220,7 +220,7 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
         "render a.off -o x.gif --frames 2 --seconds inf",
         "render a.off -o x.gif --frames 2 --seconds 2000",
         "render a.off -o x.svg --azimuth nan",
-        "validate a.off c.stl --timeout nan",
+        "crosscheck a.off c.stl --timeout nan",
         "bench --memory inf",
         "bench --limit nan",
         "bench --budget inf",

@@ -71,12 +71,12 @@ def test_files_without_names_stay_one_object(files: Path, capsys: Capture) -> No
 
 
 # Found: `--on-invalid repair` gave the parts of a repaired file the names of other objects.
-def test_parts_of_repaired_files_are_called_as_the_file(files: Path, capsys: Capture) -> None:
+def test_parts_of_repaired_files_keep_their_names(files: Path, capsys: Capture) -> None:
     vertices, faces = joined(cuboid((0, 0, 4), (1, 1, 5)), cuboid((0, 0, 7), (1, 1, 8)))
     write(RawMesh(vertices, faces[1:], objects=(("left", 11), ("right", 12))), "open.obj")
     line = ["union", "open.obj", "cover.3mf", "-o", "x.3mf", "--on-invalid", "repair"]
     assert ran(capsys, *line)[0] == 0
-    assert sorted(name for name, _ in read("x.3mf").objects) == ["lid", "open", "open"]
+    assert sorted(name for name, _ in read("x.3mf").objects) == ["left", "lid", "right"]
 
 
 def test_hulls_have_no_names(files: Path, capsys: Capture) -> None:

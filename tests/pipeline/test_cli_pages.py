@@ -5,25 +5,30 @@ import os
 import re
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree as Xml
 
 import numpy as np
 import pytest
 
 import bspcsg as b
-from bspcsg.io import RawMesh
+from bspcsg.io import RawMesh, write
 from bspcsg.repair.marks import marks_of
 from support.browser import Browser
 from support.cli import Capture, put, ran
-from support.shapes import cube, cuboid
+from support.shapes import cube, cuboid, joined
+
+
+def models(page: str) -> list[dict[str, Any]]:
+    """Return what a page gives to the viewer, for each view."""
+    text = Path(page).read_text(encoding="utf-8")
+    found = re.findall(r'<script type="application/json" id="[a-z0-9-]*model">(.*?)</script>', text)
+    return [json.loads(one) for one in found]
 
 
 def model(page: str) -> dict[str, Any]:
-    """Return what a page gives to the viewer."""
-    text = Path(page).read_text(encoding="utf-8")
-    found = re.search(r'<script type="application/json" id="model">(.*?)</script>', text)
-    assert found is not None
-    result: dict[str, Any] = json.loads(found[1])
-    return result
+    """Return what a page gives to its only view."""
+    (found,) = models(page)
+    return found
 
 
 def layers(page: str) -> dict[str, int]:
@@ -95,6 +100,90 @@ def test_other_faults_are_marked(folder: Path) -> None:
     assert marks.flat.tolist() == [12] and marks.repeated.tolist() == [13]
 
 
+def reported(capsys: Capture) -> tuple[int, list[tuple[str, str]], dict[str, dict[str, str]]]:
+    """Check a folder of five; return the exit code, the cards, and the cases of JUnit."""
+    Path("in/deep").mkdir(parents=True)
+    Path("a.off").rename("in/a.off")
+    vertices, faces = cube()
+    write(RawMesh(vertices, faces[1:], "open"), "in/open.ply")
+    body, lid = b.box((3, 2, 1)), b.box((3, 2, 1)).translate(0, 0, 1)
+    b.Assembly("x", [b.Assembly("body", body), b.Assembly("lid", lid)]).save("in/deep/box.3mf")
+    Path("in/bad.ply").write_text("ply\n")
+    Path("in/a.mtl").touch()
+    code, _, _ = ran(capsys, "check", "in", "-o", "x.html", "-o", "x.json", "-o", "x.xml")
+    text = Path("x.html").read_text(encoding="utf-8")
+    pattern = r"<h3>(.*?)</h3>\s*<span class=\"badge tone-\w+\">(.*?)</span>"
+    cases = {
+        f"{one.get('classname')}: {one.get('name')}": {
+            part.tag: part.get("type") or "" for part in one if part.tag != "system-out"
+        }
+        for one in Xml.parse("x.xml").iter("testcase")
+    }
+    return code, re.findall(pattern, text), cases
+
+
+def test_a_folder_becomes_a_page_data_and_test_cases(folder: Path, capsys: Capture) -> None:
+    code, cards, cases = reported(capsys)
+    assert code == 3
+    assert cards == [
+        ("in/a.off", "solid"),
+        ("in/bad.ply", "unreadable"),
+        ("in/deep/box.3mf", "solid"),
+        ("in/deep/box.3mf: body", "solid"),
+        ("in/deep/box.3mf: lid", "solid"),
+        ("in/open.ply", "not closed"),
+    ]
+    assert cases == {
+        "in/a.off: a.off": {},
+        "in/bad.ply: bad.ply": {"error": "unreadable"},
+        "in/deep/box.3mf: body": {},
+        "in/deep/box.3mf: lid": {},
+        "in/open.ply: open.ply": {"failure": "not closed"},
+    }
+    document = json.loads(Path("x.json").read_text(encoding="utf-8"))
+    files = document["files"]
+    assert document["skipped"] == {".mtl": 1} and document["schema"] == 1
+    assert [one["verdict"] for one in files] == ["solid", "unreadable", "solid", "not closed"]
+    assert [one["name"] for one in files[2]["objects"]] == ["body", "lid"]
+    assert json.loads(ran(capsys, "check", "in", "--json")[1]) == document
+
+
+def test_each_mesh_of_a_page_has_pictures_and_a_view(folder: Path, capsys: Capture) -> None:
+    reported(capsys)
+    text = Path("x.html").read_text(encoding="utf-8")
+    # Two pictures each, and over those of the mesh with a hole a ring.
+    assert len(re.findall(r'<img src="data:image/', text)) == 2 * 5 + 2
+    views = models("x.html")
+    assert [len(one["layers"]) for one in views] == [1, 2, 1, 1, 2]
+    assert [place["name"] for place in views[-1]["places"]] == ["hole 1: 3 edges"]
+    assert views[-1]["layers"][1]["name"] == "open edges"
+    reports = [Path(name).read_bytes() for name in ("x.html", "x.json", "x.xml")]
+    ran(capsys, "check", "in", "-o", "x.html", "-o", "x.json", "-o", "x.xml")
+    assert [Path(name).read_bytes() for name in ("x.html", "x.json", "x.xml")] == reports
+
+
+def test_warnings_fail_test_cases_on_request(folder: Path, capsys: Capture) -> None:
+    one, other = cuboid((0, 0, 0), (2, 2, 2)), cuboid((1, 1, 1), (3, 3, 3))
+    write(RawMesh(*joined(one, other), objects=(("one", 12), ("other", 12))), "both.3mf")
+    for options, failures in ([], "0"), (["--strict"], "1"):
+        code, _, _ = ran(capsys, "check", "both.3mf", "-o", "x.xml", *options)
+        root = Xml.parse("x.xml").getroot()
+        assert (root.get("tests"), root.get("failures"), code) == ("3", failures, int(failures))
+
+
+def test_a_page_of_several_opens_a_view_and_filters(
+    folder: Path, capsys: Capture, browser: Browser
+) -> None:
+    reported(capsys)
+    browser.open(folder / "x.html")
+    assert browser.texts("#count") == ["6 of 6 meshes and objects"]
+    browser.click("button[data-verdict]", 1)
+    assert browser.texts("#count") == ["1 of 6 meshes and objects"]
+    browser.click("#mesh-6 .opener", 0)
+    browser.wait("document.querySelector('#mesh-6 .stage[data-drawn]')")
+    assert browser.errors() == []
+
+
 def test_marks_are_drawn(folder: Path, capsys: Capture, browser: Browser) -> None:
     vertices, faces = b.sphere(r=1, segments=16).to_mesh()
     put("open.off", (vertices, np.delete(faces, [100, 101], axis=0)))
@@ -129,15 +218,19 @@ def test_differences_are_coloured_and_laid_over_each_other(
     [
         (["compare", "a.off", "c.stl", "--html", "x.png"], 3, "must end in .html"),
         (["compare", "a.off", "c.stl", "--html", "no/x.html"], 5, "no folder"),
-        (["check", "a.off", "c.stl", "--html", "x.html"], 2, "one file"),
-        (["check", "-", "--from", "stl", "--html", "x.html"], 2, "save it to a file"),
-        (["check", "a.off", "--thin", "1"], 2, "say --html too"),
+        (["check", "a.off", "--thin", "1"], 2, "say -o check.html too"),
+        (["check", "a.off", "-o", "x.json", "--thin", "1"], 2, "say -o check.html too"),
+        (["check", "a.off", "-o", "x.pdf"], 3, "must end in .html, .json or .xml"),
+        (["check", "a.off", "-o", "no/x.xml"], 5, "no folder"),
+        (["check", "a.off", "-o", "-"], 2, "--json prints the document"),
+        (["check", "a.off", "m.json", "-o", "m.json"], 2, "which is to be read"),
         (["check", "a.off", "--html", "x.html", "--thin", "-1"], 2, "no length"),
     ],
 )
 def test_refusals(
     folder: Path, capsys: Capture, arguments: list[str], code: int, words: str
 ) -> None:
+    Path("m.json").touch()
     before = sorted(os.listdir())
     found, out, err = ran(capsys, *arguments)
     assert (found, out) == (code, "") and words in err and sorted(os.listdir()) == before

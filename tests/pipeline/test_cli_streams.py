@@ -210,10 +210,10 @@ def test_forbidden_files_as_the_system_tells_it(
     assert err == "bspcsg: error: a.off: cannot read this file: Permission denied.\n"
 
 
-@pytest.mark.parametrize("verb", ["info", "check", "compare", "convert"])
+@pytest.mark.parametrize("verb", ["compare", "split"])
 def test_folders_are_no_files(folder: Path, capsys: Capture, verb: str) -> None:
     Path("d.stl").mkdir()
-    more = {"compare": ["a.off"], "convert": ["-o", "x.ply"]}.get(verb, [])
+    more = {"compare": ["a.off"], "split": ["-o", "x.ply"]}[verb]
     code, _, err = ran(capsys, verb, "d.stl", *more)
     assert code == 3 and "d.stl: cannot read this file: Is a directory." in err
 
@@ -375,7 +375,7 @@ def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
 @POSIX
 @pytest.mark.parametrize("size", [0, 100, 1500])
 def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:
-    line = ["validate", "a.off", "c.stl", "--op", "union", "-j1", "--results", "r.jsonl"]
+    line = ["crosscheck", "a.off", "c.stl", "--op", "union", "-j1", "--results", "r.jsonl"]
     code, out, err = finished(*line, before=at_most(size))
     assert (code, out) == (5, b"")
     assert err == b"bspcsg: error: r.jsonl: cannot write: File too large.\n"

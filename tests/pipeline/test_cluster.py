@@ -28,7 +28,7 @@ def scheduler() -> Iterator[Any]:
 
 
 def test_cases_run_on_the_workers(folder: Path, capsys: Capture, scheduler: Any) -> None:
-    given = ["validate", "a.off", "c.stl", "--results", "r.jsonl", "--json"]
+    given = ["crosscheck", "a.off", "c.stl", "--results", "r.jsonl", "--json"]
     where = ["--scheduler", scheduler.scheduler_address]
     code, out, _ = ran(capsys, *given, *where)
     assert code == 0 and json.loads(out)["verdicts"] == {"agree": 4}
@@ -39,7 +39,7 @@ def test_cases_run_on_the_workers(folder: Path, capsys: Capture, scheduler: Any)
 
     Path("scheduler.json").write_text(json.dumps({"address": scheduler.scheduler_address}))
     limits = ["--timeout", "0.0001", "--op", "union", "--scheduler", "scheduler.json"]
-    code, out, _ = ran(capsys, "validate", "a.off", "c.stl", "--json", *limits)
+    code, out, _ = ran(capsys, "crosscheck", "a.off", "c.stl", "--json", *limits)
     assert code == 1 and json.loads(out)["verdicts"] == {"timeout": 1}
 
 
@@ -47,14 +47,14 @@ def test_no_scheduler_is_told(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster, "_PATIENCE", 0.2)
-    given = ["validate", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
+    given = ["crosscheck", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
     code, _, err = ran(capsys, *given)
     assert code == 6 and err.startswith("bspcsg: error: tcp://127.0.0.1:9: no scheduler answers")
 
 
 def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cluster, "find_spec", lambda name: None)
-    given = ["validate", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
+    given = ["crosscheck", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
     code, _, err = ran(capsys, *given)
     assert code == 6 and 'pip install "bspcsg[cluster]"' in err
 
@@ -65,7 +65,7 @@ def test_a_cluster_without_workers_is_told(
 ) -> None:
     monkeypatch.setattr(cluster, "_PATIENCE", 2)
     scheduler.scale(0)
-    given = ["validate", "a.off", "c.stl", "--results", "r.jsonl"]
+    given = ["crosscheck", "a.off", "c.stl", "--results", "r.jsonl"]
     code, _, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)
     assert code == 6 and "the scheduler there has no workers" in err and "--resume" in err
 
@@ -74,7 +74,7 @@ def test_workers_may_come_late(folder: Path, capsys: Capture, scheduler: Any) ->
     scheduler.scale(0)
     late = threading.Timer(1, lambda: scheduler.scale(1))
     late.start()
-    given = ["validate", "a.off", "c.stl", "--op", "union", "--json"]
+    given = ["crosscheck", "a.off", "c.stl", "--op", "union", "--json"]
     code, out, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)
     late.join()
     assert code == 0 and json.loads(out)["verdicts"] == {"agree": 1}, err

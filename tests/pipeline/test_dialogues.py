@@ -49,7 +49,7 @@ ERRORS = [
         "none.stl: cannot read this file: No such file or directory.",
     ),
     (
-        ["info", "."],
+        ["split", ".", "-o", "x.ply"],
         3,
         ".: this is a folder; name the files in it, as in *.stl.",
     ),

@@ -32,8 +32,8 @@ LINES = {
     "convert": ["convert", "x.stl", "-o", "x.glb"],
     "slice": ["slice", "x.stl", "--z", "0.5", "-o", "x.svg"],
     "render": ["render", "x.stl", "-o", "x.png"],
-    "validate": [
-        *("validate", "x.stl", "x.stl", "--op", "union"),
+    "crosscheck": [
+        *("crosscheck", "x.stl", "x.stl", "--op", "union"),
         *("--junit", "x.xml", "--markdown", "x.md", "--results", "x.jso"),
     ],
 }
@@ -86,8 +86,8 @@ def test_files_without_a_suffix_are_refused_before_they_are_read(
     [
         ["info", ""],
         ["union", "a.stl", "a.stl", "-o", ""],
-        ["validate", ""],
-        ["validate", "a.stl", "--results", ""],
+        ["crosscheck", ""],
+        ["crosscheck", "a.stl", "--results", ""],
         ["check", "a.stl", "--html", ""],
         ["convert", "a.stl", "--outdir", "", "--to", "off"],
         ["run", "a.py", "-o", "x.stl", "--allow-path", ""],

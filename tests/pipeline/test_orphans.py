@@ -49,7 +49,7 @@ def test_workers_end_with_their_runner(folder: Path, delay: float) -> None:
     for k in range(3):
         b.sphere(10 + k, segments=150).save(f"s{k}.off")
     names = [f"s{k}.off" for k in range(3)]
-    line = ["validate", *names, "-j", "2", "--results", "r.jsonl", "-q"]
+    line = ["crosscheck", *names, "-j", "2", "--results", "r.jsonl", "-q"]
     running = process(*line, **QUIET)
     while delay > 0.2 and not psutil.Process(running.pid).children():
         time.sleep(0.01)
@@ -72,7 +72,7 @@ def test_workers_end_though_they_hold_the_lock_of_python(folder: Path) -> None:
     )
     home = str(Path(b.__file__).parents[1])
     more = {"PYTHONPATH": f"{folder}{os.pathsep}{home}"}
-    line = ["validate", "a.off", "c.stl", "-j", "1", "-q"]
+    line = ["crosscheck", "a.off", "c.stl", "-j", "1", "-q"]
     running = process(*line, more=more, **QUIET)
     while not Path("started").exists():
         time.sleep(0.01)

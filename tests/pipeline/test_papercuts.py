@@ -124,6 +124,60 @@ def test_patterns_without_a_match(folder: Path, capsys: Capture) -> None:
     assert code == 2 and "*.* matches 2 files; name one of them, as a.off." in err
 
 
+@pytest.mark.parametrize(
+    "meant", ["in", "in/*", "in/**/*", "in/a.off in/deep/c.stl in/a.png in/a.mtl"]
+)
+def test_companions_of_meshes_are_skipped_and_counted(
+    folder: Path, capsys: Capture, meant: str
+) -> None:
+    Path("in/deep/.hidden").mkdir(parents=True)
+    Path("a.off").rename("in/a.off")
+    Path("c.stl").rename("in/deep/c.stl")
+    for name in ("a.mtl", "a.png"):
+        Path("in", name).touch()
+    Path("in/deep/.hidden/b.off").touch()
+    code, out, err = ran(capsys, "info", *meant.split(), "--json")
+    assert code == 0 and err == "note: skipped 2 files that are no meshes: 1 .mtl, 1 .png.\n"
+    files = json.loads(out)["files"]
+    assert [Path(one["file"]) for one in files] == [Path("in/a.off"), Path("in/deep/c.stl")]
+    assert ran(capsys, "info", *meant.split(), "-q")[2] == ""
+    code, _, _ = ran(capsys, "union", *meant.split(), "-o", "x.ply")
+    assert code == 0 and b.load("x.ply").volume == 15
+
+
+def test_views_skip_companions_and_open_no_folders(folder: Path, capsys: Capture) -> None:
+    for name in ("in.png", "in.mtl"):
+        Path(name).touch()
+    for meant in ("*", "a.off c.stl in.png in.mtl"):
+        line = ["view", *meant.split(), "-o", "x.html", "--no-open", "--json"]
+        code, out, err = ran(capsys, *line)
+        assert code == 0 and json.loads(out)["files"] == ["a.off", "c.stl"]
+        assert "skipped 2 files that are no meshes" in err
+        Path("x.html").unlink()
+
+
+def test_what_is_named_alone_or_is_of_another_format_is_no_companion(
+    folder: Path, capsys: Capture
+) -> None:
+    Path("a.mtl").touch()
+    Path("b.step").touch()
+    assert ran(capsys, "info", "a.mtl")[0] == 3
+    code, _, err = ran(capsys, "info", "a.off", "b.step")
+    assert code == 3 and "STEP" in err
+    code, _, err = ran(capsys, "info", "*.step")
+    assert code == 3 and "STEP" in err
+
+
+def test_folders_without_meshes(folder: Path, capsys: Capture) -> None:
+    Path("none/deep").mkdir(parents=True)
+    assert ran(capsys, "check", "none")[::2] == (3, "bspcsg: error: none: there is no mesh.\n")
+    Path("none/deep/a.txt").touch()
+    code, _, err = ran(capsys, "check", "none")
+    assert code == 3 and "none: there is no mesh, only 1 file that is no mesh: 1 .txt." in err
+    # Where something else is a mesh, an empty folder is nothing to speak of.
+    assert ran(capsys, "check", "none", "a.off")[0] == 0
+
+
 def test_names_that_look_like_patterns_are_names(folder: Path, capsys: Capture) -> None:
     Path("a.off").rename("a[1].off")
     assert ran(capsys, "check", "a[1].off")[0] == 0
@@ -238,7 +292,7 @@ def test_colours_by_convention(
 
 # Found: wrong use with `--json` left standard output empty.
 @pytest.mark.parametrize(
-    "verb", ["union", "info", "convert", "slice", "bench", "validate", "unoin"]
+    "verb", ["union", "info", "convert", "slice", "bench", "crosscheck", "unoin"]
 )
 def test_wrong_use_is_json_too(folder: Path, capsys: Capture, verb: str) -> None:
     code, out, err = ran(capsys, verb, "--no-such-option", "--json")

@@ -19,7 +19,7 @@ def header(**other: Any) -> Record:
     return {
         "schema": 1,
         "type": "run",
-        "command": "bspcsg validate a.stl b.stl --seed 7",
+        "command": "bspcsg crosscheck a.stl b.stl --seed 7",
         "seed": 7,
         "started": "2026-01-02T03:04:05+00:00",
         "versions": {"bspcsg": b.__version__, "numpy": np.__version__},

@@ -16,7 +16,9 @@ from bspcsg.report.markdown import markdown_text
 
 def record(verdict: str, name: str = "0001-union", reason: str = "", **more: Any) -> Any:
     operands = (Operand("a", "a|b.stl", "00"), Operand("b", "b.stl", "11"))
-    case = Case(name, "pose", "union", operands, "corner", 1, 2, "bspcsg validate 'a|b.stl' b.stl")
+    case = Case(
+        name, "pose", "union", operands, "corner", 1, 2, "bspcsg crosscheck 'a|b.stl' b.stl"
+    )
     return {**blank_record(case, verdict, reason), **more}
 
 
@@ -35,11 +37,11 @@ def test_summary_counts_everything() -> None:
 
 
 def test_junit_sorts_verdicts_by_what_a_build_does_about_them() -> None:
-    suite = Xml.fromstring(junit_text(ALL, [run_record("bspcsg validate", 1)]).encode())
+    suite = Xml.fromstring(junit_text(ALL, [run_record("bspcsg crosscheck", 1)]).encode())
     counts = {name: suite.get(name) for name in ("tests", "failures", "errors", "skipped")}
     assert counts == {"tests": "10", "failures": "2", "errors": "2", "skipped": "3"}
     properties = {one.get("name"): one.get("value") for one in suite.iter("property")}
-    assert properties["command"] == "bspcsg validate" and properties["seed"] == "1"
+    assert properties["command"] == "bspcsg crosscheck" and properties["seed"] == "1"
 
 
 @pytest.mark.parametrize("word", ["a\x00b", "<&\"'>", "\ud800", "]]>", "ä∪b"])
@@ -53,10 +55,10 @@ def test_any_text_makes_sound_xml(word: str) -> None:
 
 
 def test_markdown_lists_what_matters() -> None:
-    text = markdown_text(ALL, [run_record("bspcsg validate", 1)])
+    text = markdown_text(ALL, [run_record("bspcsg crosscheck", 1)])
     assert "**4 of 10 cases failed.**" in text and "| **" not in text
     assert text.count("\n## ") == 5
-    assert "| DISAGREE | 1 | 1 |" in text and "`bspcsg validate`, started" in text
+    assert "| DISAGREE | 1 | 1 |" in text and "`bspcsg crosscheck`, started" in text
 
 
 def test_markdown_tables_hold_any_text() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.campaign.cases.sources import Draw, cases_of, inputs_in
+from bspcsg.cli.options.patterns import files_of
 from bspcsg.parameters import SET_OPS
 from support.cli import put
 from support.shapes import cube
@@ -27,8 +28,13 @@ def parts(tmp_path: Path) -> Path:
     return folder
 
 
+def inside(folder: Path) -> list[Path]:
+    """Return the files that a folder means to the verb."""
+    return files_of([folder], Counter(), also=(".csg",))
+
+
 def test_folder_is_paired_with_itself(parts: Path) -> None:
-    cases = cases_of(inputs_in([parts]), ("union", "xor"), Draw())
+    cases = cases_of(inputs_in(inside(parts)), ("union", "xor"), Draw())
     names = [case.name for case in cases]
     named = ("0000-a-b", "0001-a-c", "0002-b-c")
     assert names == [*(f"{pair}-{op}" for pair in named for op in ("union", "xor")), "m.csg"]
@@ -46,12 +52,12 @@ def test_cases_are_called_by_their_files(parts: Path) -> None:
 
 
 def test_draws_are_the_same_each_time(parts: Path) -> None:
-    draws = [cases_of(inputs_in([parts]), SET_OPS, Draw(20, seed)) for seed in (1, 1, 2)]
+    draws = [cases_of(inputs_in(inside(parts)), SET_OPS, Draw(20, seed)) for seed in (1, 1, 2)]
     assert draws[0] == draws[1] and [case.key for case in draws[0]] == [c.key for c in draws[1]]
     assert draws[0] != draws[2]
     poses = Counter(case.pose for case in draws[0] if case.kind == "pose")
     assert poses["random"] == 40 and sum(poses.values()) == 80 and len(poses) > 3
-    longer = cases_of(inputs_in([parts]), SET_OPS, Draw(30, 1))
+    longer = cases_of(inputs_in(inside(parts)), SET_OPS, Draw(30, 1))
     assert longer[:80] == draws[0][:80]
 
 

@@ -9,10 +9,12 @@ import pytest
 import bspcsg as b
 from bspcsg.errors import BspcsgError, InvalidMeshError, MissingPartError
 from bspcsg.io import RawMesh
+from bspcsg.mesh.weld import welded
 from bspcsg.repair import repair as repairing
+from bspcsg.repair.child import stray_faces
 from bspcsg.repair.diagnosis import diagnose
 from bspcsg.repair.repair import repair
-from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined
+from support.shapes import Arrays, cube, cuboid, flipped, icosphere, joined, moved
 
 
 def volume_after(mesh: Arrays) -> float:
@@ -53,6 +55,49 @@ def test_duplicates_and_flat_triangles_go() -> None:
     vertices, faces = cube(2)
     made = repair(RawMesh(vertices, np.concatenate([faces, faces[:3], [[0, 1, 1]]])))
     assert len(made.mesh.faces) == 12 and diagnose(made.mesh).is_solid
+
+
+@pytest.mark.parametrize("draw", range(3))
+def test_a_sphere_with_31_faces_missing_becomes_a_solid(draw: int) -> None:
+    vertices, faces = (np.array(part) for part in b.sphere(r=10, segments=32).to_mesh())
+    nearest = np.argsort(-vertices[faces].mean(axis=1)[:, 0])[:40]
+    missing = np.random.default_rng(draw).choice(nearest, 31, replace=False)
+    made = repair(RawMesh(vertices, np.delete(faces, missing, axis=0)))
+    found = diagnose(made.mesh)
+    # What stays of the forty in the hole are loose triangles and pairs of them.
+    assert found.is_solid and 0 < made.dropped < 10
+    assert found.volume == pytest.approx(b.sphere(r=10, segments=32).volume, rel=0.02)
+
+
+def strays(*meshes: Arrays) -> list[int]:
+    """Return the faces of stray fragments, of meshes whose equal corners are joined."""
+    vertices, faces = joined(*meshes)
+    _, same = welded(vertices)
+    return np.flatnonzero(stray_faces(same[faces])).tolist()
+
+
+LOOSE = (np.array([[9.0, 9, 9], [9, 9, 8], [9, 8, 9], [8, 8, 8]]), np.array([[0, 1, 2]]))
+
+
+def test_fragments_bound_nothing() -> None:
+    pair = (LOOSE[0], np.array([[0, 1, 2], [2, 1, 3]]))
+    assert strays(cube(), LOOSE, moved(pair, (5, 0, 0))) == [12, 13, 14]
+    # A fin: one edge is the cube's, which then has three triangles.
+    vertices, faces = cube()
+    fin = (np.vstack([vertices[faces[0][:2]], [[7.0, 7, 7]]]), np.array([[0, 1, 2]]))
+    assert strays(cube(), fin) == [12]
+
+
+def test_what_may_bound_something_is_no_fragment() -> None:
+    vertices, faces = cuboid((5, 0, 0), (6, 1, 1))
+    heights = vertices[faces][:, :, 2]
+    tube = vertices, faces[heights.min(axis=1) != heights.max(axis=1)]
+    tent = LOOSE[0], np.array([[0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    assert len(tube[1]) == 8 and strays(cube(), tube, tent) == []
+    # Walls that many cells share have no open edge.
+    assert strays(cube(), moved(cube(), (1, 1, 0)), moved(cube(), (1, 0, 1))) == []
+    # Where all is fragments, none is beside something.
+    assert strays(LOOSE) == strays(LOOSE, moved(LOOSE, (3, 0, 0))) == []
 
 
 # Found: `repair` of files without triangles, and of holes of 2^31 edges and more, ended in a

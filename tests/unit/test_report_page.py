@@ -39,7 +39,9 @@ def test_all_cases_are_in_the_table_and_failures_come_first(page: str) -> None:
     assert "9 cases, 1 failure" in page
     assert attributes(page, "data-verdict") == ["DISAGREE", "agree"]
     read = re.sub("<[^>]+>", "", page)
-    assert "commandbspcsg validate a.stl b.stl --seed 7 " in read and "a processor, 2 cores" in read
+    assert (
+        "commandbspcsg crosscheck a.stl b.stl --seed 7 " in read and "a processor, 2 cores" in read
+    )
 
 
 def test_every_verdict_has_a_meaning_and_those_that_occur_are_explained(page: str) -> None:

@@ -46,7 +46,7 @@ COMMANDS = {
     "view": "view a.stl -o a.html --no-open",
     "lecture": "lecture -o lecture.html",
     "doctor": "doctor",
-    "validate": "validate a.stl b.stl --op difference --results cases.jsonl",
+    "crosscheck": "crosscheck a.stl b.stl --op difference --results cases.jsonl",
     "report": "report kept.jsonl -o report.html",
     "bench": "bench --from kept.json",
 }

@@ -97,7 +97,7 @@ class Case:
 
 def command_for(files: Sequence[str], *options: str) -> str:
     """Return a command line, fit for a shell."""
-    words = ["bspcsg", "validate", *files, *options]
+    words = ["bspcsg", "crosscheck", *files, *options]
     return " ".join(shlex.quote(word) for word in words)
 
 

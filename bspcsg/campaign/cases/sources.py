@@ -58,7 +58,7 @@ class Draw:
 
 
 def inputs_in(paths: Sequence[Path]) -> CaseInputs:
-    """Sort what was named by kind; folders are searched.
+    """Sort what was named by kind.
 
     Raises
     ------
@@ -69,11 +69,6 @@ def inputs_in(paths: Sequence[Path]) -> CaseInputs:
     scripts: list[Path] = []
     cases: list[Path] = []
     for path in paths:
-        if path.is_dir():
-            found = sorted(entry for entry in path.rglob("*") if entry.is_file())
-            meshes += [entry for entry in found if entry.suffix.lower() in FORMATS]
-            scripts += [entry for entry in found if entry.suffix.lower() == ".csg"]
-            continue
         if not path.is_file():
             raise FormatError(f"{path}: cannot read this file: no such file.", "unreadable")
         _kind_of(path, meshes, scripts, cases).append(path)

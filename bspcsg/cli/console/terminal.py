@@ -13,6 +13,9 @@ from . import status
 #: Colours of what a line begins with.
 _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
 
+#: The options that silence notes, for what is said before options are read.
+QUIET = frozenset({"-q", "--quiet"})
+
 #: The least width that a table is fitted to.
 _NARROWEST = 40
 

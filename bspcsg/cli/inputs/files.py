@@ -202,9 +202,9 @@ class Inputs:
         return Solid.empty()
 
     def _repaired(self, raw: "RawMesh", path: Path) -> "Solid":
-        from ...repair.repair import repair
+        from ...assembly.mending import mended
 
-        made = repair(raw)
+        made = mended(raw)
         try:
             solid = self._solid_of(made.mesh, path)
         except InvalidMeshError as error:
@@ -214,7 +214,8 @@ class Inputs:
             raise InvalidMeshError(message, error.code, error.where) from error
         counts = f"{counted(len(raw.faces), 'triangle')} became {len(made.mesh.faces)}"
         turned = f", {made.turned} of them turned round" if made.turned else ""
-        self.out.warning(f"{shown(path)} was not closed and is repaired: {counts}{turned}.")
+        strays = f"; {counted(made.dropped, 'stray triangle')} dropped" if made.dropped else ""
+        self.out.warning(f"{shown(path)} was not closed and is repaired: {counts}{turned}{strays}.")
         self.tell(path, made.lost)
         return solid
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from ...errors import BspcsgError
-from .shared import FiniteRange, finite_numbers, numbers
+from .shared import FiniteRange, finite_numbers, further, numbers
 
 if TYPE_CHECKING:
     from ..._types import FloatArray
@@ -45,33 +45,33 @@ _SEEING = [
         show_default=True,
         help="From where; z is up, front looks along +y.",
     ),
-    click.option(
+    further(
         "--azimuth",
         metavar="DEGREES",
         type=FiniteRange(-360, 360),
         help="From where around z: 0 from the front, 90 from the right.",
     ),
-    click.option(
+    further(
         "--elevation",
         metavar="DEGREES",
         type=FiniteRange(-90, 90),
         help="From how high: 0 from the side, 90 from the top.",
     ),
-    click.option("--eye", metavar="X,Y,Z", callback=_as_point, help="Where the viewer is."),
-    click.option(
+    further("--eye", metavar="X,Y,Z", callback=_as_point, help="Where the viewer is."),
+    further(
         "--target",
         "aim",
         metavar="X,Y,Z",
         callback=_as_point,
         help="The point in the middle of the picture; by default the middle of what is seen.",
     ),
-    click.option(
+    further(
         "--up",
         metavar="X,Y,Z",
         callback=numbers("direction", "x,y,z", "0,0,1"),
         help="What is upwards in the picture; by default z.",
     ),
-    click.option(
+    further(
         "--perspective",
         "field_of_view",
         metavar="[=DEGREES]",

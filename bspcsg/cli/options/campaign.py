@@ -1,4 +1,4 @@
-"""The values of the options of validate, and the reading of them."""
+"""The values of the options of crosscheck, and the reading of them."""
 
 import click
 

@@ -1,27 +1,136 @@
-"""Patterns where files are asked for: those that the shell left as they are are matched here."""
+"""From arguments to files: names, folders, and patterns that the shell left as they are.
+
+What lies beside meshes, such as pictures of textures, is skipped where it was not asked for by
+name, and counted.
+"""
 
 import glob
 import os
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import click
 
 from ...errors import FormatError
+from ..console import terminal
 from .shared import PATH
 
+#: Endings of what goes beside meshes: materials, pictures, data of glTF, words about them.
+_BESIDE = frozenset(
+    [".mtl", ".bin", ".txt", ".md", ".html", ".pdf", ".xml", ".csv", ".svg"]
+    + [".png", ".jpg", ".jpeg", ".webp", ".gif", ".bmp", ".tga", ".tif", ".tiff", ".dds", ".ktx2"]
+)
 
-def files_argument(metavar: str, name: str = "files") -> Callable[..., Any]:
-    """Return the argument for one or more files, or patterns of them."""
-    return click.argument(
-        name, nargs=-1, required=True, type=PATH, metavar=metavar, callback=_all_matches
-    )
+#: Where a context keeps how many files of which ending were skipped.
+_SKIPPED = "bspcsg.skipped"
+
+
+def files_argument(
+    metavar: str, name: str = "files", *, opens: bool = True, also: Collection[str] = ()
+) -> Callable[..., Any]:
+    """Return the argument for one or more files, folders of them, or patterns.
+
+    Parameters
+    ----------
+    metavar, name : str
+    opens : bool
+        True if a folder stands for the meshes in it; else it is handed on.
+    also : collection of str
+        Endings of other files in folders and patterns that are taken, too.
+    """
+
+    def found(
+        context: click.Context, option: click.Parameter, values: tuple[Path, ...]
+    ) -> tuple[Path, ...]:
+        if context.resilient_parsing:
+            return values
+        skipped: Counter[str] = Counter()
+        files = tuple(files_of(values, skipped, also, opens=opens))
+        context.meta[_SKIPPED] = skipped
+        if skipped and not terminal.QUIET.intersection(context.find_root().obj or ()):
+            terminal.say("note", f"skipped {_counted(skipped)}.")
+        return files
+
+    return click.argument(name, nargs=-1, required=True, type=PATH, metavar=metavar, callback=found)
+
+
+def skipped_files() -> dict[str, int]:
+    """Return how many files of which ending the verb that is run skipped."""
+    return dict(click.get_current_context().meta.get(_SKIPPED, {}))
 
 
 def file_argument(metavar: str = "FILE", name: str = "file") -> Callable[..., Any]:
     """Return the argument for one file, or a pattern that one matches."""
     return click.argument(name, type=PATH, metavar=metavar, callback=_only_match)
+
+
+def files_of(
+    values: Sequence[Path],
+    skipped: Counter[str],
+    also: Collection[str] = (),
+    *,
+    opens: bool = True,
+) -> list[Path]:
+    """Return the files that names, folders and patterns mean; count by endings what is skipped.
+
+    A folder means the meshes in it and in its folders, but for hidden ones. A pattern that leaves
+    the ending open means meshes. A name is itself, unless it is of a kind that lies beside meshes
+    and others are named as well, as by a pattern of the shell.
+
+    Raises
+    ------
+    FormatError
+        If no file is left; code ``"unreadable"``.
+    """
+    files: list[Path] = []
+    for value in values:
+        found = matches(value)
+        inside = (file for path in found for file in _inside(path)) if opens else found
+        for path in dict.fromkeys(inside):
+            if _is_meant(path, value, also, alone=len(values) == 1):
+                files.append(path)
+            else:
+                skipped[path.suffix.lower()] += 1
+    if not files:
+        only = f", only {_counted(skipped)}" if skipped else ""
+        raise FormatError(f"{values[0]}: there is no mesh{only}.", "unreadable")
+    return files
+
+
+def _is_meant(path: Path, value: Path, also: Collection[str], *, alone: bool) -> bool:
+    """Say whether an argument that leads to a file means it."""
+    from ...formats.registry import FORMATS
+
+    suffix = path.suffix.lower()
+    if suffix in FORMATS or suffix in also:
+        return True
+    if path == value:
+        return alone or suffix not in _BESIDE
+    return suffix != "" and suffix == value.suffix.lower() and not value.is_dir()
+
+
+def _inside(path: Path) -> Iterator[Path]:
+    """Yield the files in a folder and its folders, by name; a file is itself."""
+    if not path.is_dir():
+        yield path
+        return
+    for file in sorted(path.rglob("*")):
+        hidden = any(part.startswith(".") for part in file.relative_to(path).parts)
+        if not hidden and file.is_file():
+            yield file
+
+
+def _counted(skipped: Counter[str]) -> str:
+    """Say how many files of which ending are no meshes."""
+    kinds = ", ".join(
+        f"{count} {suffix or 'without an ending'}" for suffix, count in sorted(skipped.items())
+    )
+    total = skipped.total()
+    return (
+        f"{total} {'file that is no mesh' if total == 1 else 'files that are no meshes'}: {kinds}"
+    )
 
 
 def matches(path: Path) -> list[Path]:
@@ -39,14 +148,6 @@ def matches(path: Path) -> list[Path]:
     if not found:
         raise FormatError(f"{text}: no file matches this pattern.", "unreadable")
     return [Path(name) for name in found]
-
-
-def _all_matches(
-    context: click.Context, option: click.Parameter, values: tuple[Path, ...]
-) -> tuple[Path, ...]:
-    if context.resilient_parsing:
-        return values
-    return tuple(path for value in values for path in matches(value))
 
 
 def _only_match(context: click.Context, option: click.Parameter, value: Path | None) -> Path | None:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,6 +14,33 @@ from ..inputs.lengths import MILLIMETRES, as_length
 from ..inputs.scripts import STREAMED, SUFFIXES
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
+
+
+class Further(click.Option):
+    """An option that few need, which the help lists in its second part."""
+
+
+class Verb(click.Command):
+    """A verb whose help has its options in two parts."""
+
+    def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what most need first, then the rest."""
+        options = [one for one in self.get_params(ctx) if isinstance(one, click.Option)]
+        for title, is_further in (("Options", False), ("More options", True)):
+            chosen = [one for one in options if isinstance(one, Further) == is_further]
+            records = [record for one in chosen if (record := one.get_help_record(ctx))]
+            if records:
+                with formatter.section(title):
+                    formatter.write_dl(records)
+
+
+def verb(name: str, **settings: Any) -> Callable[[Callable[..., Any]], Verb]:
+    """Make a verb of a function, as `click.command` does."""
+    return click.command(name, cls=Verb, **settings)
+
+
+#: Makes an option that few need.
+further = partial(click.option, cls=Further)
 
 
 class FilePath(click.Path):
@@ -54,7 +82,7 @@ SECONDS = FiniteRange(0, MOST_SECONDS, min_open=True)
 #: Numbers of points to measure distances from; ten million take some seconds and a gigabyte.
 SAMPLES = click.IntRange(0, 10_000_000)
 
-_THREADS = click.option(
+_THREADS = further(
     "-j",
     "--jobs",
     "--threads",
@@ -68,9 +96,9 @@ _THREADS = click.option(
 _COMMON = [
     click.option("--json", "as_json", is_flag=True, help="Print one JSON document instead."),
     _THREADS,
-    click.option("-q", "--quiet", is_flag=True, help="Say nothing but results and errors."),
-    click.option("-v", "--verbose", is_flag=True, help="Say more about what is done."),
-    click.option("--debug", is_flag=True, help="Show where an error comes from."),
+    further("-q", "--quiet", is_flag=True, help="Say nothing but results and errors."),
+    further("-v", "--verbose", is_flag=True, help="Say more about what is done."),
+    further("--debug", is_flag=True, help="Show where an error comes from."),
 ]
 
 
@@ -103,7 +131,7 @@ def _as_suffix(context: click.Context, option: click.Parameter, value: str | Non
 
 
 _READING = [
-    click.option(
+    further(
         "--from",
         "from_format",
         metavar="FORMAT",
@@ -119,13 +147,13 @@ _READING = [
 ]
 
 _SETS = [
-    click.option(
+    further(
         "--winding",
         type=click.Choice(["positive", "nonzero", "even-odd"]),
         default="positive",
         help="Which winding numbers are inside a file that overlaps itself.",
     ),
-    click.option(
+    further(
         "--pitch",
         metavar="PITCH",
         type=click.IntRange(-MOST_PITCH, MOST_PITCH),
@@ -149,14 +177,14 @@ _WRITING = [
         shell_complete=_formats,
         help="Format of the output, e.g. ply.",
     ),
-    click.option("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
-    click.option(
+    further("--ascii", "text", is_flag=True, help="Write STL and PLY as text."),
+    further(
         "--digits",
         metavar="N",
         type=click.IntRange(1, 17),
         help="Significant digits of coordinates; by default as many as give the same doubles.",
     ),
-    click.option(
+    further(
         "--overwrite/--no-overwrite",
         default=True,
         help="Whether to replace a file that is there (default).",
@@ -189,11 +217,26 @@ _MAYBE_OUTPUT = click.option(
     " shows the result.",
 )
 
+_ONE_BY_ONE = [
+    click.option(
+        "-o",
+        "--output",
+        "target",
+        metavar="FILE",
+        type=PATH,
+        help="File to write; with several inputs, % stands for the name of each.",
+    ),
+    click.option(
+        "--outdir",
+        metavar="FOLDER",
+        type=PATH,
+        help="Folder for the files, under their own names; it is made if it is not there.",
+    ),
+]
+
 OVERWRITE = _WRITING[-1]
 
-ALLOW_EMPTY = click.option(
-    "--allow-empty", is_flag=True, help="Write a file even if nothing is left."
-)
+ALLOW_EMPTY = further("--allow-empty", is_flag=True, help="Write a file even if nothing is left.")
 
 #: The depths to which the result is compared with manifold3d's.
 _CHECKS = ("quick", "full", "off")
@@ -201,7 +244,7 @@ _CHECKS = ("quick", "full", "off")
 
 def check_depth(command: _Command) -> _Command:
     """Add the options that say how a result is compared with manifold3d's."""
-    leave_out = click.option(
+    leave_out = further(
         "--no-validate", "--no-check", "check", flag_value="off", help="The same as --check=off."
     )
     compare = click.option(
@@ -234,7 +277,7 @@ TIMEOUT = click.option(
     help="Seconds to give it.",
 )
 
-PORT = click.option(
+PORT = further(
     "--port",
     metavar="N",
     type=click.IntRange(0, 65535),
@@ -317,6 +360,11 @@ def sets(command: _Command) -> _Command:
 def writing(command: _Command) -> _Command:
     """Add the options of verbs that write meshes."""
     return _with(_WRITING, command)
+
+
+def one_by_one(command: _Command) -> _Command:
+    """Add the options of verbs that write a file for each that they read."""
+    return _with(_ONE_BY_ONE, command)
 
 
 def drawing(command: _Command) -> _Command:

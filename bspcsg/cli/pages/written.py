@@ -19,18 +19,19 @@ PAGE = click.option(
 )
 
 
-def refuse_page(path: Path) -> None:
-    """Refuse what can be known to be no page that can be written.
+def refuse_page(path: Path, *others: str) -> None:
+    """Refuse what can be known to be no page, or file of another ending, that can be written.
 
     Raises
     ------
     FormatError
-        If the name has another ending, or its folder cannot be written to.
+        If the name has no such ending, or its folder cannot be written to.
     """
     if is_dropped(path):
         return
-    if path.suffix.lower() not in _SUFFIXES:
-        raise FormatError(f"{shown(path)}: the name must end in .html.", "unknown_format")
+    if path.suffix.lower() not in (*_SUFFIXES, *others):
+        known = " or ".join([", ".join([".html", *others[:-1]]), *others[-1:]])
+        raise FormatError(f"{shown(path)}: the name must end in {known}.", "unknown_format")
     refuse_folder(path)
 
 

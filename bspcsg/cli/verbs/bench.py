@@ -13,7 +13,7 @@ from ...errors import FormatError
 from ..console import output, status
 from ..console.tables import table_text
 from ..inputs.files import STREAM, refuse_folder
-from ..options.shared import SECONDS, FilePath, FiniteRange
+from ..options.shared import SECONDS, FilePath, FiniteRange, further, verb
 
 if TYPE_CHECKING:
     from ...bench.runner import Settings
@@ -71,13 +71,13 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     return list(dict.fromkeys(value))
 
 
-@click.command("bench", short_help="Time set operations beside other engines.", epilog=_EPILOG)
+@verb("bench", short_help="Time set operations beside other engines.", epilog=_EPILOG)
 @click.argument(
     "cases", nargs=-1, callback=_as_cases, metavar="[CASE]...", shell_complete=_cases_from
 )
 @click.option("--list", "listed", is_flag=True, help="Name the cases and what each is to reach.")
 @click.option("--all", "everything", is_flag=True, help="All cases: an hour or more.")
-@click.option("--cliffs", is_flag=True, help="Only dense places, each at two sizes.")
+@further("--cliffs", is_flag=True, help="Only dense places, each at two sizes.")
 @click.option(
     "--against",
     "engines",
@@ -94,13 +94,13 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     help="Timed runs of each engine, after one that warms up.",
 )
 @click.option("--quick", is_flag=True, help="Small forms of the cases, in seconds.")
-@click.option(
+@further(
     "--limit",
     metavar="SECONDS",
     type=SECONDS,
     help="Seconds after which a call is stopped; by default 120 to 900.",
 )
-@click.option(
+@further(
     "--budget",
     metavar="SECONDS",
     type=SECONDS,
@@ -108,13 +108,13 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="Seconds for all runs of an engine; slow ones are timed fewer times.",
 )
-@click.option(
+@further(
     "--steps",
     metavar="N",
     type=click.IntRange(1),
     help="Steps of the dome that are carved; by default all.",
 )
-@click.option(
+@further(
     "--memory",
     "memory_gb",
     metavar="GIB",
@@ -123,7 +123,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="GiB of addresses beyond which an engine gets none; 0 for no bound.",
 )
-@click.option(
+@further(
     "--data",
     "shared",
     metavar="FOLDER",
@@ -132,7 +132,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="Folder with meshes/ and chains/; cases that need them are left out without.",
 )
-@click.option("--core", type=_PATH, help="Measure with another build of the compiled core.")
+@further("--core", type=_PATH, help="Measure with another build of the compiled core.")
 @click.option(
     "-o",
     "--output",
@@ -141,14 +141,14 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     type=_PATH,
     help="Write the record there.",
 )
-@click.option(
+@further(
     "--continue",
     "continued",
     is_flag=True,
     help="Keep what the record of -o has, and measure what it lacks and what is named.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print the record instead of a table.")
-@click.option("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
+@further("--plot", "plot_path", type=_PATH, help="Draw time against size, as SVG.")
 @click.option("--from", "source", type=_PATH, help="Measure nothing; show this record.")
 @click.option(
     "--format",
@@ -158,12 +158,12 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     show_default=True,
     help="How the table is printed.",
 )
-@click.option(
+@further(
     "--details", is_flag=True, help="Print first and later times, page faults and memory, too."
 )
-@click.option("--counters", is_flag=True, help="Print what our core counted, too.")
-@click.option("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
-@click.option("--debug", is_flag=True, help="Show where an error comes from.")
+@further("--counters", is_flag=True, help="Print what our core counted, too.")
+@further("-q", "--quiet", is_flag=True, help="Do not say what is under way.")
+@further("--debug", is_flag=True, help="Show where an error comes from.")
 def bench(
     cases: list[str], listed: bool, everything: bool, cliffs: bool, continued: bool, **given: Any
 ) -> int:

@@ -11,7 +11,7 @@ from ..console.tables import table_text
 from ..inputs.files import STREAM, Inputs, shown
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..options.patterns import files_argument
-from ..options.shared import common, reading, sets
+from ..options.shared import common, reading, sets, verb
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +31,7 @@ Examples:
 """
 
 
-@click.command("clash", short_help="Say which parts are in each other's way.", epilog=_EPILOG)
+@verb("clash", short_help="Say which parts are in each other's way.", epilog=_EPILOG)
 @files_argument("A [B ...]")
 @click.option(
     "--clearance",

@@ -8,7 +8,7 @@ import click
 
 from ..job import Job
 from ..options.patterns import files_argument
-from ..options.shared import from_files
+from ..options.shared import from_files, verb
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -38,7 +38,7 @@ def _verb(op: str) -> click.Command:
         return _Named(op, **given).run()
 
     epilog = f"\b\nExample:\n  {_EXAMPLES[op]}"
-    return click.command(op, help=_HELP[op], epilog=epilog)(run)
+    return verb(op, help=_HELP[op], epilog=epilog)(run)
 
 
 class _Named(Job):

@@ -10,7 +10,7 @@ from ..console.output import Output, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, shown
 from ..options.patterns import file_argument
-from ..options.shared import SAMPLES, FiniteRange, common, reading, sets
+from ..options.shared import SAMPLES, FiniteRange, common, reading, sets, verb
 from ..pages.written import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
@@ -24,9 +24,7 @@ Examples:
 """
 
 
-@click.command(
-    "compare", short_help="Say whether two files hold the same set of points.", epilog=_EPILOG
-)
+@verb("compare", short_help="Say whether two files hold the same set of points.", epilog=_EPILOG)
 @file_argument("A", "a")
 @file_argument("B", "b")
 @click.option(

@@ -1,22 +1,20 @@
 """The verb that changes formats: convert."""
 
-import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import click
 
-from ...errors import BspcsgError, Finding
-from ..console import output, status, terminal
+from ...errors import Finding
+from ..batch import each, targets_of
+from ..console import output
 from ..console.output import Output, counted
-from ..inputs.files import STREAM, Inputs, Target, expanded, is_dropped, make_folder, shown
+from ..inputs.files import Inputs, Target, make_folder, shown
 from ..inputs.lengths import MILLIMETRES
 from ..options.patterns import files_argument
-from ..options.shared import PATH, SIMPLIFY, common, reading, writing
+from ..options.shared import SIMPLIFY, common, one_by_one, reading, verb, writing
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -25,30 +23,14 @@ if TYPE_CHECKING:
 _EPILOG = """\b
 Examples:
   bspcsg convert part.3mf -o part.ply --fail-on-loss
-  bspcsg convert parts/*.stl --to glb --outdir web
+  bspcsg convert parts/ --to glb --outdir web
   bspcsg convert part.stl --unit in --to-unit cm -o part-cm.ply
 """
 
-#: Files from which on a bar shows how far it is.
-_MANY = 4
 
-
-@click.command("convert", epilog=_EPILOG)
-@files_argument("IN [...]")
-@click.option(
-    "-o",
-    "--output",
-    "target",
-    metavar="FILE",
-    type=PATH,
-    help="File to write; with several inputs, % stands for the name of each.",
-)
-@click.option(
-    "--outdir",
-    metavar="FOLDER",
-    type=PATH,
-    help="Folder for the files, with --to; it is made if it is not there.",
-)
+@verb("convert", epilog=_EPILOG)
+@files_argument("FILE|FOLDER [...]")
+@one_by_one
 @writing
 @SIMPLIFY
 @click.option(
@@ -90,7 +72,7 @@ class _Conversion:
         self._outdir = outdir
         self._pairs = [
             (path, Target.of(where, settings))
-            for path, where in _targets(files, target, outdir, settings["to_format"])
+            for path, where in targets_of(files, target, outdir, settings["to_format"])
         ]
         self._out = Output.of(settings, any(where.is_stream for _, where in self._pairs))
         self._inputs = Inputs.of(self._out, settings)
@@ -98,22 +80,7 @@ class _Conversion:
 
     def run(self) -> int:
         self._refuse_early()
-        documents, code = [], output.DONE
-        with _progress(self._pairs, self._out) as pairs:
-            for path, target in pairs:
-                try:
-                    document, lost = self._converted(path, target)
-                except BspcsgError as error:
-                    if len(self._pairs) == 1:
-                        raise
-                    # One bad file of many does not keep the others.
-                    found = output.exit_code_of(error)
-                    terminal.say_error(error.message)
-                    document, lost = {"file": str(path), "error": output.error_values(error)}, False
-                    code = max(code, found)
-                documents.append(document)
-                if lost and self._settings["fail_on_loss"]:
-                    code = max(code, output.FOUND)
+        documents, code = each(self._pairs, self._out, self._converted, "converting")
         if self._out.as_json:
             self._out.result("", {"files": documents})
         return code
@@ -136,8 +103,8 @@ class _Conversion:
             said = f"{target.suffix.removeprefix('.').upper()} files state their unit"
             raise click.UsageError(f"--to-unit: {said}, and need no other.")
 
-    def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], bool]:
-        """Convert one file; return what happened to it, and whether anything was lost."""
+    def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], int]:
+        """Convert one file; return what happened to it, and the exit code."""
         from ...formats.files import decoded, encoded
         from ...verify.roundtrip import losses_between
 
@@ -173,7 +140,8 @@ class _Conversion:
             "lost": lost.to_dict(),
             "seconds": round(seconds, 4),
         }
-        return document, lost.any
+        is_bad = lost.any and self._settings["fail_on_loss"]
+        return document, output.FOUND if is_bad else output.DONE
 
     def _simplified(self, raw: "RawMesh", path: Path) -> "RawMesh":
         """Return a mesh without short edges and slivers, of one object and without attributes."""
@@ -223,60 +191,3 @@ def _line(raw: "RawMesh", target: Target, lost: "Losses", seconds: float) -> str
         f"{shown(target.path)}  {counted(len(raw.faces), 'triangle')}"
         f"  {'lost: ' + words if words else 'nothing lost'}  {seconds:.2f} s"
     )
-
-
-def _targets(
-    files: tuple[Path, ...], target: Path | None, outdir: Path | None, suffix: str | None
-) -> list[tuple[Path, Path]]:
-    """Return each file with where it goes."""
-    if (target is None) == (outdir is None):
-        raise click.UsageError("say where to write: either -o FILE or --outdir DIR.")
-    if outdir is not None:
-        if suffix is None:
-            raise click.UsageError("--outdir needs the format: --to glb.")
-        pairs = [(path, outdir / f"{_stem(path)}{suffix}") for path in files]
-    elif len(files) == 1 or target is None:
-        return [(files[0], target or Path(STREAM))]
-    elif is_dropped(target):
-        return [(path, target) for path in files]
-    elif "%" not in target.name:
-        raise click.UsageError(
-            "for several inputs, -o needs a % for their names, as in 'web/%.glb'."
-        )
-    else:
-        pairs = [(path, expanded(target, _stem(path))) for path in files]
-    _refuse_twins(pairs)
-    return pairs
-
-
-def _stem(path: Path) -> str:
-    return "stdin" if str(path) == STREAM else path.stem
-
-
-def _refuse_twins(pairs: list[tuple[Path, Path]]) -> None:
-    seen: dict[Path, Path] = {}
-    inputs = {path.resolve(): path for path, _ in pairs if str(path) != STREAM}
-    for path, where in pairs:
-        other = inputs.get(where.resolve(), path)
-        if other.resolve() != path.resolve():
-            raise click.UsageError(f"{path} would be written to {where}, which is an input, too.")
-        if where in seen:
-            raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
-        seen[where] = path
-
-
-@contextmanager
-def _progress(
-    pairs: list[tuple[Path, Target]], out: Output
-) -> Iterator[Iterator[tuple[Path, Target]]]:
-    """Yield the pairs, under a bar on the terminal if there are many."""
-    if len(pairs) < _MANY or not sys.stderr.isatty() or out.verbosity < 0:
-        yield iter(pairs)
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
-
-    status.end()
-    columns = ("converting", BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        yield iter(bar.track(pairs))

@@ -9,14 +9,12 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from typing import Any
 
-import click
-
 from ..._core import __version__
 from ...machine import system
 from ..console import output
 from ..console.output import Output
 from ..console.tables import table_text
-from ..options.shared import common
+from ..options.shared import common, verb
 
 _EPILOG = """\b
 Example:
@@ -32,7 +30,7 @@ _REQUIRED = {
     "pillow": "PNG pictures",
     "pyclipper": "offsets",
     "rich": "tables",
-    "rtree": "distances in compare and validate",
+    "rtree": "distances in compare and crosscheck",
     "svgelements": "reading SVG files",
     "uharfbuzz": "text",
 }
@@ -42,14 +40,14 @@ _OPTIONAL = (
     ("pymeshlab", "repair", "repair"),
     ("meshio", "VTK and VTU files", "vtk"),
     ("trimesh", "the trimesh engine, to_trimesh, meshes of bench", "trimesh"),
-    ("distributed", "validate on a cluster", "cluster"),
+    ("distributed", "crosscheck on a cluster", "cluster"),
 )
 
 #: Names under which packages are imported that are called otherwise.
 _MODULES = {"pillow": "PIL"}
 
 #: Optional programs, what each is for, and how to install it.
-_PROGRAMS = (("openscad", ".scad files, validate", "apt-get install openscad"),)
+_PROGRAMS = (("openscad", ".scad files, crosscheck", "apt-get install openscad"),)
 
 #: Seconds to wait for a program that says its version or loads its plug-ins.
 _PATIENCE = 30
@@ -79,9 +77,7 @@ class _Part:
     required: bool = False
 
 
-@click.command(
-    "doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG
-)
+@verb("doctor", short_help="Say what is installed, and how to get the rest.", epilog=_EPILOG)
 @common
 def doctor(**given: Any) -> int:
     """Say which parts are installed, and how to get those that are not.

@@ -10,7 +10,7 @@ from ...errors import BspcsgError
 from ..job import Job
 from ..options.formula import File, Formula, FormulaError, evaluated, files_of, parse, subtracted
 from ..options.patterns import matches
-from ..options.shared import from_files
+from ..options.shared import from_files, verb
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -33,7 +33,7 @@ Example:
 """
 
 
-@click.command("eval", help=_HELP, epilog=_EPILOG)
+@verb("eval", help=_HELP, epilog=_EPILOG)
 @click.argument("formula")
 @from_files
 def evaluate(formula: str, **given: Any) -> int:

@@ -10,7 +10,7 @@ from ..console.output import Output
 from ..inputs.files import Inputs, Target, expanded, is_dropped, refuse_inputs, shown
 from ..job import mesh_values, summary
 from ..options.patterns import files_argument
-from ..options.shared import PATH, common, reading, sets, writing
+from ..options.shared import PATH, common, reading, sets, verb, writing
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
@@ -21,9 +21,7 @@ Example:
 """
 
 
-@click.command(
-    "explode", short_help="Write each connected part of files to its own.", epilog=_EPILOG
-)
+@verb("explode", short_help="Write each connected part of files to its own.", epilog=_EPILOG)
 @files_argument("A [B ...]")
 @click.option(
     "-o",

@@ -3,15 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-
 from ...errors import BspcsgError
 from ..console import output, terminal
 from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, shown
 from ..options.patterns import files_argument
-from ..options.shared import common, reading
+from ..options.shared import common, reading, verb
 
 if TYPE_CHECKING:
     from ...formats.raw import RawMesh
@@ -20,14 +18,14 @@ if TYPE_CHECKING:
 _EPILOG = """\b
 Examples:
   bspcsg info part.3mf
-  bspcsg info parts/*.stl --json | jq '.files[].volume'
+  bspcsg info parts/ --json | jq '.files[].volume'
 """
 
 
-@click.command(
+@verb(
     "info", short_help="Say what is in each file: counts, size, volume, findings.", epilog=_EPILOG
 )
-@files_argument("FILE [...]")
+@files_argument("FILE|FOLDER [...]")
 @reading
 @common
 def info(files: tuple[Path, ...], **given: Any) -> int:
@@ -80,11 +78,11 @@ class _Entry:
 
 
 def _described(inputs: Inputs, path: Path) -> _Entry:
-    from ...repair.diagnosis import diagnose
+    from ...assembly.examining import examine
 
     try:
         raw = inputs.raw(path)
-        return _Entry(path, (raw, diagnose(raw)))
+        return _Entry(path, (raw, examine(raw).found))
     except BspcsgError as error:
         return _Entry(path, error=error)
 

@@ -8,7 +8,7 @@ import click
 from ..console import output
 from ..console.output import Output
 from ..inputs.files import shown
-from ..options.shared import FilePath, common
+from ..options.shared import FilePath, common, verb
 from ..pages.written import refuse_page, write_page
 
 _EPILOG = """\b
@@ -17,9 +17,7 @@ Example:
 """
 
 
-@click.command(
-    "lecture", short_help="Write the interactive lecture on partition trees.", epilog=_EPILOG
-)
+@verb("lecture", short_help="Write the interactive lecture on partition trees.", epilog=_EPILOG)
 @click.option(
     "-o",
     "--output",

@@ -9,7 +9,7 @@ import click
 from ..inputs.lengths import as_length
 from ..job import Job
 from ..options.patterns import file_argument, files_argument
-from ..options.shared import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, writing
+from ..options.shared import ALLOW_EMPTY, OUTPUT, SIMPLIFY, common, reading, sets, verb, writing
 
 if TYPE_CHECKING:
     from ...solid.solid import Solid
@@ -25,9 +25,7 @@ Example:
 """
 
 
-@click.command(
-    "hull", short_help="Write the convex hull of all files together.", epilog=_HULL_EPILOG
-)
+@verb("hull", short_help="Write the convex hull of all files together.", epilog=_HULL_EPILOG)
 @files_argument("A [B ...]")
 @OUTPUT
 @writing
@@ -44,7 +42,7 @@ def hull(files: tuple[Path, ...], **given: Any) -> int:
     return _Hull(files, **given).run()
 
 
-@click.command(
+@verb(
     "simplify", short_help="Write a solid without short edges and slivers.", epilog=_SIMPLIFY_EPILOG
 )
 @file_argument()

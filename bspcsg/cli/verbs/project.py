@@ -3,14 +3,12 @@
 from pathlib import Path
 from typing import Any
 
-import click
-
 from ..console import output
 from ..console.output import counted
 from ..drawing import Drawing
 from ..inputs.files import shown
 from ..options.patterns import file_argument
-from ..options.shared import common, drawing, reading, sets
+from ..options.shared import common, drawing, reading, sets, verb
 
 _EPILOG = """\b
 Example:
@@ -20,9 +18,7 @@ Example:
 _SUFFIXES = (".svg", ".dxf")
 
 
-@click.command(
-    "project", short_help="Write the outline of a solid seen from above.", epilog=_EPILOG
-)
+@verb("project", short_help="Write the outline of a solid seen from above.", epilog=_EPILOG)
 @file_argument()
 @drawing
 @reading

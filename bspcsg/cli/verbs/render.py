@@ -11,7 +11,7 @@ from ..console.output import counted
 from ..drawing import Drawing
 from ..options.camera import camera_of, refuse_contradictions, seeing
 from ..options.patterns import files_argument
-from ..options.shared import SECONDS, common, drawing, is_given, numbers, reading
+from ..options.shared import SECONDS, common, drawing, further, is_given, numbers, reading, verb
 from ..pages.seen import layers_of
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
     return any(paint.name == word for layer in layers for paint in layer.paints)
 
 
-@click.command("render", short_help="Write a picture of meshes.", epilog=_EPILOG)
+@verb("render", short_help="Write a picture of meshes.", epilog=_EPILOG)
 @files_argument("FILE [...]")
 @drawing
 @seeing
@@ -141,7 +141,7 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
     callback=_as_colour,
     help="A colour like orange or '#3070b0', or none for transparent.",
 )
-@click.option(
+@further(
     "--frames",
     metavar="N",
     type=click.IntRange(2, _MOST_FRAMES),
@@ -149,7 +149,7 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
     show_default=True,
     help="Pictures of one turn around z, in a GIF.",
 )
-@click.option(
+@further(
     "--seconds",
     metavar="T",
     type=SECONDS,

@@ -5,21 +5,22 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..batch import each, targets_of
 from ..console import output
 from ..console.output import Output, counted, grouped
 from ..console.tables import table_text
-from ..inputs.files import Inputs, Target, shown
-from ..options.patterns import file_argument
-from ..options.shared import OUTPUT, TIMEOUT, FiniteRange, common, reading, writing
+from ..inputs.files import Inputs, Target, make_folder, shown
+from ..options.patterns import files_argument
+from ..options.shared import TIMEOUT, FiniteRange, common, one_by_one, reading, verb, writing
 
 if TYPE_CHECKING:
-    from ...errors import Finding
     from ...repair.diagnosis import Diagnosis
     from ...repair.repair import Repair
 
 _EPILOG = """\b
-Example:
+Examples:
   bspcsg repair scan.stl -o closed.ply
+  bspcsg repair scans/ --outdir closed
 """
 
 #: Kinds of findings with what to call them in the table.
@@ -32,14 +33,14 @@ _DEFECTS = {
 }
 
 
-@click.command("repair", short_help="Close and orient a mesh with pymeshlab.", epilog=_EPILOG)
-@file_argument()
-@OUTPUT
+@verb("repair", short_help="Close and orient meshes with pymeshlab.", epilog=_EPILOG)
+@files_argument("FILE|FOLDER [...]")
+@one_by_one
 @writing
 @click.option(
     "--steps",
     metavar="STEPS",
-    default="weld,dedup,split,orient,fill",
+    default="weld,dedup,drop,split,orient,fill",
     show_default=True,
     help="Which steps to take, apart by commas.",
 )
@@ -61,51 +62,89 @@ _DEFECTS = {
 @TIMEOUT
 @reading
 @common
-def repair(file: Path, target: Path, **given: Any) -> int:
-    """Close and orient a mesh with pymeshlab, and say what changed.
+def repair(files: tuple[Path, ...], target: Path | None, outdir: Path | None, **given: Any) -> int:
+    """Close and orient meshes with pymeshlab, and say what changed.
 
-    The steps: weld joins vertices; dedup drops repeated and flat triangles; split takes edges with
-    more than two triangles apart; orient turns triangles the same way round; fill closes holes.
-    The file is written even if it still is no solid; then the exit code is 1. The names of several
-    objects and all attributes, such as colours, are lost, which is said.
+    The steps: weld joins vertices; dedup drops repeated and flat triangles; drop takes away stray
+    fragments, which bound nothing, such as a loose triangle beside a closed shell; split takes
+    edges with more than two triangles apart; orient turns triangles the same way round; fill closes
+    holes. Of a file with several objects each is repaired by itself, if something is wrong with it.
+    The file is written even if it still is no solid; then the exit code is 1. Attributes, such as
+    colours, are lost, which is said.
     """
-    return _Repairing(file, target, **given).run()
+    return _Repairing(files, target, outdir, **given).run()
 
 
 class _Repairing:
-    """One file, before and after."""
+    """Some files, each before and after."""
 
-    def __init__(self, file: Path, target: Path, **settings: Any) -> None:
-        self._file = file
-        self._target = Target.of(target, settings)
+    def __init__(
+        self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
+    ) -> None:
         self._settings = settings
-        self._out = Output.of(settings, self._target.is_stream)
+        self._outdir = outdir
+        to_format = settings["to_format"]
+        self._pairs = [
+            (path, Target.of(where, settings))
+            for path, where in targets_of(files, target, outdir, to_format, keeps_format=True)
+        ]
+        self._out = Output.of(settings, any(where.is_stream for _, where in self._pairs))
         self._inputs = Inputs.of(self._out, settings)
+        self._is_single = len(self._pairs) == 1 and outdir is None
 
     def run(self) -> int:
         from ...parameters import set_threads
-        from ...repair.diagnosis import diagnose
-        from ...repair.repair import repair as repaired
 
         set_threads(self._settings["threads"])
         steps = self._steps()
-        self._target.refuse_early(self._out.as_json)
-        self._inputs.refuse_early([self._file])
-        raw = self._inputs.raw(self._file)
-        limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
-        self._inputs.tell(self._file, raw.findings)
+        self._inputs.refuse_early([path for path, _ in self._pairs])
+        if self._outdir is not None:
+            make_folder(self._outdir)
+        for _, target in self._pairs:
+            target.refuse_early(self._out.as_json)
+
+        def doing(path: Path, target: Target) -> tuple[dict[str, Any], int]:
+            return self._repaired(path, target, steps)
+
+        documents, code = each(self._pairs, self._out, doing, "repairing")
+        if self._out.as_json:
+            self._out.result("", documents[0] if self._is_single else {"files": documents})
+        return code
+
+    def _repaired(self, path: Path, target: Target, steps: list[str]) -> tuple[dict[str, Any], int]:
+        """Repair one file; return what happened to it, and the exit code."""
+        from ...assembly.examining import examine
+        from ...assembly.mending import mended_as_found
+
+        raw = self._inputs.raw(path)
+        self._inputs.tell(path, raw.findings)
         if len(raw.faces) == 0:
-            message = f"{shown(self._file)}: there is nothing in it, so nothing was written."
+            message = f"{shown(path)}: there is nothing in it, so nothing was written."
             raise output.EmptyResultError(message, "empty_result")
-        before = diagnose(raw)
-        made = repaired(raw, steps, **limits)
-        after = diagnose(self._target.rounded(made.mesh)[0])
-        lost = self._target.write(made.mesh)
-        self._inputs.tell(self._file, made.lost)
+        before = examine(raw)
+        limits = {name: self._settings[name] for name in ("weld", "max_hole", "timeout")}
+        made = mended_as_found(before, steps=steps, **limits)
+        after = examine(target.rounded(made.mesh)[0]).found
+        lost = target.write(made.mesh)
+        self._inputs.tell(path, made.lost)
         for finding in lost:
-            self._out.finding(shown(self._target.path), finding)
-        self._tell(before, after, made, (*raw.findings, *made.lost, *lost))
-        return output.DONE if after.is_solid else output.FOUND
+            self._out.finding(shown(target.path), finding)
+        for step, reason in made.failed.items():
+            self._out.warning(f"{shown(path)}: the step {step} could not be taken: {reason}")
+        if not self._out.as_json:
+            text = _text if self._is_single else _line
+            self._out.result(text(before.found, after, made, target), {})
+        document = {
+            "file": str(path),
+            "output": str(target.path),
+            "before": before.found.to_dict(),
+            "after": after.to_dict(),
+            "steps_failed": made.failed,
+            "turned": made.turned,
+            "dropped": made.dropped,
+            "findings": output.finding_values((*raw.findings, *made.lost, *lost)),
+        }
+        return document, output.DONE if after.is_solid else output.FOUND
 
     def _steps(self) -> list[str]:
         from ...repair.repair import STEPS
@@ -119,34 +158,28 @@ class _Repairing:
             raise click.UsageError(f"--steps needs at least one of {', '.join(STEPS)}.")
         return steps
 
-    def _tell(
-        self,
-        before: "Diagnosis",
-        after: "Diagnosis",
-        made: "Repair",
-        findings: "tuple[Finding, ...]",
-    ) -> None:
-        for step, reason in made.failed.items():
-            self._out.warning(f"the step {step} could not be taken: {reason}")
-        document = {
-            "file": str(self._file),
-            "output": str(self._target.path),
-            "before": before.to_dict(),
-            "after": after.to_dict(),
-            "steps_failed": made.failed,
-            "turned": made.turned,
-            "findings": output.finding_values(findings),
-        }
-        self._out.result(self._text(before, after, made), document)
 
-    def _text(self, before: "Diagnosis", after: "Diagnosis", made: "Repair") -> str:
-        rows = [(name, *pair) for name, *pair in _rows(before, after)]
-        lines = [table_text(("", "before", "after"), rows, right=("before", "after"))]
-        if made.turned:
-            lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were turned round.")
-        told = "a solid" if after.is_solid else f"still no solid: {after.verdict}"
-        lines.append(f"{shown(self._target.path)}: {told}")
-        return "\n".join(lines)
+def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
+    """Return a table of what was there before and after."""
+    rows = [(name, *pair) for name, *pair in _rows(before, after)]
+    lines = [table_text(("", "before", "after"), rows, right=("before", "after"))]
+    if made.turned:
+        lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were turned round.")
+    if made.dropped:
+        lines.append(f"{counted(made.dropped, 'triangle')} of stray fragments were dropped.")
+    return "\n".join([*lines, f"{shown(target.path)}: {_verdict(after)}"])
+
+
+def _line(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
+    """Return the same in a line."""
+    words = [f"{counted(before.triangles, 'triangle')} became {grouped(after.triangles)}"]
+    words += [f"{grouped(made.turned)} turned round"] if made.turned else []
+    words += [f"{grouped(made.dropped)} stray ones dropped"] if made.dropped else []
+    return f"{shown(target.path)}: {_verdict(after)}; {', '.join(words)}"
+
+
+def _verdict(after: "Diagnosis") -> str:
+    return "a solid" if after.is_solid else f"still no solid: {after.verdict}"
 
 
 def _rows(before: "Diagnosis", after: "Diagnosis") -> list[tuple[str, str, str]]:

@@ -12,7 +12,7 @@ from ..console import clock, output, standard, status
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_among, is_dropped, refuse_folder, shown
 from ..options.patterns import files_argument
-from ..options.shared import PATH, common
+from ..options.shared import PATH, common, verb
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,10 +30,8 @@ _SUFFIXES = {".html": "html", ".htm": "html", ".md": "md", ".json": "json", ".xm
 _FORMATS = ("html", "md", "json", "junit")
 
 
-@click.command(
-    "report", short_help="Make a page, or JUnit, of what validate found.", epilog=_EPILOG
-)
-@files_argument("RESULTS.jsonl [...]")
+@verb("report", short_help="Make a page, or JUnit, of what crosscheck found.", epilog=_EPILOG)
+@files_argument("RESULTS.jsonl [...]", opens=False, also=(".jsonl",))
 @click.option(
     "-o",
     "--output",
@@ -62,7 +60,7 @@ _FORMATS = ("html", "md", "json", "junit")
 )
 @common
 def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
-    """Make one page of the results of bspcsg validate; nothing is computed again.
+    """Make one page of the results of bspcsg crosscheck; nothing is computed again.
 
     Several files, such as the shards of one campaign, become one report; their order does not
     matter. The page is one file that needs no network: a table to sort and filter, and pictures and

@@ -15,7 +15,16 @@ from ..inputs.files import ON_INVALID, STREAM, shown, stream_text
 from ..inputs.scripts import SUFFIXES, made_by
 from ..job import Job
 from ..options.patterns import file_argument
-from ..options.shared import PORT, TIMEOUT, FilePath, common, is_given, making_or_showing
+from ..options.shared import (
+    PORT,
+    TIMEOUT,
+    FilePath,
+    common,
+    further,
+    is_given,
+    making_or_showing,
+    verb,
+)
 from ..pages.watching import NOWHERE, Watching
 
 if TYPE_CHECKING:
@@ -94,9 +103,7 @@ _NOT_FOR = {
 _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
 
 
-@click.command(
-    "run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG
-)
+@verb("run", short_help="Write the solid that an OpenSCAD or Python script makes.", epilog=_EPILOG)
 @file_argument("SCRIPT", "script")
 @click.option(
     "-D",
@@ -107,7 +114,7 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     help="Set a variable of a .scad or .py script, in place of what it assigns at its top level: a"
     " number, text, true, false or [list]; can be repeated.",
 )
-@click.option(
+@further(
     "--list-nodes",
     is_flag=True,
     is_eager=True,
@@ -127,13 +134,13 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     show_default=True,
     help="Refuse meshes that are not closed, leave them out, or close them; not for Python.",
 )
-@click.option(
+@further(
     "--lenient",
     is_flag=True,
     help="Leave out what cannot be made or is not closed, with a warning that names its place; not"
     " for Python.",
 )
-@click.option(
+@further(
     "--allow-path",
     "allow_paths",
     metavar="DIR",
@@ -151,9 +158,7 @@ _SPELLED = {"defines": "-D", "allow_paths": "--allow-path"}
     is_flag=True,
     help="Show the result in a browser, in a page that follows it, until Ctrl-C.",
 )
-@click.option(
-    "--open/--no-open", "opens", default=True, help="Open that page in a browser (default)."
-)
+@further("--open/--no-open", "opens", default=True, help="Open that page in a browser (default).")
 @PORT
 @TIMEOUT
 @making_or_showing

@@ -12,7 +12,7 @@ from ..console.output import counted
 from ..drawing import Drawing
 from ..inputs.files import shown
 from ..options.patterns import file_argument
-from ..options.shared import common, drawing, numbers, reading, sets
+from ..options.shared import common, drawing, numbers, reading, sets, verb
 
 _EPILOG = """\b
 Example:
@@ -32,7 +32,7 @@ def _as_finite(
     return value
 
 
-@click.command("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
+@verb("slice", short_help="Write the section of a solid by a plane.", epilog=_EPILOG)
 @file_argument()
 @drawing
 @click.option(

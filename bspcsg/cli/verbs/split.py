@@ -12,7 +12,17 @@ from ..console.output import Output
 from ..inputs.files import Inputs, Target, expanded, refuse_inputs, shown
 from ..job import mesh_values, summary
 from ..options.patterns import file_argument
-from ..options.shared import PATH, SIMPLIFY, check_depth, common, numbers, reading, sets, writing
+from ..options.shared import (
+    PATH,
+    SIMPLIFY,
+    check_depth,
+    common,
+    numbers,
+    reading,
+    sets,
+    verb,
+    writing,
+)
 
 if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
@@ -26,7 +36,7 @@ Examples:
 """
 
 
-@click.command(
+@verb(
     "split",
     short_help="Write the connected parts of a solid, or both sides of a cut.",
     epilog=_EPILOG,

@@ -13,7 +13,7 @@ from ..console import output
 from ..console.output import Output, counted
 from ..inputs.files import STREAM, is_dropped, put, refuse_unwritable, shown, stream_text
 from ..options.patterns import file_argument
-from ..options.shared import OVERWRITE, PATH, TIMEOUT, common
+from ..options.shared import OVERWRITE, PATH, TIMEOUT, common, verb
 
 if TYPE_CHECKING:
     from ...csg import CsgTree
@@ -37,7 +37,7 @@ _FORMS = {
 }
 
 
-@click.command("tree", short_help="Show or convert the tree of an OpenSCAD script.", epilog=_EPILOG)
+@verb("tree", short_help="Show or convert the tree of an OpenSCAD script.", epilog=_EPILOG)
 @file_argument()
 @click.option(
     "-o",

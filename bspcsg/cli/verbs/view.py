@@ -14,7 +14,7 @@ from ..console.output import Output, counted
 from ..console.screen import has_screen
 from ..inputs.files import STREAM, Inputs, is_dropped, shown
 from ..options.patterns import files_argument
-from ..options.shared import PORT, FilePath, common, is_given, reading
+from ..options.shared import PORT, FilePath, common, is_given, reading, verb
 from ..pages.seen import layers_of
 from ..pages.written import refuse_page, write_page
 
@@ -33,8 +33,8 @@ Examples:
 _LARGE = 20_000_000
 
 
-@click.command("view", short_help="Show meshes in a browser, as one page.", epilog=_EPILOG)
-@files_argument("FILE [...]")
+@verb("view", short_help="Show meshes in a browser, as one page.", epilog=_EPILOG)
+@files_argument("FILE [...]", opens=False)
 @click.option(
     "-o",
     "--output",

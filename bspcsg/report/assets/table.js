@@ -46,14 +46,14 @@
     let left = 0;
     for (const row of rows) {
       const hit = (!wanted.length || wanted.includes(text(row, verdicts)))
-        && (!operation.value || text(row, operations) === operation.value)
+        && (!operation?.value || text(row, operations) === operation.value)
         && asked.every((word) => sought.get(row).includes(word));
       row.hidden = !hit;
       left += hit;
       const card = row.dataset.card && document.getElementById(row.dataset.card);
       if (card) card.hidden = !hit;
     }
-    count.textContent = `${left} of ${rows.length} cases`;
+    count.textContent = `${left} of ${rows.length} ${table.dataset.of}`;
   }
 
   heads.forEach((head, index) => {
@@ -66,7 +66,7 @@
     });
   }
   words.addEventListener("input", filter);
-  operation.addEventListener("change", filter);
+  operation?.addEventListener("change", filter);
   document.getElementById("filters").addEventListener("reset", () => {
     chips.forEach((chip) => chip.setAttribute("aria-pressed", "false"));
     setTimeout(filter);

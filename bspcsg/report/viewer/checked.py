@@ -1,4 +1,4 @@
-"""The page of a mesh with what is wrong with it marked: holes, crossings, thin walls."""
+"""A mesh with what is wrong with it marked: holes, crossings, thin walls."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from ..._types import FloatArray, IndexArray
+from ...assembly.examining import Examination
 from ...formats.raw import RawMesh, compacted
 from ...repair.diagnosis import Diagnosis
 from ...repair.marks import Marks, marks_of
 from .landmark import Landmark
 from .layer import RESULT, Layer
 from .paint import THICKNESS, Scale
-from .parts import layers_of_file
+from .parts import layers_of_file, told_apart
 from .thickness import thickness
-from .view import view_page
 
 _RED, _VIOLET, _PINK, _ORANGE, _YELLOW = "#e0202f", "#8b3fd1", "#d13fa6", "#f08a24", "#d6b400"
 
@@ -25,22 +25,18 @@ _MOST = 30
 _BEHIND = 0.45
 
 
-def checked_page(raw: RawMesh, found: Diagnosis, name: str, thin: float | None = None) -> str:
-    """Return a page that shows a mesh and what a check has found in it.
+def marked(
+    raw: RawMesh, found: Diagnosis, thin: float | None = None
+) -> tuple[list[Layer], list[Landmark]]:
+    """Return what shows a mesh and what a check has found in it, and the places to look at.
 
     Parameters
     ----------
     raw : RawMesh
     found : Diagnosis
         Of that mesh.
-    name : str
     thin : float, optional
         Thickness in model units below which a wall is marked.
-
-    Raises
-    ------
-    MissingPartError
-        If Jinja2 is not installed.
     """
     marks = marks_of(raw)
     layers = list(_marked(marks))
@@ -55,8 +51,17 @@ def checked_page(raw: RawMesh, found: Diagnosis, name: str, thin: float | None =
         landmarks += _thinnest(marks, walls)
     if layers:
         mesh = replace(mesh, opacity=_BEHIND)
-    notes = [f"{found.verdict}", *(f"{one.severity}: {one.message}" for one in found.findings)]
-    return view_page([mesh, *layers], name, unit=raw.unit, landmarks=landmarks, notes=notes)
+    return [mesh, *layers], landmarks
+
+
+def assembled(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
+    """Return what shows the objects of a file together, and where they have volume in common."""
+    layers = told_apart(layers_of_file(whole.mesh, whole.mesh.name))
+    places = [
+        Landmark(f"clash: {one.first}, {one.second}", one.place, 2 * one.volume ** (1 / 3))
+        for one in whole.clashes[:_MOST]
+    ]
+    return layers, places
 
 
 def _marked(marks: Marks) -> Iterator[Layer]:

@@ -85,14 +85,19 @@ def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "
     return _painted([shape], camera_for([layer], size, view), size, edges=shape is layer)
 
 
-def ring(place: Sequence[float], camera: Camera, size: tuple[int, int] = (320, 240)) -> str:
-    """Return the address of an image with a red ring around a point, as the camera sees it."""
+def rings(
+    places: Sequence[Sequence[float]], camera: Camera, size: tuple[int, int] = (320, 240)
+) -> str:
+    """Return the address of an image with a red ring around each point, as the camera sees it."""
     width, height = size
-    (x, y), *_ = camera.flatten(camera.place(np.array([place]))) * (height / 2)
-    circle = f"<circle cx='{width / 2 + x:.1f}' cy='{height / 2 - y:.1f}' r='9'/>"
+    flat = camera.flatten(camera.place(np.array(places))) * (height / 2)
+    circles = "".join(
+        f"<circle cx='{width / 2 + x:.1f}' cy='{height / 2 - y:.1f}' r='9'/>"
+        for x, y in flat.tolist()
+    )
     return _vector(
         f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' fill='none'"
-        f" stroke='{DIFFERENCE}' stroke-width='2'>{circle}</svg>"
+        f" stroke='{DIFFERENCE}' stroke-width='2'>{circles}</svg>"
     )
 
 

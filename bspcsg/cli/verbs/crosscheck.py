@@ -1,4 +1,4 @@
-"""The verb that compares many results with other engines': validate."""
+"""The verb that compares many results with other engines': crosscheck."""
 
 import fnmatch
 import os
@@ -26,7 +26,7 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import SAMPLES, SECONDS, FilePath, telling
+from ..options.shared import SAMPLES, SECONDS, FilePath, further, telling, verb
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
@@ -36,9 +36,9 @@ if TYPE_CHECKING:
 
 _EPILOG = """\b
 Examples:
-  bspcsg validate a.stl b.stl
-  bspcsg validate parts/ --poses 500 --results r.jsonl --resume --junit j.xml
-  bspcsg validate model.csg cases.json --against pymeshlab,openscad
+  bspcsg crosscheck a.stl b.stl
+  bspcsg crosscheck parts/ --poses 500 --results r.jsonl --resume --junit j.xml
+  bspcsg crosscheck model.csg cases.json --against pymeshlab,openscad
 """
 
 #: Most failures that are named at the end; the results file has all.
@@ -50,8 +50,8 @@ _REASONS = 3
 _FILE = FilePath()
 
 
-@click.command("validate", short_help="Compare many results with other engines'.", epilog=_EPILOG)
-@files_argument("CASES...", "paths")
+@verb("crosscheck", short_help="Compare many results with other engines'.", epilog=_EPILOG)
+@files_argument("CASES...", "paths", also=(".csg",))
 @click.option(
     "--op",
     "operations",
@@ -65,7 +65,7 @@ _FILE = FilePath()
     type=click.IntRange(min=1),
     help="Draw so many pairs, half in random and half in coincident poses.",
 )
-@click.option(
+@further(
     "--pose",
     "pose",
     multiple=True,
@@ -74,16 +74,14 @@ _FILE = FilePath()
     help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw; may be"
     " repeated.",
 )
-@click.option(
-    "--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws."
-)
-@click.option(
+@further("--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws.")
+@further(
     "--max-triangles",
     metavar="N",
     type=click.IntRange(min=1),
     help="Leave larger files out; files that are no solids are left out of --poses too.",
 )
-@click.option("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
+@further("--only", metavar="PATTERN", help="Only cases whose names match, as in '*-union'.")
 @click.option(
     "--against",
     metavar="ENGINES",
@@ -95,9 +93,7 @@ _FILE = FilePath()
     "--results", metavar="FILE", type=_FILE, help="JSON lines to append each finished case to."
 )
 @click.option("--junit", metavar="FILE", type=_FILE, help="JUnit XML to write at the end.")
-@click.option(
-    "--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end."
-)
+@further("--markdown", metavar="FILE", type=_FILE, help="Markdown summary to write at the end.")
 @click.option(
     "-j",
     "--jobs",
@@ -114,7 +110,7 @@ _FILE = FilePath()
     show_default=True,
     help="Seconds for a case, after which its process is killed.",
 )
-@click.option(
+@further(
     "--memory",
     metavar="SIZE",
     default="4G",
@@ -122,18 +118,18 @@ _FILE = FilePath()
     callback=as_bytes,
     help="Memory for a case; 0 for no limit.",
 )
-@click.option("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
+@further("--shard", metavar="I/N", callback=as_shard, help="Only the I-th of N parts.")
 @click.option("--resume", is_flag=True, help="Leave out what the results file has already.")
-@click.option(
+@further(
     "--retry-crashed",
     "retry",
     is_flag=True,
     help="With --resume, run again what crashed, as where a worker was lost for want of memory.",
 )
-@click.option(
+@further(
     "--fail-fast/--keep-going", default=False, help="Stop at the first failure, or go on (default)."
 )
-@click.option(
+@further(
     "--keep-meshes",
     "keep",
     metavar="WHICH",
@@ -141,7 +137,7 @@ _FILE = FilePath()
     callback=as_keep,
     help="Meshes to keep beside the results: interesting (default), all, none, or so many more.",
 )
-@click.option(
+@further(
     "--samples",
     metavar="N",
     type=SAMPLES,
@@ -149,13 +145,13 @@ _FILE = FilePath()
     show_default=True,
     help="Points to measure distances from; 0 for none.",
 )
-@click.option(
+@further(
     "--scheduler",
     metavar="ADDRESS|FILE",
     help="Run on the workers of this Dask scheduler, which see the same files.",
 )
 @telling
-def validate(paths: tuple[Path, ...], **given: Any) -> int:
+def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
     """Compare results with manifold3d's, as exact sets, and with further engines in doubt.
 
     CASES are mesh files (every pair of them), folders (every pair of meshes in them, and their
@@ -163,10 +159,10 @@ def validate(paths: tuple[Path, ...], **given: Any) -> int:
     its own that is killed at the limits. Exits with 1 if engines disagree with us, a result is not
     sound, or a case ran into a limit or crashed.
     """
-    return _Validation(paths, given).run()
+    return _Campaign(paths, given).run()
 
 
-class _Validation:
+class _Campaign:
     """A campaign as the options say it."""
 
     def __init__(self, paths: tuple[Path, ...], settings: dict[str, Any]) -> None:
@@ -208,7 +204,7 @@ class _Validation:
             if other != name and not is_dropped(path):
                 raise click.UsageError(f"--{name} would overwrite {path}, which --{other} writes.")
         if Path(STREAM) in self._paths:
-            raise click.UsageError("validate reads files, not standard input.")
+            raise click.UsageError("crosscheck reads files, not standard input.")
 
     def _answering(self) -> "Answering":
         from ...campaign.running.cluster import Cluster
@@ -248,7 +244,7 @@ class _Validation:
         cases = cases_of(inputs, tuple(dict.fromkeys(operations)), *draws)
         if not cases:
             raise click.UsageError(
-                "there is nothing to validate; give at least two mesh files, a folder of them, a"
+                "there is nothing to compare; give at least two mesh files, a folder of them, a"
                 " script, or a file of cases."
             )
         if self._settings["only"] is not None:
@@ -337,7 +333,7 @@ class _Validation:
 
         status.end()
         times = TimeElapsedColumn(), TimeRemainingColumn()
-        columns = ("validating", BarColumn(), MofNCompleteColumn(), *times)
+        columns = ("comparing", BarColumn(), MofNCompleteColumn(), *times)
         with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
             task = bar.add_task("", total=count)
 

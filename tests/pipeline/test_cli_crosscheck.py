@@ -33,12 +33,12 @@ def many(count: int) -> None:
 
 
 def test_pair_is_compared_in_all_operations(folder: Path, capsys: Capture) -> None:
-    code, out, err = ran(capsys, "validate", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl")
+    code, out, err = ran(capsys, "crosscheck", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl")
     assert code == 0 and err == ""
     assert "agree" in out and "None of 4 cases failed." in out
     head, *cases = lines()
     assert head["type"] == "run" and head["versions"]["bspcsg"] == b.__version__
-    assert head["command"] == "bspcsg validate a.off c.stl -j 1 --results r.jsonl"
+    assert head["command"] == "bspcsg crosscheck a.off c.stl -j 1 --results r.jsonl"
     assert [case["operation"] for case in cases] == ["union", "difference", "intersection", "xor"]
     volumes = {case["operation"]: case["ours"]["volume"] for case in cases}
     assert volumes == {"union": 15.0, "difference": 7.0, "intersection": 1.0, "xor": 14.0}
@@ -55,7 +55,7 @@ def test_pair_is_compared_in_all_operations(folder: Path, capsys: Capture) -> No
 
 def test_command_of_a_case_runs_that_case(folder: Path, capsys: Capture) -> None:
     put("s.ply", moved(icosphere(2), (0.5, 0.3, 0.1)))
-    given = ["validate", "a.off", "s.ply", "-j", "1", "--poses", "2", "--seed", "5"]
+    given = ["crosscheck", "a.off", "s.ply", "-j", "1", "--poses", "2", "--seed", "5"]
     ran(capsys, *given, "--op", "xor", "--results", "r.jsonl")
     for case in drawn(lines()[1:], 2):
         words = case["command"].split()[1:]
@@ -66,7 +66,7 @@ def test_command_of_a_case_runs_that_case(folder: Path, capsys: Capture) -> None
 
 
 def test_summary_as_json_counts_identities(folder: Path, capsys: Capture) -> None:
-    code, out, _ = ran(capsys, "validate", "a.off", "c.stl", "-j", "1", "--json")
+    code, out, _ = ran(capsys, "crosscheck", "a.off", "c.stl", "-j", "1", "--json")
     found = json.loads(out)
     assert code == 0 and found["cases"] == 4 and found["verdicts"] == {"agree": 4}
     assert found["identities"] == {"checked": 3, "broken": 0}
@@ -75,7 +75,7 @@ def test_summary_as_json_counts_identities(folder: Path, capsys: Capture) -> Non
 
 def test_reports_hold_every_case(folder: Path, capsys: Capture) -> None:
     put("open.off", OPEN)
-    given = ["validate", "a.off", "c.stl", "open.off", "--op", "union", "-j", "1"]
+    given = ["crosscheck", "a.off", "c.stl", "open.off", "--op", "union", "-j", "1"]
     code, _, _ = ran(capsys, *given, "--junit", "j.xml", "--markdown", "m.md")
     assert code == 0
     root = Xml.parse("j.xml").getroot()
@@ -88,7 +88,7 @@ def test_reports_hold_every_case(folder: Path, capsys: Capture) -> None:
 
 
 def test_each_pose_that_is_named_counts(folder: Path, capsys: Capture) -> None:
-    given = ["validate", "a.off", "c.stl", "--op", "union", "-j", "1", "--pose", "copy"]
+    given = ["crosscheck", "a.off", "c.stl", "--op", "union", "-j", "1", "--pose", "copy"]
     more = ["--pose", "random:3", "--pose", "random:4", "--pose", "copy", "--results", "r.jsonl"]
     assert ran(capsys, *given, *more)[0] == 0
     names = [case["case"] for case in lines()[1:]]
@@ -110,20 +110,20 @@ def test_file_of_cases_names_operands_and_poses(folder: Path, capsys: Capture) -
     operands = [{"file": "a.off"}, {**inline, "pose": shift}, {"file": "c.stl"}]
     entry = {"name": "three", "operation": ["union", "difference"], "operands": operands}
     Path("cases.json").write_text(json.dumps({"cases": [entry]}))
-    given = ["validate", "cases.json", "-j", "1", "--results", "r.jsonl"]
+    given = ["crosscheck", "cases.json", "-j", "1", "--results", "r.jsonl"]
     assert ran(capsys, *given)[0] == 0
     cases = lines()[1:]
     assert [case["case"] for case in cases] == ["three-union", "three-difference"]
     assert [case["ours"]["volume"] for case in cases] == [15.0, 6.0]
     assert cases[0]["operands"][1]["pose"] == shift
-    assert cases[1]["command"] == "bspcsg validate cases.json --only three-difference"
+    assert cases[1]["command"] == "bspcsg crosscheck cases.json --only three-difference"
     assert ran(capsys, *cases[1]["command"].split()[1:], "-j", "1", "-v")[2].count("agree") == 1
 
 
 def test_script_is_compared(folder: Path, capsys: Capture) -> None:
     Path("m.csg").write_text("difference() { cube(size = 2); sphere(r = 1, $fn = 8); }")
     Path("flat.csg").write_text("square(size = 2);")
-    code, _, _ = ran(capsys, "validate", "m.csg", "flat.csg", "-j", "1", "--results", "r.jsonl")
+    code, _, _ = ran(capsys, "crosscheck", "m.csg", "flat.csg", "-j", "1", "--results", "r.jsonl")
     assert code == 0
     cases = {case["case"]: case for case in lines()[1:]}
     assert cases["m.csg"]["verdict"] == "agree" and cases["m.csg"]["kind"] == "csg"
@@ -131,7 +131,7 @@ def test_script_is_compared(folder: Path, capsys: Capture) -> None:
 
 
 def test_meshes_are_kept_on_request(folder: Path, capsys: Capture) -> None:
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
     ran(capsys, *given)
     assert not Path("r.meshes").exists()
     ran(capsys, *given, "--keep-meshes", "1", "--results", "k.jsonl")
@@ -143,7 +143,7 @@ def test_meshes_are_kept_on_request(folder: Path, capsys: Capture) -> None:
 
 
 def test_resume_asks_only_what_is_open(folder: Path, capsys: Capture) -> None:
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
     ran(capsys, *given, "--op", "union")
     with Path("r.jsonl").open("a") as torn:
         torn.write('{"schema": 1, "type": "ca')
@@ -158,7 +158,7 @@ def test_resume_asks_only_what_is_open(folder: Path, capsys: Capture) -> None:
 
 # Found: a crash was for ever, though another machine or more memory answers the case.
 def test_what_crashed_is_asked_again_if_wished(folder: Path, capsys: Capture) -> None:
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
     ran(capsys, *given, "--op", "union", "--op", "xor")
     head, union, xor = lines()
     crashed = {**union, "verdict": "crash", "reason": "the process was ended by SIGKILL"}
@@ -176,7 +176,7 @@ def test_shards_are_the_whole(folder: Path, capsys: Capture) -> None:
     many(3)
     for shard in ("1/3", "2/3", "3/3"):
         given = ["--shard", shard, "--results", f"r-{shard[0]}of3.jsonl"]
-        assert ran(capsys, "validate", "parts", "-j", "1", *given)[0] == 0
+        assert ran(capsys, "crosscheck", "parts", "-j", "1", *given)[0] == 0
     shards = read_results(sorted(Path().glob("r-*.jsonl")))
     assert len(shards.runs) == 3
     assert sorted(case["case"] for case in shards.cases.values()) == sorted(
@@ -187,16 +187,16 @@ def test_shards_are_the_whole(folder: Path, capsys: Capture) -> None:
 
 
 def test_time_and_memory_limits_are_failures(folder: Path, capsys: Capture) -> None:
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--op", "union"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--op", "union"]
     code, out, _ = ran(capsys, *given, "--timeout", "0.0001")
     assert code == 1 and "The one case failed." in out and "timeout" in out
-    assert "Again: bspcsg validate a.off c.stl --op union" in out
+    assert "Again: bspcsg crosscheck a.off c.stl --op union" in out
     code, out, _ = ran(capsys, *given, "--memory", "1M")
     assert code == 1 and "crash" in out
 
 
 def test_fail_fast_stops_at_the_first_failure(folder: Path, capsys: Capture) -> None:
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--timeout", "0.0001"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--timeout", "0.0001"]
     given += ["--op", "union", "--op", "xor"]
     assert "The one case failed." in ran(capsys, *given, "--fail-fast")[1]
     assert "2 of 2 cases failed." in ran(capsys, *given, "--keep-going")[1]
@@ -205,7 +205,7 @@ def test_fail_fast_stops_at_the_first_failure(folder: Path, capsys: Capture) -> 
 @pytest.mark.parametrize(
     ("given", "code", "says"),
     [
-        (["a.off"], 2, "nothing to validate"),
+        (["a.off"], 2, "nothing to compare"),
         (["a.off", "c.stl", "--only", "zzz"], 2, "no case is called zzz"),
         (["a.off", "c.stl", "--resume"], 2, "--results r.jsonl"),
         (["a.off", "c.stl", "--results", "r.jsonl", "--retry-crashed"], 2, "for --resume"),
@@ -234,7 +234,7 @@ def test_wrong_input_is_told(
     Path("bad.json").write_text('{"cases": [{"operands": 3}]}\n')
     Path("a.step").write_text("ISO-10303-21;")
     monkeypatch.setenv("PATH", "")
-    found, _, err = ran(capsys, "validate", *given, "-j", "1")
+    found, _, err = ran(capsys, "crosscheck", *given, "-j", "1")
     assert (found, says in err) == (code, True), err
     assert err.startswith("bspcsg: error: ")
 
@@ -264,7 +264,7 @@ def started_campaign(folder: Path) -> Any:
     """Start a campaign, and return its process once a few cases are on file."""
     many(14)
     running = process(
-        "validate", "parts", "-j", "2", "--results", "r.jsonl", stderr=-1, stdout=-1, cwd=folder
+        "crosscheck", "parts", "-j", "2", "--results", "r.jsonl", stderr=-1, stdout=-1, cwd=folder
     )
     for _ in range(3000):
         if Path("r.jsonl").exists() and Path("r.jsonl").read_bytes().count(b"\n") > 6:
@@ -284,7 +284,7 @@ def test_killing_the_runner_loses_nothing(folder: Path, capsys: Capture) -> None
     assert are_gone(children)
     done = read_results(["r.jsonl"]).cases
     assert 6 <= len(done) < 91 * 4
-    code, out, err = ran(capsys, "validate", "parts", "--results", "r.jsonl", "--resume")
+    code, out, err = ran(capsys, "crosscheck", "parts", "--results", "r.jsonl", "--resume")
     assert code == 0 and "None of 364 cases failed." in out
     assert f"{len(done)} cases of 364 known" in err
     keys = [line["key"] for line in lines() if line["type"] == "case"]
@@ -305,7 +305,7 @@ def test_interrupt_is_quiet(folder: Path) -> None:
 
 def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None:
     Path("cut.stl").write_bytes(b"\0" * 84 + b"\1")
-    given = ["validate", "a.off", "c.stl", "cut.stl", "-j", "1", "--op", "union"]
+    given = ["crosscheck", "a.off", "c.stl", "cut.stl", "-j", "1", "--op", "union"]
     code, out, err = ran(capsys, *given)
     assert code == 0 and "refused" in out and "None of 3 cases failed." in out
     # Two cases were refused for one reason, which is told once.
@@ -325,12 +325,12 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
             ["--results", "r.jsonl", "--junit", "./r.jsonl"],
             "--junit would overwrite r.jsonl, which --results writes.",
         ),
-        (["-"], "validate reads files, not standard input."),
+        (["-"], "crosscheck reads files, not standard input."),
     ],
 )
 def test_files_that_cannot_be(folder: Path, capsys: Capture, options: list[str], said: str) -> None:
     before = {path: path.read_bytes() for path in folder.iterdir()}
-    code, out, err = ran(capsys, "validate", "a.off", "c.stl", *options)
+    code, out, err = ran(capsys, "crosscheck", "a.off", "c.stl", *options)
     assert (code, out) == (2, "") and err.startswith(f"bspcsg: error: {said}\n")
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
@@ -338,28 +338,39 @@ def test_files_that_cannot_be(folder: Path, capsys: Capture, options: list[str],
 @pytest.mark.parametrize("data", [b"mine", b"mine\nand mine", b"{}\n"])
 def test_what_is_no_results_file_stays_as_it_is(folder: Path, capsys: Capture, data: bytes) -> None:
     Path("notes.txt").write_bytes(data)
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--op", "xor", "--results", "notes.txt"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--op", "xor", "--results", "notes.txt"]
     code, out, err = ran(capsys, *given)
     assert (code, out) == (5, "") and Path("notes.txt").read_bytes() == data
     assert err == "bspcsg: error: notes.txt: this is no results file, so nothing is added to it.\n"
 
 
 def test_help_has_an_example(capsys: Capture) -> None:
-    code, out, _ = ran(capsys, "validate", "--help")
-    assert code == 0 and "bspcsg validate a.stl b.stl" in out
+    code, out, _ = ran(capsys, "crosscheck", "--help")
+    assert code == 0 and "bspcsg crosscheck a.stl b.stl" in out
 
 
 def test_failed_case_is_a_failure_of_the_build(folder: Path) -> None:
-    given = ["validate", "a.off", "c.stl", "-j", "1", "--op", "xor", "--timeout", "0.0001"]
+    given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--op", "xor", "--timeout", "0.0001"]
     code, out, _ = finished(*given, "--junit", "j.xml", "--markdown", "m.md")
     assert code == 1 and b"timeout" in out
     case = next(Xml.parse("j.xml").getroot().iter("testcase"))
     error = case.find("error")
     assert error is not None and error.get("type") == "timeout"
-    assert "again: bspcsg validate a.off c.stl --op xor" in str(error.text)
+    assert "again: bspcsg crosscheck a.off c.stl --op xor" in str(error.text)
     assert "## Failures" in Path("m.md").read_text("utf-8")
 
 
 def test_records_have_the_declared_fields(folder: Path, capsys: Capture) -> None:
-    ran(capsys, "validate", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl", "--op", "xor")
+    ran(capsys, "crosscheck", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl", "--op", "xor")
     assert set(lines()[1]) == set(CaseRecord.__annotations__)
+
+
+def test_the_former_name_is_an_alias_with_a_note(folder: Path, capsys: Capture) -> None:
+    line = ["a.off", "c.stl", "-j", "1", "--op", "xor", "--json"]
+    code, out, err = ran(capsys, "validate", *line)
+    again = ran(capsys, "crosscheck", *line)
+    assert code == again[0] == 0
+    assert json.loads(out)["verdicts"] == json.loads(again[1])["verdicts"]
+    assert err == "note: validate is called crosscheck now; the old name goes later.\n"
+    assert again[2] == ran(capsys, "validate", *line, "-q")[2] == ""
+    assert "validate" not in ran(capsys, "--help")[1]

@@ -1,0 +1,229 @@
+"""Diagnoses of files with several objects: each by itself, and what they have in common.
+
+Objects that touch are solids that touch. Objects that share open edges are patches of one surface,
+and are judged together.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from .._types import IndexArray
+from ..errors import Finding
+from ..formats.raw import RawMesh, compacted
+from ..mesh.certificate import Precision
+from ..mesh.mesh import surfaces_of
+from ..mesh.weld import welded
+from ..operations.setops import union
+from ..repair.diagnosis import Diagnosis, EdgeUses, by_severity, diagnose
+from ..solid.counting import uncounted
+from ..solid.solid import Solid
+from .clashes import Clash, clashes_of
+from .tree import Part
+
+_Any = TypeVar("_Any")
+_Number = TypeVar("_Number", int, float)
+
+#: Names of patches that become one object, of which so many are told.
+_AND, _FEW = " + ", 3
+
+#: From the worst verdict to the best.
+_VERDICTS = ("refused", "not closed", "empty", "inside out", "solid")
+
+
+@dataclass(frozen=True, eq=False)
+class ExaminedObject:
+    """One object of a file.
+
+    Parameters
+    ----------
+    name : str
+        No two objects of a file have the same.
+    mesh : RawMesh
+    found : Diagnosis
+    """
+
+    name: str
+    mesh: RawMesh
+    found: Diagnosis
+
+
+@dataclass(frozen=True, eq=False)
+class Examination:
+    """What is found about a file.
+
+    Parameters
+    ----------
+    mesh : RawMesh
+    found : Diagnosis
+        Of all of it: the worst verdict, and the findings about each object.
+    objects : tuple of ExaminedObject
+        Empty if the file is one object.
+    clashes : tuple of Clash
+        The objects that have volume in common.
+    """
+
+    mesh: RawMesh
+    found: Diagnosis
+    objects: tuple[ExaminedObject, ...] = ()
+    clashes: tuple[Clash, ...] = ()
+
+
+@uncounted
+def examine(raw: RawMesh) -> Examination:
+    """Say what is wrong with a mesh, or with each object of it by itself."""
+    groups = _objects_of(raw)
+    if len(groups) < 2:
+        return Examination(raw, diagnose(raw))
+    objects = []
+    for name, rows in groups:
+        used, faces = compacted(raw.faces[rows])
+        said = None if raw.attributes is None else raw.attributes.taken(rows).with_used_materials()
+        mesh = RawMesh(raw.vertices[used], faces, name, unit=raw.unit, attributes=said)
+        objects.append(ExaminedObject(name, mesh, diagnose(mesh)))
+    clashes = _clashes(objects)
+    findings = [*raw.findings, *_findings(objects, [rows for _, rows in groups])]
+    findings += _clash_finding(clashes)
+    return Examination(
+        raw, _summed(raw, objects, clashes, findings), tuple(objects), tuple(clashes)
+    )
+
+
+def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
+    """Return names and triangles of the objects of a mesh, patches of one surface together."""
+    parts = [(name, count) for name, count in raw.objects if count]
+    counts = [count for _, count in parts]
+    if len(parts) < 2 or sum(counts) != len(raw.faces):
+        return []
+    owner = np.repeat(np.arange(len(parts)), counts)
+    group = _surfaces(raw, owner, len(parts))
+    names = _told_apart([name or f"part {number}" for number, (name, _) in enumerate(parts, 1)])
+    found = []
+    for one in dict.fromkeys(group.tolist()):
+        members = np.flatnonzero(group == one)
+        called = [names[member] for member in members[:_FEW].tolist()]
+        more = [f"{len(members) - _FEW} more"] if len(members) > _FEW else []
+        found.append((_AND.join([*called, *more]), np.flatnonzero(group[owner] == one)))
+    return found
+
+
+def _surfaces(raw: RawMesh, owner: IndexArray, count: int) -> IndexArray:
+    """Return for each of so many objects the number of the surface that it is a patch of."""
+    vertices, same = welded(raw.vertices)
+    edges = EdgeUses(same[raw.faces], len(vertices))
+    uses, times = np.unique(edges.edge * count + owner[edges.face], return_counts=True)
+    # Open edges of objects, by edge: who shares one with the next is a patch beside it.
+    edge, patch = np.divmod(uses[times == 1], count)
+    shared = np.flatnonzero(edge[1:] == edge[:-1])
+    links = np.stack([patch[shared], patch[shared + 1]], axis=1)
+    alone = np.repeat(np.arange(count)[:, None], 2, axis=1)
+    # A link is a triangle with a corner twice.
+    return surfaces_of(np.concatenate([alone, links])[:, [0, 1, 1]], count)[:count]
+
+
+def _told_apart(names: Sequence[str]) -> list[str]:
+    seen: Counter[str] = Counter()
+    told = []
+    for name in names:
+        seen[name] += 1
+        told.append(f"{name} ({seen[name]})" if seen[name] > 1 else name)
+    return told
+
+
+def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> Iterator[Finding]:
+    """Yield what was found about objects, with their names and the triangles of the file."""
+    for one, faces in zip(objects, rows, strict=True):
+        for found in one.found.findings:
+            where = tuple(faces[list(found.where)].tolist()) if found.where else ()
+            yield replace(found, message=f"“{one.name}”: {found.message}", where=where)
+
+
+def _clashes(objects: Sequence[ExaminedObject]) -> list[Clash]:
+    """Return which solids have volume in common; a box that only touches others has none."""
+    solids = [one for one in objects if one.found.is_solid]
+    boxes = np.array([one.found.bounds for one in solids]).reshape(-1, 2, 3)
+    near: set[int] = set()
+    for number, (low, high) in enumerate(boxes):
+        meets = (boxes[number + 1 :, 0] < high) & (boxes[number + 1 :, 1] > low)
+        others = np.flatnonzero(meets.all(axis=1)) + number + 1
+        near.update(others.tolist(), [number] * bool(len(others)))
+    parts = [_part(solids[number]) for number in sorted(near)]
+    return clashes_of(parts, 0.0)
+
+
+def _part(one: ExaminedObject) -> Part:
+    solid = Solid(one.mesh.vertices, one.mesh.faces)
+    return Part(one.name, one.name, solid, (), None, None)
+
+
+def _clash_finding(clashes: Sequence[Clash]) -> Iterator[Finding]:
+    if clashes:
+        first = clashes[0]
+        pairs = "1 pair of objects has" if len(clashes) == 1 else f"{len(clashes)} pairs have"
+        place = "({:.6g}, {:.6g}, {:.6g})".format(*first.place.tolist())
+        message = (
+            f"{pairs} volume in common; the first “{first.first}” and “{first.second}”,"
+            f" {first.volume:.6g} near {place}"
+        )
+        yield Finding("clash", "warning", message, (), len(clashes))
+
+
+def _summed(
+    raw: RawMesh,
+    objects: Sequence[ExaminedObject],
+    clashes: Sequence[Clash],
+    findings: Sequence[Finding],
+) -> Diagnosis:
+    """Return the diagnosis of all objects together."""
+    each = [one.found for one in objects]
+    overlaps = _all([one.self_overlapping for one in each])
+    boxes = np.array([one.bounds for one in each])
+    low, high = boxes[:, 0].min(axis=0).tolist(), boxes[:, 1].max(axis=0).tolist()
+    return Diagnosis(
+        triangles=len(raw.faces),
+        vertices=len(raw.vertices),
+        closed=all(one.closed for one in each),
+        oriented=all(one.oriented for one in each),
+        manifold=all(one.manifold for one in each),
+        self_overlapping=None if overlaps is None else any(overlaps) or bool(clashes),
+        precision=_coarsest(each),
+        crossings=_sum([one.crossings for one in each]),
+        verdict=min((one.verdict for one in each), key=_VERDICTS.index),
+        findings=by_severity(findings),
+        signed_volume=sum(one.signed_volume for one in each),
+        area=sum(one.area for one in each),
+        volume=_volume(objects, clashes),
+        surfaces=sum(one.surfaces for one in each),
+        genus=_sum([one.genus for one in each]),
+        bounds=(tuple(low), tuple(high)),
+    )
+
+
+def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
+    """Return the coarsest numbers that hold what these hold."""
+    found = {one.precision for one in each}
+    if None in found:
+        return None
+    return "double" if "double" in found else "single"
+
+
+def _volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> float | None:
+    """Return the volume of all objects, what they have in common once."""
+    total = _sum([one.found.volume for one in objects])
+    if total is None or not clashes:
+        return total
+    return union(*(_part(one).solid for one in objects if one.found.is_solid)).volume
+
+
+def _all(values: "Sequence[_Any | None]") -> "list[_Any] | None":
+    """Return the values if all are known."""
+    known = [value for value in values if value is not None]
+    return known if len(known) == len(values) else None
+
+
+def _sum(values: "Sequence[_Number | None]") -> "_Number | None":
+    known = _all(values)
+    return None if known is None else sum(known)

@@ -1,0 +1,139 @@
+"""Files one by one: where each goes, and what came of all of them."""
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..errors import BspcsgError
+from .console import output, status, terminal
+from .console.output import Output
+from .inputs.files import STREAM, Target, expanded, is_dropped
+from .inputs.scripts import SUFFIXES
+
+#: Files from which on a bar shows how far it is.
+_MANY = 4
+
+#: What is done with one file: its document, and the exit code.
+Doing = Callable[[Path, Target], tuple[dict[str, Any], int]]
+
+
+def targets_of(
+    files: Sequence[Path],
+    target: Path | None,
+    outdir: Path | None,
+    suffix: str | None,
+    *,
+    keeps_format: bool = False,
+) -> list[tuple[Path, Path]]:
+    """Return each file with where it goes.
+
+    Parameters
+    ----------
+    files : sequence of Path
+    target : Path or None
+        With several files, a name with % for theirs.
+    outdir : Path or None
+        The folder that takes them under their own names.
+    suffix : str or None
+        Of the format that they get in that folder.
+    keeps_format : bool
+        True if files in that folder have their own formats where none is said.
+
+    Raises
+    ------
+    click.UsageError
+        If it is not said where files go, or if two would go to one place, or over an input.
+    """
+    if (target is None) == (outdir is None):
+        raise click.UsageError("say where to write: either -o FILE or --outdir DIR.")
+    if outdir is not None:
+        pairs = [
+            (path, outdir / f"{_stem(path)}{suffix or _own(path, keeps_format)}") for path in files
+        ]
+    elif len(files) == 1 or target is None:
+        return [(files[0], target or Path(STREAM))]
+    elif is_dropped(target):
+        return [(path, target) for path in files]
+    elif "%" not in target.name:
+        raise click.UsageError(
+            "for several inputs, -o needs a % for their names, as in 'web/%.glb'; or say --outdir."
+        )
+    else:
+        pairs = [(path, expanded(target, _stem(path))) for path in files]
+    _refuse_twins(pairs)
+    return pairs
+
+
+def _own(path: Path, keeps_format: bool) -> str:
+    """Return the suffix of a file's own format."""
+    if not keeps_format or str(path) == STREAM or path.suffix.lower() in SUFFIXES:
+        raise click.UsageError("--outdir needs the format: --to glb.")
+    return path.suffix
+
+
+def _stem(path: Path) -> str:
+    return "stdin" if str(path) == STREAM else path.stem
+
+
+def _refuse_twins(pairs: Sequence[tuple[Path, Path]]) -> None:
+    seen: dict[Path, Path] = {}
+    inputs = {path.resolve(): path for path, _ in pairs if str(path) != STREAM}
+    for path, where in pairs:
+        other = inputs.get(where.resolve(), path)
+        if other.resolve() != path.resolve():
+            raise click.UsageError(f"{path} would be written to {where}, which is an input, too.")
+        if where in seen:
+            raise click.UsageError(f"{seen[where]} and {path} would both be written to {where}.")
+        seen[where] = path
+
+
+def each(
+    pairs: Sequence[tuple[Path, Target]], out: Output, doing: Doing, word: str
+) -> tuple[list[dict[str, Any]], int]:
+    """Do the same with many files; return the documents, and the worst exit code.
+
+    One bad file of many does not keep the others; it is told, and its document says why.
+
+    Parameters
+    ----------
+    pairs : sequence of (Path, Target)
+    out : Output
+    doing : callable
+    word : str
+        What is done, for whoever watches a terminal.
+    """
+    documents, worst = [], output.DONE
+    with _progress(pairs, out, word) as shown:
+        for path, target in shown:
+            try:
+                document, code = doing(path, target)
+            except BspcsgError as error:
+                if len(pairs) == 1:
+                    raise
+                terminal.say_error(error.message)
+                document = {"file": str(path), "error": output.error_values(error)}
+                code = output.exit_code_of(error)
+            documents.append(document)
+            worst = max(worst, code)
+    return documents, worst
+
+
+@contextmanager
+def _progress(
+    pairs: Sequence[tuple[Path, Target]], out: Output, word: str
+) -> Iterator[Iterator[tuple[Path, Target]]]:
+    """Yield the pairs, under a bar on the terminal if there are many."""
+    if len(pairs) < _MANY or not sys.stderr.isatty() or out.verbosity < 0:
+        yield iter(pairs)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TimeElapsedColumn
+
+    status.end()
+    columns = (word, BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        yield iter(bar.track(pairs))
