@@ -1,6 +1,6 @@
-"""The campaign over real meshes whose counts are on record: ``bspcsg validate`` with its settings.
+"""The campaign over real meshes whose counts are on record: ``bspcsg crosscheck`` with its settings.
 
-    scripts/campaign [--meshes FOLDER] [--poses N] [--record] [options of bspcsg validate]
+    scripts/campaign [--meshes FOLDER] [--poses N] [--record] [options of bspcsg crosscheck]
 
 Pairs of files are drawn in random and in coincident poses and combined by four operations; the
 scripts in FOLDER's neighbour `csg` are compared with openscad. What is answered in the results file
@@ -38,7 +38,7 @@ def main() -> int:
     given = [str(word) for pair in settings.items() for word in pair]
     # Reports name files as they were given, and are read elsewhere.
     folders = [relpath(folder) for folder in (options.meshes, scripts) if folder.is_dir()]
-    code = run(["validate", *folders, *given, "--resume", *more])
+    code = run(["crosscheck", *folders, *given, "--resume", *more])
     if options.record:
         record(options.results, settings)
     return code

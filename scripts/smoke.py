@@ -73,13 +73,13 @@ def pictures() -> Iterator[str]:
 
 
 def checked() -> Iterator[str]:
-    """Combine, check, compare, validate; a mesh that is not closed is refused."""
+    """Combine, check, compare, crosscheck; a mesh that is not closed is refused."""
     said = json.loads(command("difference", "part.stl", "ball.stl", "-o", "cut.stl", "--json"))
     assert said["check"]["verdict"] == "agree", said
     command("check", "cut.stl")
     command("compare", "part.stl", "cut.stl", code=1)
     command("compare", "part.ply", "part.obj")
-    command("validate", "part.stl", "ball.stl", "--results", "results.jsonl")
+    command("crosscheck", "part.stl", "ball.stl", "--results", "results.jsonl")
     command("report", "results.jsonl", "-o", "report.html")
     lines = Path("part.off").read_text("utf-8").splitlines()
     counts = lines[1].split()
