@@ -1,5 +1,5 @@
 //! The test whether a mesh in doubles is star-shaped, by the argument of the one for meshes on the
-//! lattice (`merge::simple::star`): where a point lies behind the planes of all faces, and a ray from
+//! lattice (`merge::arrangement::star`): where a point lies behind the planes of all faces, and a ray from
 //! it leaves through one of them, no two cross.
 
 use crate::arith::convert::{as_double, as_number};
