@@ -1,5 +1,6 @@
 """One set operation on files, from reading to telling what came out."""
 
+import dataclasses
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -86,6 +87,8 @@ class Job(ABC):
         result = self.made = self.combined()
         mesh = self._mesh_of(result)
         self.lap("combine")
+        for line in result.profile().lines():
+            self.out.detail(f"  {line}")
         is_checked = self.settings["check"] != "off"
         status.tell(f"{self.op}: comparing with manifold3d" if is_checked else self.op)
         report = self.compared(result) if is_checked else None
@@ -177,6 +180,7 @@ class Job(ABC):
             "check": None if report is None else report.to_dict(),
             "certificate": certificate_values(mesh),
             "seconds": {**self.seconds, "total": round(clock.elapsed(), 4)},
+            "profile": dataclasses.asdict(result.profile()),
         }
 
     def lap(self, name: str) -> None:

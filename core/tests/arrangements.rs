@@ -4,6 +4,7 @@ use bspcsg::merge::arrangement::arranged;
 use bspcsg::merge::descent::descend::Descent;
 use bspcsg::merge::expression::{Expression, Term};
 use bspcsg::merge::lists::list::Sources;
+use bspcsg::merge::profile::Profile;
 use bspcsg::merge::rule::Rule;
 use bspcsg::tree::node::Branch;
 use bspcsg::tree::solid::Solid;
@@ -27,7 +28,7 @@ fn terms() -> [Vec<Term>; 4] {
 fn both_ways(terms: Vec<Term>, solids: &[Solid; 2]) -> Option<[Solid; 2]> {
     let expression = Expression::new(terms).expect("well formed");
     let sources = Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect());
-    let found = arranged(&expression, solids, &sources)?;
+    let found = arranged(&expression, solids, &sources, &mut Profile::default()).ok()?;
     let roots = solids.iter().map(|s| s.root().clone()).collect();
     let descent = Descent::new(&sources, Rule::Positive, true, 2);
     let expected = descent.run(expression, roots).expect("not stopped");

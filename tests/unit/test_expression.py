@@ -170,3 +170,17 @@ def test_operands_of_unbounded_sets_move_at_any_depth() -> None:
         solid, plane = ~solid.rotate(1), plane.rotate(1)
         assert not solid.is_empty
     assert solid == plane
+
+
+def test_a_profile_tells_the_stages_and_why_work_was_handed_on() -> None:
+    cube = b.cube(2)
+    pair = (cube - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
+    assert [stage.name for stage in pair.stages] == ["candidates", "contacts", "faces"]
+    assert all(stage.count > 0 and stage.seconds >= 0 for stage in pair.stages)
+    assert pair.handed_on is None
+    step = (b.cube(2) - b.cube(1) - b.cube(1).translate(1.5, 1.5, 1.5)).profile()
+    assert [stage.name for stage in step.stages] == ["descent"]
+    assert "two different meshes" in str(step)
+    apart = (cube | b.cube(1).translate(5, 5, 5)).profile()
+    assert "apart" in (apart.handed_on or "")
+    assert cube.profile().lines() == []

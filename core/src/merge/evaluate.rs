@@ -8,6 +8,7 @@ use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
 use super::lists::list::Sources;
 use super::places::overlaps_at;
+use super::profile::{Declined, Profile};
 use super::rule::Rule;
 use super::twins::without_twins;
 use crate::arith::convert::as_number;
@@ -65,8 +66,18 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let merged = without_twins(expression, solids);
     let expression = merged.as_ref().unwrap_or(expression);
     let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
-    if let Some(done) = fresh_pair(expression, &operands, pitch) {
-        return Ok(done);
+    let mut profile = Profile::default();
+    match fresh_pair(expression, &operands, pitch, &mut profile) {
+        Ok((solid, counters)) => {
+            return Ok((
+                solid,
+                Counters {
+                    profile,
+                    ..counters
+                },
+            ))
+        }
+        Err(reason) => profile.declined = Some(reason),
     }
     let mut is_first = true;
     loop {
@@ -78,46 +89,57 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let run = |roots| descent.run(expression.clone(), roots);
-        let root = if operands.iter().any(|s| s.effort() >= LONG) {
-            handed_over(roots, run).unwrap_or_else(run)
-        } else {
-            run(roots)
-        }?;
+        let visit = || {
+            if operands.iter().any(|s| s.effort() >= LONG) {
+                handed_over(roots, run).unwrap_or_else(run)
+            } else {
+                run(roots)
+            }
+        };
+        let cells = |_: &Result<Branch>| descent.counters.visited();
+        let root = profile.timed("descent", visit, cells)?;
         let overlaps = descent.overlapping();
         if overlaps.is_empty() {
             let table = sources.table().clone();
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
             let solid = Solid::new(root, pitch, table, false).outgrowing(named);
             let solid = solid.made_of(&operands).by_effort(descent.counters.taken());
-            return Ok((solid, descent.counters));
+            let counters = Counters {
+                profile,
+                ..descent.counters
+            };
+            return Ok((solid, counters));
         }
         let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
         if open.is_empty() {
             return Err(wrongly_reduced(&operands, &overlaps));
         }
         for k in open {
-            operands[k] = normalize(&operands[k], Rule::Positive)?;
+            let unite = || normalize(&operands[k], Rule::Positive);
+            let faces = operands[k].whole_mesh().map_or(0, |s| s.face_count());
+            operands[k] = profile.timed("uniting", unite, |_| faces)?;
         }
     }
 }
 
-/// The value for two meshes as they were given, where the arrangement of their faces has one.
+/// The value for two meshes as they were given, by the arrangement of their faces.
 fn fresh_pair(
     expression: &Expression,
     operands: &[Solid],
     pitch: Pitch,
-) -> Option<(Solid, Counters)> {
+    profile: &mut Profile,
+) -> std::result::Result<(Solid, Counters), Declined> {
     let sources = Sources::new(joint_table(operands));
     let faces: usize = operands
         .iter()
         .filter_map(Solid::whole_mesh)
         .map(|s| s.face_count())
         .sum();
-    let run = |()| arranged(expression, operands, &sources);
+    let run = |profile| arranged(expression, operands, &sources, profile);
     let found = if faces >= POOL {
-        handed_over((), run).unwrap_or_else(run)
+        handed_over(profile, run).unwrap_or_else(run)
     } else {
-        run(())
+        run(profile)
     }?;
     let counters = Counters::default();
     counters.count_leaf(found.compared);
@@ -127,7 +149,7 @@ fn fresh_pair(
         .outgrowing(named)
         .made_of(operands)
         .by_effort(counters.taken());
-    Some((solid, counters))
+    Ok((solid, counters))
 }
 
 /// The solid, or nothing if it is a mesh in one plane, which bounds nothing.

@@ -11,6 +11,7 @@ pub mod op;
 pub mod pairs;
 mod places;
 pub mod plane;
+pub mod profile;
 pub mod residual;
 pub mod rule;
 #[cfg(test)]

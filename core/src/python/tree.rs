@@ -26,6 +26,7 @@ use crate::interrupt::poll;
 use crate::merge::descent::counters::Counters;
 use crate::merge::evaluate::{evaluate, explained, normalize, settled};
 use crate::merge::expression::{Expression, Term};
+use crate::merge::profile::Declined;
 use crate::merge::rule::Rule;
 use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::grid::{snap_point, Pitch};
@@ -620,6 +621,17 @@ impl Tree {
             }
         }
         Ok(dict)
+    }
+
+    /// The stages of the evaluation that made the tree: names, seconds and counts, and why the arrangement
+    /// left it to the descent, if it did.
+    fn profile(&self) -> (Vec<(&'static str, f64, usize)>, Option<&'static str>) {
+        let Some(counters) = &self.counters else {
+            return (Vec::new(), None);
+        };
+        let profile = &counters.profile;
+        let stages = profile.stages.iter().map(|s| (s.name, s.seconds, s.count));
+        (stages.collect(), profile.declined.map(Declined::text))
     }
 }
 

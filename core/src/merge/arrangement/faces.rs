@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use super::segments::{Cover, Line, Point, Segment};
 use super::surfaces::Surfaces;
-use super::triangulation::{Special, Triangulation, NONE};
+use super::triangulation::{Triangulation, NONE};
 use super::windings::Probe;
 use crate::arith::convert::as_number;
 use crate::arith::Sign;
@@ -17,6 +17,7 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
+use crate::merge::profile::Declined;
 use crate::mesh::handle::VertexId;
 
 /// The points and planes that the arrangements of all faces share.
@@ -73,8 +74,8 @@ impl<'a> Arrangement<'a> {
     /// The arrangement in a face.
     ///
     /// # Errors
-    /// `Special` if a segment leaves the face: there is a defect.
-    pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Special> {
+    /// `Defect` if a segment leaves the face: there is a defect.
+    pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Declined> {
         let corners = face.corners.map(|c| Arc::new(Vertex::lattice(c)));
         let mut triangulation = Triangulation::new(corners, axes(face.plane));
         let places = insert(&mut triangulation, &face, shared)?;
@@ -331,7 +332,7 @@ impl Places {
 }
 
 /// Inserts the ends of a face's segments, those on its border first.
-fn insert(cells: &mut Triangulation, face: &Face, shared: &Shared) -> Result<Places, Special> {
+fn insert(cells: &mut Triangulation, face: &Face, shared: &Shared) -> Result<Places, Declined> {
     let mut points: SmallVec<[u32; 16]> = face.segments.iter().flat_map(|s| s.ends).collect();
     points.sort_unstable();
     points.dedup();

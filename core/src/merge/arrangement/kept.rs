@@ -1,9 +1,9 @@
 //! What stays of faces, by the winding numbers in front of them and behind.
 
 use super::faces::Cell;
-use super::triangulation::Special;
 use crate::geometry::side::Orientation;
 use crate::merge::expression::Expression;
+use crate::merge::profile::Declined;
 use crate::merge::rule::Rule;
 
 /// The orientation in which faces stay, by the numbers of the mesh that they are compared with.
@@ -43,11 +43,11 @@ impl Pair {
         Self { of, outside }
     }
 
-    fn at(&self, operand: usize, numbers: [i32; 2]) -> Result<Option<Orientation>, Special> {
+    fn at(&self, operand: usize, numbers: [i32; 2]) -> Result<Option<Orientation>, Declined> {
         let [in_front, behind] = numbers.map(usize::try_from);
-        let by_front = self.of[operand].get(in_front.map_err(|_| Special)?);
+        let by_front = self.of[operand].get(in_front.map_err(|_| Declined::Overlap)?);
         let stays = by_front.and_then(|b| b.get(behind.ok()?));
-        stays.copied().ok_or(Special)
+        stays.copied().ok_or(Declined::Overlap)
     }
 }
 
@@ -84,8 +84,12 @@ impl Kept {
     /// The orientation in which a face stays that no other one covers, by the number in front of it.
     ///
     /// # Errors
-    /// `Special` where the other operand winds around the place neither once nor not at all.
-    pub(super) fn at(&self, operand: usize, in_front: i32) -> Result<Option<Orientation>, Special> {
+    /// `Overlap` where the other operand winds around the place neither once nor not at all.
+    pub(super) fn at(
+        &self,
+        operand: usize,
+        in_front: i32,
+    ) -> Result<Option<Orientation>, Declined> {
         match self {
             Self::Pair(pair) => pair.at(operand, [in_front; 2]),
             Self::Alone(rule) => Ok(between(rule.inside(in_front), rule.inside(in_front + 1))),
@@ -101,11 +105,11 @@ impl Kept {
         operand: usize,
         cell: &Cell,
         first: i32,
-    ) -> Result<Option<Orientation>, Special> {
+    ) -> Result<Option<Orientation>, Declined> {
         let in_front = first + cell.in_front;
         let behind = in_front + cell.behind;
         let stays = match self {
-            Self::Pair(_) if cell.covers > 1 => return Err(Special),
+            Self::Pair(_) if cell.covers > 1 => return Err(Declined::Overlap),
             Self::Pair(pair) => pair.at(operand, [in_front, behind])?,
             Self::Alone(rule) => between(rule.inside(in_front), rule.inside(behind + 1)),
         };

@@ -10,12 +10,12 @@ use smallvec::SmallVec;
 
 use super::candidates::Operand;
 use super::faces::{probe_of_face, Arrangement};
-use super::triangulation::Special;
 use super::windings::Windings;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Triangle;
 use crate::interrupt::poll;
+use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 
 /// The winding numbers around the vertices of one mesh, as far as they are known: classes of vertices
@@ -66,8 +66,8 @@ impl<'a> Labels<'a> {
     /// Notes by how much the number at one vertex exceeds that at another.
     ///
     /// # Errors
-    /// `Special` if that contradicts what is known: the mesh that is wound around overlaps itself.
-    pub(super) fn join(&mut self, a: VertexId, b: VertexId, more: i32) -> Result<(), Special> {
+    /// `Overlap` if that contradicts what is known: the mesh that is wound around overlaps itself.
+    pub(super) fn join(&mut self, a: VertexId, b: VertexId, more: i32) -> Result<(), Declined> {
         let (of_a, of_b) = (self.root(a), self.root(b));
         self.join_roots(of_a, of_b, more).map(|_| ())
     }
@@ -76,7 +76,7 @@ impl<'a> Labels<'a> {
     ///
     /// # Errors
     /// As for [`Self::join`].
-    pub(super) fn join_corners(&mut self, corners: [VertexId; 3]) -> Result<(), Special> {
+    pub(super) fn join_corners(&mut self, corners: [VertexId; 3]) -> Result<(), Declined> {
         if corners.iter().any(|v| self.is_touching(*v)) {
             let free: SmallVec<[VertexId; 3]> = corners
                 .into_iter()
@@ -106,7 +106,7 @@ impl<'a> Labels<'a> {
     ///
     /// # Errors
     /// As for [`Self::join`].
-    pub(super) fn join_cells(&mut self, face: &Arrangement) -> Result<(), Special> {
+    pub(super) fn join_cells(&mut self, face: &Arrangement) -> Result<(), Declined> {
         let corners = [0, 1, 2].map(|i| (face.face.vertices[i], face.at_corner(as_number(i))));
         let free = corners.into_iter().filter(|(v, _)| !self.is_touching(*v));
         let free: SmallVec<[_; 3]> = free.collect();
@@ -117,8 +117,8 @@ impl<'a> Labels<'a> {
     /// The number in front of the first cell of a face.
     ///
     /// # Errors
-    /// `Special` if that is not known at a corner, and all cells are too thin to count it.
-    pub(super) fn in_front_of(&mut self, face: &mut Arrangement) -> Result<i32, Special> {
+    /// `Thin` if that is not known at a corner, and all cells are too thin to count it.
+    pub(super) fn in_front_of(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let mut corners = (0..).zip(face.face.vertices);
         match corners.find(|(_, v)| !self.is_touching(*v)) {
             Some((i, vertex)) => Ok(self.at(vertex) - face.at_corner(i)),
@@ -127,8 +127,8 @@ impl<'a> Labels<'a> {
     }
 
     /// The number in front of the first cell of a face, counted along a ray.
-    fn counted(&mut self, face: &mut Arrangement) -> Result<i32, Special> {
-        let (cell, probe) = face.probe().ok_or(Special)?;
+    fn counted(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
+        let (cell, probe) = face.probe().ok_or(Declined::Thin)?;
         Ok(self.windings.in_front(face.face.plane, &probe) - face.cells[cell].in_front)
     }
 
@@ -145,11 +145,11 @@ impl<'a> Labels<'a> {
         (a, above_a): (usize, i32),
         (b, above_b): (usize, i32),
         more: i32,
-    ) -> Result<(usize, i32), Special> {
+    ) -> Result<(usize, i32), Declined> {
         // The number at a's root is that at b's root and this.
         let between = above_b + more - above_a;
         match a.cmp(&b) {
-            Ordering::Equal if between != 0 => Err(Special),
+            Ordering::Equal if between != 0 => Err(Declined::Overlap),
             Ordering::Equal => Ok((a, above_a)),
             Ordering::Greater => {
                 self.parents[a] = as_number(b);
@@ -189,12 +189,12 @@ impl<'a> Labels<'a> {
     /// Counts the number in front of the widest face of each class.
     ///
     /// # Errors
-    /// `Special` if one is too thin for it.
+    /// `Thin` if one is too thin for it.
     pub(super) fn note_widest<'b>(
         &mut self,
         arranged: &mut [Arrangement],
         others: impl Iterator<Item = &'b FaceId>,
-    ) -> Result<(), Special> {
+    ) -> Result<(), Declined> {
         let mut widest: HashMap<usize, (f64, Widest)> = HashMap::default();
         let divided = arranged.iter().map(|a| a.face.vertices);
         let divided = divided.enumerate().map(|(i, v)| (Widest::Divided(i), v));
@@ -228,9 +228,9 @@ impl<'a> Labels<'a> {
     }
 
     /// The number in front of a face that nothing divides, counted along a ray.
-    fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Special> {
+    fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Declined> {
         let plane = self.of.source.plane(face);
-        let probe = probe_of_face(&self.of.mesh.corners(face), &plane).ok_or(Special)?;
+        let probe = probe_of_face(&self.of.mesh.corners(face), &plane).ok_or(Declined::Thin)?;
         Ok(self.windings.in_front(&plane, &probe))
     }
 }

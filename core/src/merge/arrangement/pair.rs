@@ -1,11 +1,11 @@
 //! Two meshes as they were given: which of their faces may meet.
 
-use super::candidates::Operand;
+use super::candidates::{Candidates, Operand, Within};
 use super::kept::Kept;
 use super::occupancy::Occupancy;
 use super::probe::probe;
 use super::scene::Scene;
-use super::segments::contacts_of;
+use super::segments::{contacts_of, Contacts};
 use super::surfaces::Surfaces;
 use super::POOL;
 use crate::arith::convert::as_double;
@@ -14,8 +14,9 @@ use crate::geometry::doubles::Point;
 use crate::geometry::plane::Lattice;
 use crate::merge::expression::Expression;
 use crate::merge::lists::list::Sources;
+use crate::merge::profile::{Declined, Profile};
 use crate::mesh::tasks::{both, Worth};
-use crate::tree::node::Branch;
+use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
 /// What two operands leave, and how many faces were compared.
@@ -27,31 +28,32 @@ pub struct Arranged {
     pub compared: usize,
 }
 
-/// The value of an expression over two meshes as they were given; `None` if the operands are something
-/// else, or lie apart, or overlap themselves where they meet, or are crowded.
-pub fn arranged(expression: &Expression, solids: &[Solid], sources: &Sources) -> Option<Arranged> {
-    let operands = operands(expression, solids, sources)?;
-    let window = window(operands.each_ref().map(|o| o.bounds))?;
+/// The value of an expression over two meshes as they were given; notes its stages.
+///
+/// # Errors
+/// The reason for which it is left to the descent.
+pub fn arranged(
+    expression: &Expression,
+    solids: &[Solid],
+    sources: &Sources,
+    profile: &mut Profile,
+) -> Result<Arranged, Declined> {
+    let operands = operands(expression, solids, sources).ok_or(Declined::Operands)?;
+    let window = window(operands.each_ref().map(|o| o.bounds)).ok_or(Declined::Apart)?;
     let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
     let worth = Worth::pool_if(faces >= POOL);
-    let within = for_both(worth, |k| operands[k].within(&window));
-    probe(&operands, &within).ok()?;
+    let count = |found: &Result<Near, Declined>| found.as_ref().map_or(0, Near::len);
+    let near = profile.timed("candidates", || near(&operands, &window, worth), count)?;
+    let Near {
+        within,
+        mut candidates,
+    } = near;
+    let faces = candidates.each_mut().map(|c| std::mem::take(&mut c.faces));
+    let surfaces = Surfaces::new(operands.to_vec(), faces.to_vec());
+    let count = |found: &Result<Contacts, Declined>| found.as_ref().map_or(0, Contacts::len);
+    let search = || contacts_of(&surfaces, &candidates, worth);
+    let found = profile.timed("contacts", search, count)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
-    let occupied = for_both(worth, |k| {
-        let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);
-        Occupancy::of(&window, &within[k].boxes, triangle, compared)
-    });
-    let mut candidates = for_both(worth, |k| {
-        operands[k].candidates(&within[k], &occupied[1 - k], &window[0])
-    });
-    let surfaces = Surfaces::new(
-        operands.to_vec(),
-        candidates
-            .each_mut()
-            .map(|c| std::mem::take(&mut c.faces))
-            .to_vec(),
-    );
-    let found = contacts_of(&surfaces, &candidates, worth).ok()?;
     let scene = Scene {
         surfaces,
         near: within.map(|w| w.faces).to_vec(),
@@ -59,8 +61,42 @@ pub fn arranged(expression: &Expression, solids: &[Solid], sources: &Sources) ->
         kept: Kept::of(expression),
         worth,
     };
-    let root = scene.root(&found).ok()?;
-    Some(Arranged { root, compared })
+    let root = profile.timed("faces", || scene.root(&found), leaf_len)?;
+    Ok(Arranged { root, compared })
+}
+
+/// The number of elements that a leaf lists.
+pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
+    match root.as_ref().map(|branch| &*branch.node) {
+        Ok(Node::Deferred(leaf)) => leaf.len(),
+        _ => 0,
+    }
+}
+
+/// The faces in the window, and the candidates among them.
+struct Near {
+    within: [Within; 2],
+    candidates: [Candidates; 2],
+}
+
+impl Near {
+    fn len(&self) -> usize {
+        self.candidates.iter().map(|c| c.faces.len()).sum()
+    }
+}
+
+fn near(operands: &[Operand; 2], window: &[Point; 2], worth: Worth) -> Result<Near, Declined> {
+    let within = for_both(worth, |k| operands[k].within(window));
+    probe(operands, &within)?;
+    let compared = within.iter().map(|w| w.faces.len()).sum();
+    let occupied = for_both(worth, |k| {
+        let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);
+        Occupancy::of(window, &within[k].boxes, triangle, compared)
+    });
+    let candidates = for_both(worth, |k| {
+        operands[k].candidates(&within[k], &occupied[1 - k], &window[0])
+    });
+    Ok(Near { within, candidates })
 }
 
 /// A value for each operand, made at the same time where that pays.
@@ -99,7 +135,6 @@ mod tests {
     use super::*;
     use crate::merge::expression::Term;
     use crate::merge::scenes::{both as expression_of_both, cuboid, cuboids, tetrahedra};
-    use crate::tree::node::Node;
 
     fn sources(solids: &[Solid; 2]) -> Sources {
         Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect())
@@ -107,7 +142,9 @@ mod tests {
 
     /// The number of whole faces and of parts that an arrangement leaves.
     fn counts(solids: &[Solid; 2], term: fn(Vec<u32>) -> Term) -> Option<[usize; 2]> {
-        let found = arranged(&expression_of_both(term), solids, &sources(solids))?;
+        let sources = sources(solids);
+        let expression = expression_of_both(term);
+        let found = arranged(&expression, solids, &sources, &mut Profile::default()).ok()?;
         Some(match &*found.root.node {
             Node::Deferred(leaf) => [leaf.len() - leaf.parts.len(), leaf.parts.len()],
             _ => [0; 2],

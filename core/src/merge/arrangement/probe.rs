@@ -5,9 +5,9 @@
 
 use super::candidates::{Operand, Within};
 use super::contact::{contact, Contact};
-use super::triangulation::Special;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::spend;
+use crate::merge::profile::Declined;
 
 /// Faces that are compared with all faces of the other mesh.
 const SAMPLE: usize = 16;
@@ -21,8 +21,8 @@ const CROWD: usize = 128;
 /// Looks at some faces of the first mesh.
 ///
 /// # Errors
-/// `Special` if one of them touches another face, or boxes do not tell faces apart.
-pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Special> {
+/// `AllOver` if one of them touches another face, `Crowded` if boxes do not tell faces apart.
+pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
     let [first, second] = within;
     if first.faces.len().min(second.faces.len()) < WORTH_A_LOOK {
         return Ok(());
@@ -36,8 +36,11 @@ pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(),
         for (other, _) in others.filter(|(_, others)| bounds.meets(others)) {
             met += 1;
             let other = Facing::of(&operands[1].triangle(*other));
-            if met > CROWD * SAMPLE || matches!(contact(&facing, &other), Contact::Touching(_)) {
-                return Err(Special);
+            if met > CROWD * SAMPLE {
+                return Err(Declined::Crowded);
+            }
+            if matches!(contact(&facing, &other), Contact::Touching(_)) {
+                return Err(Declined::AllOver);
             }
         }
     }

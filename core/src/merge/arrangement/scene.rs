@@ -8,7 +8,6 @@ use super::kept::Kept;
 use super::labels::Labels;
 use super::segments::{Contacts, Cover, Edge, Point as CommonPoint, Segment};
 use super::surfaces::Surfaces;
-use super::triangulation::Special;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
@@ -16,6 +15,7 @@ use crate::geometry::plane::{normal, Plane};
 use crate::geometry::side::Orientation;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
+use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
@@ -67,8 +67,8 @@ impl<'a> Scene<'a> {
     /// The leaf of all that stays, given where faces meet.
     ///
     /// # Errors
-    /// `Special` if the faces do not show what stays.
-    pub(super) fn root(&self, found: &Contacts) -> Result<Branch, Special> {
+    /// The reason for which the faces do not show what stays.
+    pub(super) fn root(&self, found: &Contacts) -> Result<Branch, Declined> {
         let shared = self.shared(found);
         let mut leaf = Deferred {
             corner: i32::from(self.kept.outside()),
@@ -160,7 +160,7 @@ impl<'a> Scene<'a> {
         operand: usize,
         found: &'b Contacts,
         shared: &'b Shared,
-    ) -> Result<Vec<Arrangement<'b>>, Special> {
+    ) -> Result<Vec<Arrangement<'b>>, Declined> {
         let mut faces: Vec<u32> = shared.planes.keys().copied().collect();
         faces.retain(|f| self.surfaces.operand_of(*f) == operand);
         faces.sort_unstable();
@@ -181,10 +181,10 @@ impl<'a> Scene<'a> {
             faces.chunks(TASK).collect(),
             |block: &[u32]| {
                 let block = block.iter().map(|number| arranged(*number));
-                block.collect::<Result<Vec<_>, Special>>()
+                block.collect::<Result<Vec<_>, Declined>>()
             },
         );
-        let found: Result<Vec<Vec<_>>, Special> = found.into_iter().collect();
+        let found: Result<Vec<Vec<_>>, Declined> = found.into_iter().collect();
         Ok(found?.into_iter().flatten().collect())
     }
 
@@ -194,7 +194,7 @@ impl<'a> Scene<'a> {
         operand: usize,
         found: &Contacts,
         shared: &Shared,
-    ) -> Result<(Vec<Group>, Vec<PartElement>), Special> {
+    ) -> Result<(Vec<Group>, Vec<PartElement>), Declined> {
         let count = self.surfaces.operands[operand].mesh.faces.len();
         let mut fates = vec![Fate::of(self.kept.at(operand, 0)?, false); count];
         let mut parts = Vec::new();
@@ -205,7 +205,7 @@ impl<'a> Scene<'a> {
             }
             let mut labels = self.labels(operand, &mut arranged, &fates, found)?;
             let firsts = arranged.iter_mut().map(|a| labels.in_front_of(a));
-            let firsts = firsts.collect::<Result<Vec<i32>, Special>>()?;
+            let firsts = firsts.collect::<Result<Vec<i32>, Declined>>()?;
             self.decide(operand, &mut labels, &mut fates)?;
             for face in &found.touched {
                 if self.surfaces.operand_of(*face) == operand {
@@ -223,12 +223,14 @@ impl<'a> Scene<'a> {
         operand: usize,
         labels: &mut Labels,
         fates: &mut [Fate],
-    ) -> Result<(), Special> {
+    ) -> Result<(), Declined> {
         let mesh = self.surfaces.operands[operand].mesh;
         for id in &self.near[operand] {
             poll();
             if fates[id.place()] != Fate::Cut {
-                let number = labels.at_corners(mesh.vertices_of(*id)).ok_or(Special)?;
+                let number = labels
+                    .at_corners(mesh.vertices_of(*id))
+                    .ok_or(Declined::Thin)?;
                 fates[id.place()] = Fate::of(self.kept.at(operand, number)?, false);
             }
         }
@@ -242,7 +244,7 @@ impl<'a> Scene<'a> {
         arranged: &mut [Arrangement],
         fates: &[Fate],
         found: &Contacts,
-    ) -> Result<Labels<'a>, Special> {
+    ) -> Result<Labels<'a>, Declined> {
         let of = self.surfaces.operands[operand];
         let around = self.surfaces.operands[self.surfaces.operands.len() - 1 - operand];
         let mut labels = Labels::new(of, around, found.touching[operand].clone());
@@ -298,7 +300,7 @@ impl<'a> Scene<'a> {
         mut arranged: Vec<Arrangement>,
         firsts: Vec<i32>,
         fates: &mut [Fate],
-    ) -> Result<Vec<PartElement>, Special> {
+    ) -> Result<Vec<PartElement>, Declined> {
         let numbered = arranged.iter_mut().zip(firsts);
         let mut all: Vec<(FaceId, &mut Arrangement, i32)> = numbered
             .map(|(a, first)| (self.surfaces.id(a.face.number), a, first))
@@ -313,7 +315,7 @@ impl<'a> Scene<'a> {
                 let left = block
                     .iter_mut()
                     .map(|(_, a, first)| self.left_of(operand, a, *first));
-                left.collect::<Result<Vec<_>, Special>>()
+                left.collect::<Result<Vec<_>, Declined>>()
             },
         );
         let found: Vec<Vec<Left>> = found.into_iter().collect::<Result<_, _>>()?;
@@ -337,13 +339,13 @@ impl<'a> Scene<'a> {
         operand: usize,
         arrangement: &mut Arrangement,
         first: i32,
-    ) -> Result<Left, Special> {
+    ) -> Result<Left, Declined> {
         let stays = |cell: &FaceCell| self.kept.of_cell(operand, cell, first);
         let all = arrangement
             .cells
             .iter()
             .map(stays)
-            .collect::<Result<Vec<_>, Special>>()?;
+            .collect::<Result<Vec<_>, Declined>>()?;
         if all.iter().all(|s| *s == all[0]) {
             return Ok(Left::Whole(all[0]));
         }

@@ -7,13 +7,13 @@ use rustc_hash::FxHashMap as HashMap;
 use super::candidates::Candidates;
 use super::contact::{contact, Contact, End, Spot, Touching};
 use super::surfaces::Surfaces;
-use super::triangulation::Special;
 use super::PAIRS_FOR_EACH;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::{Facing, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Side;
 use crate::interrupt::{poll, spend};
+use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 
@@ -106,18 +106,18 @@ enum How {
 /// Where the candidates of two operands meet.
 ///
 /// # Errors
-/// `Special` if they are crowded.
+/// `Crowded` if they are crowded.
 pub(super) fn contacts_of(
     surfaces: &Surfaces,
     candidates: &[Candidates; 2],
     worth: Worth,
-) -> Result<Contacts, Special> {
+) -> Result<Contacts, Declined> {
     let [first, second] = candidates;
     let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.triangles.len() + second.triangles.len()));
     let visit = |block: &[[u32; 2]]| {
         let take = |left: usize| left.checked_sub(block.len());
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
-            .map_err(|_| Special)?;
+            .map_err(|_| Declined::Crowded)?;
         let triangle = |k: usize| move |face: u32| candidates[k].triangles[face as usize];
         Ok(met([&triangle(0), &triangle(1)], block, surfaces.second))
     };
@@ -168,6 +168,11 @@ fn met([ours, theirs]: [&dyn Fn(u32) -> Triangle; 2], pairs: &[[u32; 2]], second
 }
 
 impl Contacts {
+    /// The number of segments in all faces.
+    pub(super) fn len(&self) -> usize {
+        self.segments.len()
+    }
+
     /// Return whether no face divides or covers another one.
     pub(super) fn divide_nothing(&self) -> bool {
         self.segments.is_empty() && self.covers.is_empty()

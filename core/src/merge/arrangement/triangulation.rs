@@ -16,13 +16,10 @@ use crate::arith::{Int, Sign};
 use crate::geometry::doubles::turn;
 use crate::geometry::vertex::{Homogeneous, Vertex};
 use crate::interrupt::poll;
+use crate::merge::profile::Declined;
 
 /// No triangle: the border of the face.
 pub(super) const NONE: u32 = u32::MAX;
-
-/// Something that general position excludes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Special;
 
 /// A triangle by the places of its corners, counterclockwise. Edge `i` runs from corner `i` to the next.
 #[derive(Clone, Copy, Debug)]
@@ -270,8 +267,8 @@ impl Triangulation {
     /// Adds a point of the face; returns its number, or that of the point that is there.
     ///
     /// # Errors
-    /// `Special` if it lies outside.
-    pub(super) fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Special> {
+    /// `Defect` if it lies outside.
+    pub(super) fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Declined> {
         let point = self.add(vertex, 0);
         let (cell, on) = self.locate(point)?;
         self.last = cell;
@@ -299,7 +296,7 @@ impl Triangulation {
     /// The triangle that holds a point, and the edges on which it lies.
     ///
     /// A walk may go in circles if it tries edges in the same order each time.
-    fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Special> {
+    fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Declined> {
         let mut at = self.last;
         'walk: loop {
             poll();
@@ -314,7 +311,7 @@ impl Triangulation {
                 let [a, b] = [cell.corners[i], cell.corners[(i + 1) % 3]];
                 match self.turn([a, b, point]) {
                     Sign::Positive => {}
-                    Sign::Negative if cell.mates[i] == NONE => return Err(Special),
+                    Sign::Negative if cell.mates[i] == NONE => return Err(Declined::Defect),
                     Sign::Negative => {
                         at = cell.mates[i];
                         continue 'walk;
@@ -485,13 +482,13 @@ impl Triangulation {
     /// gives by the other segment's number.
     ///
     /// # Errors
-    /// `Special` if it leaves the face.
+    /// `Defect` if it leaves the face.
     pub(super) fn constrain(
         &mut self,
         [from, to]: [u32; 2],
         segment: u32,
         meet: impl Fn(u32) -> Arc<Vertex>,
-    ) -> Result<(), Special> {
+    ) -> Result<(), Declined> {
         let (mut at, mut goals) = (from, vec![to]);
         while let Some(goal) = goals.last().copied() {
             poll();
@@ -507,7 +504,7 @@ impl Triangulation {
                 }
                 Way::Blocked(cell, edge) => {
                     let mark = self.cells[cell as usize].marks[edge];
-                    let (other, _) = self.along(mark).next().ok_or(Special)?;
+                    let (other, _) = self.along(mark).next().ok_or(Declined::Defect)?;
                     let point = self.add(meet(other), 0);
                     self.split_edge(cell, edge, point);
                     goals.push(point);
@@ -538,7 +535,7 @@ impl Triangulation {
     }
 
     /// Marks an edge as a part of a segment.
-    fn mark(&mut self, from: u32, to: u32, segment: u32) -> Result<(), Special> {
+    fn mark(&mut self, from: u32, to: u32, segment: u32) -> Result<(), Declined> {
         let edges = [self.edge_between(from, to), self.edge_between(to, from)];
         let known = |at: &Option<(u32, usize)>| at.map(|(c, e)| self.cells[c as usize].marks[e]);
         let before = known(&edges[0])
@@ -550,7 +547,7 @@ impl Triangulation {
             before,
         });
         let sign = if before < 0 { -1 } else { 1 };
-        let mark = i32::try_from(self.runs.len()).map_err(|_| Special)? * sign;
+        let mark = i32::try_from(self.runs.len()).map_err(|_| Declined::Defect)? * sign;
         for (at, mark) in edges.into_iter().zip([mark, -mark]) {
             if let Some((cell, edge)) = at {
                 self.cells[cell as usize].marks[edge] = mark;
@@ -560,7 +557,7 @@ impl Triangulation {
     }
 
     /// The first stretch of the way from a point to another one.
-    fn way(&mut self, from: u32, to: u32) -> Result<Way, Special> {
+    fn way(&mut self, from: u32, to: u32) -> Result<Way, Declined> {
         if self.edge_between(from, to).is_some() || self.edge_between(to, from).is_some() {
             return Ok(Way::Free(to, Vec::new()));
         }
@@ -577,7 +574,7 @@ impl Triangulation {
             }
             let across = cell.mates[edge];
             if across == NONE {
-                return Err(Special);
+                return Err(Declined::Defect);
             }
             crossed.push([cell.corners[edge], cell.corners[(edge + 1) % 3]]);
             let back = self.edge_to(across, at);
@@ -595,7 +592,7 @@ impl Triangulation {
     }
 
     /// The first edge that the way from a point to another one crosses, or runs along.
-    fn first_crossed(&mut self, from: u32, to: u32) -> Result<Start, Special> {
+    fn first_crossed(&mut self, from: u32, to: u32) -> Result<Start, Declined> {
         for (number, k) in self.fan(from) {
             let corners = self.cells[number as usize].corners;
             let [right, left] = [1, 2].map(|i| corners[(k + i) % 3]);
@@ -609,7 +606,7 @@ impl Triangulation {
                 return Ok(Start::Edge(number, (k + 1) % 3));
             }
         }
-        Err(Special)
+        Err(Declined::Defect)
     }
 
     /// Return whether a point of the line through two others lies on the second one's side of the first.
@@ -786,7 +783,7 @@ mod tests {
         assert_eq!(cells.insert(vertex([64, 0])), Ok(1));
         let on_border = cells.insert(vertex([32, 32])).expect("on the border");
         assert_eq!(cells.rim([on_border, 2]), 1);
-        assert_eq!(cells.insert(vertex([40, 40])), Err(Special));
+        assert_eq!(cells.insert(vertex([40, 40])), Err(Declined::Defect));
         assert!((area(&cells) - 4096.0).abs() < 1e-9);
     }
 

@@ -2,6 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::merge::profile::Profile;
+
 /// Counts of what an evaluation did.
 ///
 /// # Example
@@ -38,6 +40,8 @@ pub struct Counters {
     pub leaves: AtomicU64,
     /// Elements in these.
     pub leaf_elements: AtomicU64,
+    /// The stages of the evaluation, once it has ended.
+    pub profile: Profile,
 }
 
 impl Counters {
@@ -65,6 +69,11 @@ impl Counters {
     /// The number of elements in cells that kernels took.
     pub fn taken(&self) -> u64 {
         self.leaf_elements.load(Ordering::Relaxed)
+    }
+
+    /// The number of cells that were visited.
+    pub(in crate::merge) fn visited(&self) -> usize {
+        usize::try_from(self.cells.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
     }
 
     /// The counts with their names.

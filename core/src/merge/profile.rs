@@ -1,0 +1,87 @@
+//! What an evaluation did, stage by stage.
+
+use std::time::Instant;
+
+/// A stage of an evaluation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stage {
+    /// Its name.
+    pub name: &'static str,
+    /// The time that it took.
+    pub seconds: f64,
+    /// The number of things that it found or made.
+    pub count: usize,
+}
+
+/// A reason for which an arrangement leaves the work to the descent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Declined {
+    /// The operands are not two different meshes as they were given, or the solid is no such mesh.
+    Operands,
+    /// The boxes around the meshes are apart.
+    Apart,
+    /// The meshes touch nearly everywhere.
+    AllOver,
+    /// Faces are crowded: boxes do not tell them apart.
+    Crowded,
+    /// A mesh overlaps itself where the other one meets it.
+    Overlap,
+    /// Faces are too thin to count winding numbers in front of them.
+    Thin,
+    /// A segment left its face: a defect.
+    Defect,
+}
+
+impl Declined {
+    /// The reason in words.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Operands => "the operands are not two different meshes as they were given",
+            Self::Apart => "the boxes around the meshes are apart",
+            Self::AllOver => "the meshes touch nearly everywhere",
+            Self::Crowded => "the faces are crowded: boxes do not tell them apart",
+            Self::Overlap => "a mesh overlaps itself where the other one meets it",
+            Self::Thin => "faces are too thin to count winding numbers in front of them",
+            Self::Defect => "a segment left its face, which is a defect",
+        }
+    }
+}
+
+/// The stages of an evaluation, in their order.
+///
+/// # Example
+/// ```
+/// use bspcsg::merge::profile::Profile;
+///
+/// let mut profile = Profile::default();
+/// let squares = profile.timed("squares", || vec![1, 4, 9], Vec::len);
+/// assert_eq!((squares[2], profile.stages[0].count), (9, 3));
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Profile {
+    /// What was done.
+    pub stages: Vec<Stage>,
+    /// The reason for which the arrangement left the work to the descent, if it did.
+    pub declined: Option<Declined>,
+}
+
+impl Profile {
+    /// Does the work of a stage.
+    pub fn timed<T>(
+        &mut self,
+        name: &'static str,
+        work: impl FnOnce() -> T,
+        count: impl FnOnce(&T) -> usize,
+    ) -> T {
+        let start = Instant::now();
+        let done = work();
+        let seconds = start.elapsed().as_secs_f64();
+        let count = count(&done);
+        self.stages.push(Stage {
+            name,
+            seconds,
+            count,
+        });
+        done
+    }
+}
