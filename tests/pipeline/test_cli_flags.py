@@ -210,7 +210,7 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
 @pytest.mark.parametrize(
     "line",
     [
-        "compare a.off c.stl --tol nan",
+        "compare a.off c.stl --tolerance nan",
         "compare a.off c.stl --samples 99999999999999999999",
         "validate a.off c.stl --samples 99999999999999999999",
         "repair a.off -o x.ply --timeout nan",

@@ -65,7 +65,7 @@ CODES = {
         "compare a.off c.stl",
         "clash a.off c.stl",
         "clash apart.off a.off --clearance 9mm",
-        "compare a.off near.off --tol 1e-6",
+        "compare a.off near.off --tolerance 1e-6",
         "convert third.off -o x.stl --fail-on-loss",
         "repair open.stl -o x.ply --steps orient",
     ],

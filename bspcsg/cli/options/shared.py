@@ -49,6 +49,26 @@ class FiniteRange(click.FloatRange):
         return number
 
 
+class Renamed(click.Option):
+    """An option with one value that takes its old name, too, which the help leaves out.
+
+    Parameters
+    ----------
+    *given, **options
+        As for any option.
+    old : str
+    """
+
+    def __init__(self, *given: Any, old: str, **options: Any) -> None:
+        super().__init__(*given, **options)
+        self._old = old
+
+    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        """Let the parser know both names."""
+        super().add_to_parser(parser, ctx)
+        parser.add_option(obj=self, opts=[self._old], dest=self.name, nargs=self.nargs)
+
+
 SECONDS = FiniteRange(0, MOST_SECONDS, min_open=True)
 
 #: Numbers of points to measure distances from; ten million take some seconds and a gigabyte.
