@@ -286,6 +286,12 @@ def warn_of_losses(findings: Iterable[Finding]) -> None:
             warnings.warn(finding.message, LossWarning, stacklevel=_levels_to_caller())
 
 
+def deprecated(old: str, new: str) -> None:
+    """Warn the caller of this package of what goes with the next version."""
+    message = f"{old} goes with the next version; use {new}."
+    warnings.warn(message, DeprecationWarning, stacklevel=_levels_to_caller())
+
+
 def _levels_to_caller() -> int:
     """Return how far up the code is that called this package, seen from the function above."""
     frame = sys._getframe(1)

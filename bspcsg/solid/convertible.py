@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any, overload
 
 from .._types import Scalar, Vector
 from ..above import above
+from ..errors import deprecated
 from ..mesh import leaving
 from .counting import uncounted
-from .measure import Measured, deprecated
+from .measure import Measured
 
 if TYPE_CHECKING:
     import manifold3d
@@ -144,7 +145,7 @@ class Convertible(Measured):
 
     def check(self, **options: Any) -> Any:
         """Do as `validate` does; deprecated."""
-        deprecated("check", "validate")
+        deprecated("Solid.check", "validate")
         return self.validate(**options)
 
     def _repr_html_(self) -> str | None:
