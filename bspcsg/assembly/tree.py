@@ -14,6 +14,7 @@ from ..attributes.colours import AnyColor, color_of
 from ..errors import Finding, invalid_parameter, warn_of_losses
 from ..geometry.transform import Factors
 from ..operations.setops import union
+from ..owned import owning
 from ..parameters import not_negative, of_kind, shown
 from ..solid.counting import uncounted
 from ..solid.movable import Movable
@@ -60,6 +61,7 @@ class Part:
         return moved(self.shape, self.factors)
 
 
+@owning
 class Assembly(Movable):
     """A tree of named, coloured, placed solids.
 

@@ -23,6 +23,7 @@ from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
+from ..owned import owning
 from ..parameters import (
     no_options,
     not_negative,
@@ -59,6 +60,7 @@ from .sayings import Sayings, later_attributes, said_of
 _SMALL = 20_000
 
 
+@owning
 class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 

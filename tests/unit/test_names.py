@@ -1,7 +1,12 @@
 """The names of the package are those of `__all__`, one object each, whoever asks for them."""
 
+import inspect
 import pickle
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 import bspcsg as b
 
@@ -27,3 +32,45 @@ def test_no_module_hides_a_public_name() -> None:
     # An import of `bspcsg.name` would put the module where the name was.
     beside = {path.stem for path in Path(b.__file__).parent.iterdir()}
     assert beside & set(b.__all__) <= set(b._PARTS)
+
+
+PUBLIC = [getattr(home, name) for home in (b, b.bsp) for name in home.__all__]
+CLASSES = [kind for kind in PUBLIC if inspect.isclass(kind) and kind.__module__[:6] == "bspcsg"]
+
+
+# Found: TypeErrors named classes that users do not know, as `Movable.translate`.
+def test_methods_are_named_after_public_classes() -> None:
+    known = {kind.__qualname__ for kind in CLASSES}
+    for kind in CLASSES:
+        for name, method in inspect.getmembers(kind, inspect.isfunction):
+            if not name.startswith("_") and method.__module__.startswith("bspcsg"):
+                assert method.__qualname__.partition(".")[0] in known, method.__qualname__
+                assert pickle.loads(pickle.dumps(method)) is method
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda s: s.translate(w=1), r"^Solid\.translate\(\) got an unexpected keyword"),
+        (lambda s: s.fillet(), r"^Solid\.fillet\(\) missing 2 required"),
+        (lambda s: s.project(3), r"^Solid\.project\(\) takes 1 positional"),
+        (lambda s: s.equals(), r"^Solid\.equals\(\) missing"),
+        (lambda s: s.load(), r"^Solid\.load\(\) missing"),
+        (lambda s: s.slice(0).cast(), r"^Region\.cast\(\) missing"),
+        (lambda s: b.Assembly("a", s).rotate(w=1), r"^Assembly\.rotate\(\) got"),
+    ],
+)
+def test_type_errors_name_the_class_that_was_used(call: Callable[[Any], Any], words: str) -> None:
+    with pytest.raises(TypeError, match=words):
+        call(b.cube(1))
+
+
+def test_own_copies_of_methods_are_the_same_methods() -> None:
+    from bspcsg.solid.edged import Edged
+
+    assert b.Solid.fillet is not Edged.fillet and b.Solid.fillet.__doc__ == Edged.fillet.__doc__
+    assert inspect.signature(b.Solid.fillet) == inspect.signature(Edged.fillet)
+    with b.union() as block:
+        part = b.box(4, 3, 2)
+        part.chamfer(part.edges().parallel("z"), 1)
+    assert block.solid.volume == 20

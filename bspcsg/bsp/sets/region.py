@@ -16,6 +16,7 @@ from ...geometry.arrays import doubles
 from ...geometry.per_axis import per_axis
 from ...geometry.transform import Factor
 from ...mesh import interop
+from ...owned import owning
 from ...parameters import (
     SEGMENTS,
     function_of,
@@ -45,6 +46,7 @@ FillRule: TypeAlias = WindingRule | Literal["negative"]
 _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
+@owning
 class Region(PlaneQueries):
     """A polygonal set of the plane.
 

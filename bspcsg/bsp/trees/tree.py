@@ -15,6 +15,7 @@ from ...formats.atomic import write_file
 from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
+from ...owned import owning
 from ...parameters import at_least, not_negative, shown, word
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 MARGIN = 0.05
 
 
+@owning
 class PartitionTree(Ordered):
     """A binary space partition tree over points, segments or polygons.
 
