@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._core import set_threads as _set_threads
 from .errors import LimitError, invalid_parameter
+from .meant import question
 
 if TYPE_CHECKING:
     from ._types import SetOp, WindingRule
@@ -233,7 +234,8 @@ def word(known: Iterable[str], value: Any, name: str) -> str:
     words = tuple(known)
     if isinstance(value, str) and value in words:
         return str(value)
-    raise invalid_parameter(f"{name} must be one of {', '.join(words)}, not {shown(value)}.")
+    message = f"{name} must be one of {', '.join(words)}, not {shown(value)}."
+    raise invalid_parameter(message + question(value, words))
 
 
 def function_of(value: Any, name: str) -> Callable[..., Any]:

@@ -20,7 +20,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ..errors import BspcsgError, FormatError, invalid_parameter, words_of
+from ..errors import BspcsgError, FormatError, invalid_parameter, unreadable, words_of
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
 from ..parameters import file_path, seconds, texts, values_by_name
@@ -103,7 +103,7 @@ def run_script(
     name, limit = file_path(path), seconds(timeout, "timeout")
     words, values = texts(arguments, "arguments"), values_by_name(defines, "defines")
     if not os.path.isfile(name):
-        raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
+        raise unreadable(name)
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
         answer = Path(folder, "answer")
         code = _run_child(_pickled((name, words, values, str(answer))), name, limit)

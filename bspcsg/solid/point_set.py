@@ -7,11 +7,12 @@ does not belong to the set, such as its tree, its lattice or how it was made. Al
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from .._types import SideArray
 from ..above import above
 from ..errors import invalid_parameter
+from ..meant import no_attribute
 from ..parameters import shown
 from .counting import uncounted
 
@@ -47,6 +48,12 @@ class PointSet(ABC):
     @abstractmethod
     def __sub__(self, other: Any) -> Self:
         """Difference."""
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Say which name is meant; checkers of types know all names as it is."""
+            raise no_attribute(self, name, f"{type(self).__name__!r} object")
 
     def union(self, *others: Self | Iterable[Self]) -> Self:
         """Return what is inside this set or one of the others; ``|`` does it with one."""

@@ -4,7 +4,7 @@ import inspect
 import pickle
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -57,7 +57,7 @@ def test_methods_are_named_after_public_classes() -> None:
         (lambda s: s.equals(), r"^Solid\.equals\(\) missing"),
         (lambda s: s.load(), r"^Solid\.load\(\) missing"),
         (lambda s: s.slice(0).cast(), r"^Region\.cast\(\) missing"),
-        (lambda s: b.Assembly("a", s).rotate(w=1), r"^Assembly\.rotate\(\) got"),
+        (lambda s: cast(Any, b.Assembly("a", s)).rotate(w=1), r"^Assembly\.rotate\(\) got"),
     ],
 )
 def test_type_errors_name_the_class_that_was_used(call: Callable[[Any], Any], words: str) -> None:
@@ -74,3 +74,39 @@ def test_own_copies_of_methods_are_the_same_methods() -> None:
         part = b.box(4, 3, 2)
         part.chamfer(part.edges().parallel("z"), 1)
     assert block.solid.volume == 20
+
+
+@pytest.mark.parametrize(
+    ("owner", "word", "name"),
+    [
+        (b.cube(1), "diff", "difference"),
+        (b.cube(1), "subtract", "difference"),
+        (b.cube(1), "add", "union"),
+        (b.Region.circle(1), "intersect", "intersection"),
+        (b.Region.circle(1), "xor", "symmetric_difference"),
+        (b.cube(1), "bounding_box", "bounds"),
+        (b.cube(1), "fillett", "fillet"),
+        (b.bsp.Intervals(), "add", "union"),
+        (b, "diff", "difference"),
+        (b, "symmetric_difference", "xor"),
+        (b, "cuboid", "cube"),
+    ],
+)
+def test_names_of_other_libraries_lead_to_the_one_here(owner: Any, word: str, name: str) -> None:
+    with pytest.raises(AttributeError, match=rf"no attribute '{word}'\. Is {name} meant\?$"):
+        getattr(owner, word)
+
+
+def test_names_that_nobody_can_mean_are_only_refused() -> None:
+    for owner, name in ((b.cube(1), "zzzzzz"), (b.cube(1), "_reps"), (b, "zzzzzz")):
+        with pytest.raises(AttributeError, match=rf"has no attribute '{name}'$"):
+            getattr(owner, name)
+    assert not hasattr(b.cube(1), "__array__") and not hasattr(b.cube(1), "diff")
+
+
+def test_operations_by_other_names_are_asked_about() -> None:
+    (v, f), op = (b.cube(1).vertices, b.cube(1).faces), "subtract"
+    with pytest.raises(b.InvalidParameterError, match=r"Is difference meant\?$"):
+        b.boolean(v, f, v, f, op)  # type: ignore[arg-type]
+    with pytest.raises(b.InvalidParameterError, match=r"Is difference meant\?$"):
+        b.bsp.merge(b.Region.circle(1), b.Region.circle(1), op)  # type: ignore[arg-type]

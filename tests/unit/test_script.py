@@ -131,7 +131,7 @@ def test_names_that_are_not_assigned_cannot_be_set(tmp_path: Path) -> None:
         b.run_script(path, defines={"size": 1, "sise": 2})
     assert caught.value.code == "unknown_name"
     assert str(caught.value) == (
-        f"{path}: the script assigns no variable sise at its top level. Did you mean size? It"
+        f"{path}: the script assigns no variable sise at its top level. Is size meant? It"
         " assigns size, a, c, d, e, f, result, late, early."
     )
     for name in "half", "sys", "b":
@@ -190,7 +190,7 @@ def test_scripts_that_end_without_an_answer(tmp_path: Path) -> None:
 
 
 def test_a_script_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(b.FormatError, match="no such file"):
+    with pytest.raises(b.FormatError, match="No such file"):
         b.run_script(tmp_path / "none.py")
 
 
@@ -260,5 +260,5 @@ def test_times_without_end(tmp_path: Path) -> None:
 
 
 def test_names_too_long_for_a_script() -> None:
-    with pytest.raises(b.FormatError, match="no such file"):
+    with pytest.raises(b.FormatError, match="No such file"):
         b.run_script("a" * 300)
