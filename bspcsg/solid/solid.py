@@ -480,7 +480,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
     def _mesh_at_hand(self) -> Mesh | None:
         """Return the mesh if it is known, or if a small result only has to be written out."""
-        leaf = self._node.content if self._placed is None and not self._factors else self._placed
+        leaf = self._placed or self._node.content
         if self._mesh is not None or not isinstance(leaf, TreeLeaf) or leaf.result.is_empty:
             return self._mesh
         stats = leaf.result.stats()

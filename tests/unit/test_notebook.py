@@ -91,3 +91,31 @@ def test_nothing_to_be_seen_has_no_pixels(shown: b.Solid | b.Region) -> None:
 def test_without_pillow_there_are_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "PIL", None)
     assert b.cube(1)._repr_png_() is None and "<svg" in b.cube(1)._repr_svg_()
+
+
+# Found: `PartitionTree` was text in notebooks, and traces printed thousands of characters.
+def test_trees_in_the_plane_are_pictures() -> None:
+    tree = b.bsp.PartitionTree([[(0, 0), (2, 1)], [(1, 0), (1, 3)]])
+    drawn = tree._repr_svg_()
+    assert drawn == tree.to_svg() and ElementTree.fromstring(drawn or "").tag.endswith("svg")
+    assert b.bsp.PartitionTree(b.cube(1).vertices[b.cube(1).faces])._repr_svg_() is None
+    assert b.bsp.PartitionTree([[(0,), (1,)]])._repr_svg_() is None
+
+
+def test_trees_too_large_to_draw_are_text(monkeypatch: pytest.MonkeyPatch) -> None:
+    tree = b.bsp.PartitionTree([[(0, 0), (2, 1)], [(1, 0), (1, 3)]])
+    monkeypatch.setattr("bspcsg.bsp.trees.tree._MOST_DRAWN", 2)
+    assert len(tree) == 3 and tree._repr_svg_() is None
+
+
+def test_traces_say_how_long_they_are() -> None:
+    segments = [[(k, 0), (k + 0.5, 3)] for k in range(40)]
+    tree = b.bsp.PartitionTree(segments)
+    traces = [
+        tree.trace(),
+        tree.trace_ray((-1, 1), (1, 0)),
+        b.Region.circle(2).tree.trace_merge(b.Region.circle(1).tree, "union"),
+    ]
+    for trace in traces:
+        words = repr(trace)
+        assert words.startswith(type(trace).__name__) and len(words) < 80, words

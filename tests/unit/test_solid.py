@@ -340,13 +340,18 @@ def test_repr_of_large_results_makes_no_mesh() -> None:
 def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     a = b.cube(1)
     assert repr(a) == "Solid(12 triangles, bounds (0, 0, 0) to (1, 1, 1))"
-    assert repr(a.rotate(30)).endswith("transformed)")
+    assert repr(a.translate(1, 2, 3)) == "Solid(12 triangles, bounds (1, 2, 3) to (2, 3, 4))"
+    assert repr(a.rotate(90).scale(z=2)) == "Solid(12 triangles, bounds (-1, 0, 0) to (0, 1, 2))"
+    far = a.scale(1e300).scale(1e300)
+    assert repr(far) == "Solid(12 triangles, transformed beyond all doubles)"
     difference = b.cube(2) - a
     assert repr(difference) == "Solid(pending: 2 operands)"
     assert difference.volume == 7
     count = len((b.cube(2) - a).faces)
     assert repr(difference) == f"Solid({count} triangles, bounds (0, 0, 0) to (2, 2, 2))"
-    assert repr(difference.rotate(30)) == "Solid(evaluated, without a mesh, transformed)"
+    assert (
+        repr(difference.rotate(90)) == f"Solid({count} triangles, bounds (-2, 0, 0) to (0, 2, 2))"
+    )
     moved = difference.translate(1, 0, 0)
     assert moved.volume == difference.volume
     assert repr(moved) == f"Solid({count} triangles, bounds (1, 0, 0) to (3, 2, 2))"
