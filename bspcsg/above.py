@@ -40,6 +40,8 @@ Convenience: TypeAlias = Literal[
     "save_svg",
     "shadow",
     "simplify_region",
+    "show",
+    "show_here",
     "slice_solid",
     "smooth",
     "region_png",

@@ -41,6 +41,8 @@ _HOMES: dict[Convenience, str] = {
     "save_svg": "bsp:save_svg",
     "shadow": "modelling.planar.shadows:shadow",
     "simplify_region": "modelling.planar.simplifying:simplify_region",
+    "show": "script.run:show",
+    "show_here": "report.viewer.showing:show",
     "slice_solid": "bsp:slice_solid",
     "smooth": "modelling.bodies.smoothing:smooth",
     "region_png": "report.viewer.notebook:region_png",

@@ -176,6 +176,10 @@ class Assembly(Movable):
         count = len(self.parts)
         return f"Assembly({self.name!r}, {count} part{'' if count == 1 else 's'})"
 
+    def show(self) -> None:
+        """Show the parts in a notebook or in a browser (see `bspcsg.show`)."""
+        above("show")(self)
+
     def _repr_html_(self) -> str | None:
         """Return what a notebook shows: an interactive view of the union."""
         page: str | None = above("solid_html")(self.to_solid())

@@ -56,6 +56,10 @@ class Convertible(Measured):
         """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
         above("save")(self, path, **options)
 
+    def show(self) -> None:
+        """Show the solid in a notebook or in a browser (see `bspcsg.show`)."""
+        above("show")(self)
+
     def to_csg(self, *, flat: bool = False) -> str:
         """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
         text: str = above("dumps")(self, flat=flat)

@@ -98,7 +98,7 @@ CODES = {
         "validate",
         "report results.jsonl",
         "view",
-        "lecture",
+        "lecture part.stl",
         "tree",
         "bench no-such-case",
         "doctor a.off",

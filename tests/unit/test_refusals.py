@@ -246,6 +246,8 @@ def _elsewhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("webbrowser.open", lambda _: True)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     if "from_dxf" in request.node.name:
         R.to_dxf("good.dxf")
     with warnings.catch_warnings():

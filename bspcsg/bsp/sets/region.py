@@ -509,6 +509,10 @@ class Region(PlaneQueries):
         """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
         above("save_dxf")(self, path)
 
+    def show(self) -> None:
+        """Show the region in a notebook, or as a slab in a browser (see `bspcsg.show`)."""
+        above("show")(self)
+
     def to_shapely(self) -> Any:
         """Return a ``shapely.MultiPolygon``; shapely must be installed."""
         shapely = interop.optional("shapely", "shapely")
