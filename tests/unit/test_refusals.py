@@ -31,9 +31,9 @@ def in_order(function: Callable[..., Any]) -> Callable[..., Any]:
     return lambda **given: function(*given.values())
 
 
-def watched(tell: Any, every: Any) -> None:
+def watched(tell: Any, every: Any, of: Any) -> None:
     """Do nothing, and be told of it."""
-    with b.progress(tell, every=every):
+    with b.progress(tell, every=every, of=of):
         pass
 
 
@@ -91,7 +91,7 @@ ROWS: dict[str, Row] = {
     ),
     "prism": (b.prism, {"sides": 5, "h": 1, "r": 1, "center": True}),
     "prism by d": (b.prism, {"sides": 5, "h": 1, "d": 1}),
-    "progress": (watched, {"tell": lambda told: None, "every": 1.0}),
+    "progress": (watched, {"tell": lambda told: None, "every": 1.0, "of": 2}),
     "revolve": (b.revolve, {"polygon": SQUARE, "angle": 90, "segments": 8}),
     "rounded_box": (b.rounded_box, {"size": (1, 2, 3), "r": 0.1, "segments": 8, "center": True}),
     "rounded_box of three": (in_order(b.rounded_box), {"x": 1, "y": 2, "z": 3, "r": 0.1}),
