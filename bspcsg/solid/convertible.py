@@ -157,9 +157,9 @@ class Convertible(Measured):
         page: str | None = above("solid_html")(self)
         return page
 
-    def _repr_svg_(self) -> str:
-        """Return a picture, for notebooks that show no HTML."""
-        picture: str = above("solid_svg")(self)
+    def _repr_svg_(self) -> str | None:
+        """Return a picture, for notebooks that show neither HTML nor pixels."""
+        picture: str | None = above("solid_svg")(self)
         return picture
 
     def _repr_png_(self) -> bytes | None:

@@ -28,12 +28,12 @@ def test_the_view_is_a_page_in_a_frame() -> None:
 
 
 def test_the_picture_is_svg() -> None:
-    drawn = (b.cube(2) - b.sphere(r=1.2, segments=16))._repr_svg_()
+    drawn = str((b.cube(2) - b.sphere(r=1.2, segments=16))._repr_svg_())
     assert ElementTree.fromstring(drawn).tag.endswith("svg") and drawn.count("<path") > 3
 
 
 def test_pictures_of_large_solids_stay_small() -> None:
-    assert len(b.sphere(r=1, segments=150)._repr_svg_()) < 150_000
+    assert len(str(b.sphere(r=1, segments=150)._repr_svg_())) < 150_000
 
 
 @pytest.mark.parametrize(
@@ -48,7 +48,7 @@ def test_pictures_of_large_solids_stay_small() -> None:
 )
 def test_solids_without_a_boundary_to_show(solid: b.Solid, words: str) -> None:
     assert words in str(solid._repr_html_())
-    drawn = solid._repr_svg_()
+    drawn = str(solid._repr_svg_())
     assert words in drawn and ElementTree.fromstring(drawn).tag.endswith("svg")
 
 
@@ -93,7 +93,7 @@ def test_nothing_to_be_seen_has_no_pixels(shown: b.Solid | b.Region) -> None:
 
 def test_without_pillow_there_are_no_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "PIL", None)
-    assert b.cube(1)._repr_png_() is None and "<svg" in b.cube(1)._repr_svg_()
+    assert b.cube(1)._repr_png_() is None and "<svg" in str(b.cube(1)._repr_svg_())
 
 
 # Found: `PartitionTree` was text in notebooks, and traces printed thousands of characters.
@@ -190,6 +190,16 @@ def test_the_cell_with_the_viewer_holds_it_when_it_runs_again(kernel: Kernel) ->
     again = kernel.run("a", SMALL, SMALL)
     assert [bundle() in shown for shown in again] == [True, False]
     assert bundle() not in kernel.run("b", SMALL)[0]
+
+
+def test_a_notebook_stores_one_picture_only(
+    kernel: Kernel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernel.run("a", SMALL)
+    assert SMALL._repr_svg_() is None and SMALL._repr_png_() is not None
+    assert "empty" in str(b.Solid.empty()._repr_svg_())
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    assert SMALL._repr_png_() is None and "<svg" in str(SMALL._repr_svg_())
 
 
 def test_outputs_on_pages_of_their_own_are_whole(

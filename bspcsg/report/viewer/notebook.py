@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from ...errors import BspcsgError, MissingPartError, held
 from .layer import Layer
-from .sharing import NOTEBOOK, running_cell, viewer_name
+from .sharing import NOTEBOOK, is_notebook, running_cell, viewer_name
 from .still import rough_picture
 from .view import view_page
 
@@ -41,7 +41,7 @@ def solid_html(solid: "Solid") -> str | None:
     count = f"{len(layer.faces):,} triangles"
     if len(layer.faces) > _MOST_IN_VIEW:
         said = f"{count} are too many for a notebook; save the solid and use bspcsg view."
-        return solid_svg(solid) + _paragraph(said)
+        return _picture(solid).svg + _paragraph(said)
     try:
         return framed([layer], f"solid of {count}")
     except MissingPartError:
@@ -63,12 +63,15 @@ def framed(layers: Sequence[Layer], title: str) -> str:
     return frame if cell is None else frame + NOTEBOOK.script(cell)
 
 
-def solid_svg(solid: "Solid") -> str:
-    """Return a picture of a solid as SVG; above some thousand triangles it shows the shape only."""
+def solid_svg(solid: "Solid") -> str | None:
+    """Return a picture of a solid as SVG; above some thousand triangles it shows the shape only.
+
+    None in a notebook that has pixels, too: it stores all forms that there are.
+    """
     sentence = _obstacle(solid)
     if sentence:
         return _words(sentence)
-    return _picture(solid).svg
+    return None if is_notebook() and _has_pillow() else _picture(solid).svg
 
 
 def solid_png(solid: "Solid") -> bytes | None:
@@ -108,6 +111,14 @@ def _png(picture: "Picture") -> bytes | None:
         if error.code != "missing_dependency":
             raise
         return None
+
+
+def _has_pillow() -> bool:
+    try:
+        import PIL  # noqa: F401
+    except ImportError:
+        return False
+    return True
 
 
 def _obstacle(solid: "Solid") -> str:
