@@ -103,12 +103,17 @@ class Picture:
         return len(self.painting.source)
 
     @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.painting.size
+
+    @property
     def _is_large(self) -> bool:
         return self.polygons > _MOST_IN_SVG
 
     def __repr__(self) -> str:
         """Say how large the picture is."""
-        width, height = self.painting.size
+        width, height = self.size
         return f"Picture({width} x {height}, {self.polygons} polygons)"
 
 
@@ -121,38 +126,38 @@ class _LargePicture(Picture):
     looks : Looks
     """
 
+    _scene: Triangles
+    _looks: "_Looks"
+
     def __init__(self, scene: Triangles, looks: "_Looks") -> None:
-        self.__dict__.update(
-            background=looks.background, line_width=looks.line_width, samples=looks.samples
-        )
+        names = ("background", "line_width", "samples")
+        self.__dict__.update({name: getattr(looks, name) for name in names})
         self.__dict__.update(_scene=scene, _looks=looks)
 
     @cached_property
     def painting(self) -> Painting:
         """Polygons in pixels, the farthest first."""
-        scene: Triangles = self.__dict__["_scene"]
-        corners = scene.vertices[scene.faces].reshape(-1, 3)
-        facets = Facets(corners, 3 * np.arange(len(scene.faces) + 1))
-        return _ordered(facets, None, scene.colours, self.__dict__["_looks"])
+        scene = self._scene
+        return _ordered(_facets((scene.vertices, scene.faces)), None, scene.colours, self._looks)
 
     @cached_property
     def png(self) -> bytes:
         """The picture as a PNG file; needs Pillow."""
-        scene, looks = self.__dict__["_scene"], self.__dict__["_looks"]
+        looks = self._looks
         size = canvas_size(looks.frame, self.samples)
         line = line_samples(self.line_width, self.samples)
-        seen = raster(scene, looks.camera, size, line=line, **looks.ways)
+        seen = raster(self._scene, looks.camera, size, line=line, **looks.ways)
         return png_of_samples(*seen, self.background, self.samples)
 
     @property
     def polygons(self) -> int:
         """The number of triangles."""
-        return len(self.__dict__["_scene"].faces)
+        return len(self._scene.faces)
 
-    def __repr__(self) -> str:
-        """Say how large the picture is."""
-        width, height = self.__dict__["_looks"].frame
-        return f"Picture({width} x {height}, {self.polygons} polygons)"
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self._looks.frame
 
 
 @dataclass(frozen=True)
@@ -251,9 +256,8 @@ def picture(
     frame = checked_size(size)
     word(get_args(Style), style, "style")
     word(get_args(Edges), edges, "edges")
-    facets, tree, mesh = _facets_of(scene)
-    count = len(mesh[1]) if facets is None else len(facets)
-    points = mesh[0] if facets is None else facets.corners
+    facets, mesh = _shapes_of(scene)
+    points, count = (facets.corners, len(facets)) if mesh is None else (mesh[0], len(mesh[1]))
     base = colours(DEFAULT if colors is None else colors, count, "colors")
     looks = _Looks(
         _camera(camera, view, points, frame),
@@ -266,9 +270,10 @@ def picture(
         positive(line_width, "line_width"),
         at_least(1, samples, "samples"),
     )
-    if facets is None and style != "edges" and in_front(points, looks.camera):
+    if mesh is not None and style != "edges" and in_front(points, looks.camera):
         return _LargePicture(Triangles(*mesh, base), looks)
-    painting = _ordered(_facets(mesh) if facets is None else facets, tree, base, looks)
+    tree = scene if isinstance(scene, PartitionTree) else None
+    painting = _ordered(facets, tree, base, looks)
     return Picture(painting, looks.background, looks.line_width, looks.samples)
 
 
@@ -298,8 +303,8 @@ def _camera(
     return camera
 
 
-def _facets_of(scene: Any) -> tuple[Facets | None, PartitionTree | None, MeshArrays]:
-    """Return the scene's facets, and the tree if the scene is one; of very large meshes the mesh.
+def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
+    """Return the scene's facets; of a very large mesh the mesh, too.
 
     Such a mesh has no corners twice, and none that no triangle has.
     """
@@ -309,15 +314,15 @@ def _facets_of(scene: Any) -> tuple[Facets | None, PartitionTree | None, MeshArr
             raise invalid_parameter(message)
         corners, offsets = scene.core.lattice()
         units: FloatArray = np.asarray(corners * 10.0**scene.pitch, dtype=np.float64)
-        return Facets(units, offsets), scene, (units, offsets)
-    mesh = mesh_of(scene)
-    triangles = mesh[0][mesh[1]]
-    _check_coordinates(triangles)
-    if len(triangles) <= _MOST_ORDERED:
-        return _facets(mesh), None, mesh
-    points, same = welded(mesh[0])
-    used, faces = compacted(same[mesh[1]])
-    return None, None, (points[used], faces)
+        return Facets(units, offsets), None
+    vertices, faces = mesh_of(scene)
+    facets = _facets((vertices, faces))
+    _check_coordinates(facets.corners.reshape(-1, 3, 3))
+    if len(facets) <= _MOST_ORDERED:
+        return facets, None
+    points, same = welded(vertices)
+    used, renumbered = compacted(same[faces])
+    return facets, (points[used], renumbered)
 
 
 def _facets(mesh: MeshArrays) -> Facets:
