@@ -25,7 +25,10 @@ with _Quietly():
             " installed, run Python in another folder; to compile the core here, run scripts/setup."
         ) from None
 
+    import sys as _sys
+
     from .conveniences import attach as _attach
+    from .meant import no_attribute as _no_attribute
 
 if TYPE_CHECKING:
     from ._core import __version__
@@ -180,7 +183,7 @@ def __getattr__(name: str) -> "Any":
     if name in _PARTS:
         return import_module(f".{name}", __name__)
     if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        raise _no_attribute(_sys.modules[__name__], name, f"module {__name__!r}")
     module = import_module(f".{_HOMES[name]}", __name__)
     value = getattr(module, name)
     globals()[name] = value

@@ -4,6 +4,8 @@ Every failure is a `BspcsgError` with a stable `code`, the places it concerns in
 sentence that says what is wrong and what to do.
 """
 
+import errno
+import os
 import sys
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -82,6 +84,27 @@ class LimitError(BspcsgError, OverflowError):
 
 class FormatError(BspcsgError, ValueError):
     """A file cannot be read as what it claims to be, or cannot be written."""
+
+
+class MissingFileError(FormatError, FileNotFoundError):
+    """A file is not there; as an `OSError` it has `errno` and `filename`, too."""
+
+    def __init__(self, message: str, code: str = "unreadable", where: Sequence[int] = ()) -> None:
+        super().__init__(message, code, where)
+        # OSError takes three arguments for its own.
+        self.args = harmless(message), code, tuple(where)
+        self.errno, self.strerror = errno.ENOENT, os.strerror(errno.ENOENT)
+
+    @classmethod
+    def of(cls, name: str, reason: str) -> "MissingFileError":
+        """Return the error for a file of this name."""
+        error = cls(f"{name}: cannot read this file: {reason}.")
+        error.filename = name
+        return error
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the sentence, the code and the place, with the name of the file."""
+        return type(self), self.args, {"filename": self.filename}
 
 
 class MissingPartError(BspcsgError, RuntimeError):
@@ -222,6 +245,22 @@ def words_of(error: BaseException) -> str:
     return printable.rstrip(". ") or type(error).__name__
 
 
+def unreadable(name: object, error: Exception | None = None) -> FormatError:
+    """Return the error for a file that cannot be read: for this reason, or because there is none.
+
+    Parameters
+    ----------
+    name : str or path
+    error : Exception, optional
+        What came of reading it.
+    """
+    if error is None or isinstance(error, FileNotFoundError):
+        reason = getattr(error, "strerror", None) or os.strerror(errno.ENOENT)
+        return MissingFileError.of(str(name), reason)
+    reason = getattr(error, "strerror", None) or type(error).__name__
+    return FormatError(f"{name}: cannot read this file: {reason}.", "unreadable")
+
+
 def invalid_parameter(message: str, where: Sequence[int] = ()) -> InvalidParameterError:
     """Return the error for a parameter out of its range."""
     return InvalidParameterError(message, "invalid_parameter", where)
@@ -284,6 +323,12 @@ def warn_of_losses(findings: Iterable[Finding]) -> None:
     for finding in findings:
         if finding.code in _LOSSES:
             warnings.warn(finding.message, LossWarning, stacklevel=_levels_to_caller())
+
+
+def deprecated(old: str, new: str) -> None:
+    """Warn the caller of this package of what goes with the next version."""
+    message = f"{old} goes with the next version; use {new}."
+    warnings.warn(message, DeprecationWarning, stacklevel=_levels_to_caller())
 
 
 def _levels_to_caller() -> int:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._core import set_threads as _set_threads
 from .errors import LimitError, invalid_parameter
+from .meant import question
 
 if TYPE_CHECKING:
     from ._types import SetOp, WindingRule
@@ -27,6 +28,9 @@ MOST_THREADS = 1024
 #: A circle of so many sides lies within 1.2e-9 of its radius of the true one, π²/2 / 2**32: more
 #: sides move no corner of a body of radius one by two steps of the lattice that it gets.
 MOST_SEGMENTS = 1 << 16
+
+#: Sides of a full circle, unless the caller says otherwise.
+SEGMENTS = 32
 
 #: Corners of one body. While its solid is made each takes some 600 bytes, all of them 2.4 GB.
 MOST_CORNERS = 4_000_000
@@ -156,6 +160,30 @@ def truth_value(value: Any, name: str) -> bool:
     raise invalid_parameter(f"{name} must be True or False, not {shown(value)}.")
 
 
+def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
+    """Return a radius, still unchecked, or half of a diameter.
+
+    Parameters
+    ----------
+    r, d : float or None
+        One of them, or none if there is a default.
+    owner : str
+        What has the radius, for errors: ``"A sphere"``.
+    default : float, optional
+
+    Raises
+    ------
+    InvalidParameterError
+        If both are given, or none and there is no default.
+    """
+    if r is not None and d is not None:
+        raise invalid_parameter("Give a radius or a diameter, not both.")
+    found = default if r is None and d is None else r if d is None else not_negative(d, "d") / 2
+    if found is None:
+        raise invalid_parameter(f"{owner} needs r, or d.")
+    return found
+
+
 def pair(value: Any, name: str) -> tuple[Any, Any]:
     """Return two entries, still unchecked: one alone stands for both."""
     try:
@@ -206,7 +234,8 @@ def word(known: Iterable[str], value: Any, name: str) -> str:
     words = tuple(known)
     if isinstance(value, str) and value in words:
         return str(value)
-    raise invalid_parameter(f"{name} must be one of {', '.join(words)}, not {shown(value)}.")
+    message = f"{name} must be one of {', '.join(words)}, not {shown(value)}."
+    raise invalid_parameter(message + question(value, words))
 
 
 def function_of(value: Any, name: str) -> Callable[..., Any]:

@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from .errors import MissingPartError, invalid_parameter
+from .meant import question
 from .operations.setops import OPERATIONS
 from .solid.counting import uncounted
 from .solid.solid import Solid
@@ -102,7 +103,8 @@ def boolean(
     given: list[Any] = list(meshes)
     if operation not in _KNOWN:
         known = ", ".join(_KNOWN)
-        raise invalid_parameter(f"Unknown operation {operation!r}; this engine has {known}.")
+        message = f"Unknown operation {operation!r}; this engine has {known}."
+        raise invalid_parameter(message + question(operation, _KNOWN))
     if operation == "difference" and len(given) < 2:
         raise invalid_parameter("A difference needs at least two meshes.")
     if check_volume:

@@ -1,27 +1,110 @@
 """Long calls that can be watched and stopped."""
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from ._core import watch
-from .parameters import function_of, not_negative
+from .parameters import at_least, function_of, not_negative
+
+#: Signs of a whole bar.
+_WIDTH = 30
+
+#: Seconds after which a bar appears, as short work needs none.
+_PATIENCE = 0.5
 
 
-@contextmanager
-def progress(tell: Callable[[float], object], *, every: float = 0.1) -> Iterator[None]:
-    """Call a function while operations run in a ``with`` block, which may stop them.
+class Steps:
+    """The steps of a block that are done, of a number that the block was given.
 
     Parameters
     ----------
-    tell : callable
-        Is given the seconds since the block began. An exception that it raises ends the operation
-        soon, and comes out of the call that was under way; the solids are as they were before it.
+    of : int or None
+        The number of all steps; None if nobody knows.
+    """
+
+    def __init__(self, of: int | None = None) -> None:
+        self.of = of
+        self.done = 0
+        self._tell: Callable[[], object] = lambda: None
+
+    def __call__(self, count: int = 1) -> None:
+        """Say that a step is done, or so many of them."""
+        self.done += at_least(0, count, "count")
+        self._tell()
+
+    @property
+    def share(self) -> float | None:
+        """The share of the steps that are done, from 0 to 1; None if nobody knows."""
+        return None if not self.of else min(self.done / self.of, 1.0)
+
+    def told_to(self, tell: Callable[[], object]) -> None:
+        """Let a function be called after each step."""
+        self._tell = tell
+
+
+class _Bar:
+    """One line of standard error, written anew again and again."""
+
+    def __init__(self, steps: Steps) -> None:
+        self._steps = steps
+        self._shown = ""
+        self._can_go_back = sys.stderr.isatty() or "ipykernel" in sys.modules
+
+    def tell(self, seconds: float) -> None:
+        """Write the line if somebody sees it, and it is time."""
+        if self._can_go_back and (self._shown or seconds >= _PATIENCE):
+            self._put(self._line(seconds))
+
+    def end(self, seconds: float) -> None:
+        """Leave the last line where it is."""
+        if self._shown:
+            self._put(self._line(seconds) + "\n")
+
+    def _line(self, seconds: float) -> str:
+        steps, share = self._steps, self._steps.share
+        counted = f"  {steps.done}" if steps.done else ""
+        if share is None:
+            return f"working …{counted}  {seconds:.1f} s"
+        filled = int(share * _WIDTH)
+        bar = "█" * filled + "░" * (_WIDTH - filled)
+        return f"{bar} {share:4.0%}{counted or '  0'} of {steps.of}  {seconds:.1f} s"
+
+    def _put(self, line: str) -> None:
+        rest = " " * max(len(self._shown) - len(line), 0)
+        sys.stderr.write(f"\r{line.rstrip()}{rest}{line[len(line.rstrip()) :]}")
+        sys.stderr.flush()
+        self._shown = line
+
+
+@contextmanager
+def progress(
+    tell: Callable[[float], object] | None = None, *, every: float = 0.1, of: int | None = None
+) -> Iterator[Steps]:
+    """Show a bar while operations run in a ``with`` block, or call a function, which may stop them.
+
+    Parameters
+    ----------
+    tell : callable, optional
+        Is given the seconds since the block began, instead of the bar. An exception that it raises
+        ends the operation soon, and comes out of the call that was under way; the solids are as
+        they were before it.
     every : float
         Seconds between two calls, at least; they come from the thread that opened the block.
+    of : int, optional
+        The number of steps in the block, for a share of work done.
+
+    Yields
+    ------
+    callable
+        Call it after each step; it has the steps that are `done`, and their `share`.
 
     Notes
     -----
+    The bar is on standard error, on a terminal and in notebooks; it shows the share if `of` says
+    how many steps there are, and the seconds. Work of less than half a second shows none.
+
     Other threads stop an operation by what `tell` looks at, such as a `threading.Event`. Operations
     that `tell` starts itself are not watched. What happens outside the core, as in manifold3d while
     a result is validated, is not interrupted.
@@ -29,6 +112,13 @@ def progress(tell: Callable[[float], object], *, every: float = 0.1) -> Iterator
     Examples
     --------
     >>> import bspcsg as b
+    >>> parts = [b.cube(2) - b.sphere(size) for size in (1, 1.2)]
+    >>> with b.progress(of=len(parts)) as step:
+    ...     for part in parts:
+    ...         print(part.volume < 8)
+    ...         step()
+    True
+    True
     >>> def patient(seconds):
     ...     if seconds > 60:
     ...         raise TimeoutError("this takes too long")
@@ -36,23 +126,35 @@ def progress(tell: Callable[[float], object], *, every: float = 0.1) -> Iterator
     ...     (b.cube(2) - b.sphere(1)).volume < 8
     True
     """
-    told, pause = function_of(tell, "tell"), not_negative(every, "every")
-    began = last = time.monotonic()
-    is_told = False
-
-    def look() -> None:
-        nonlocal last, is_told
-        now = time.monotonic()
-        if is_told or now - last < pause:
-            return
-        last, is_told = now, True
-        try:
-            told(now - began)
-        finally:
-            is_told = False
-
+    steps = Steps(None if of is None else at_least(1, of, "of"))
+    bar = _Bar(steps)
+    told = bar.tell if tell is None else function_of(tell, "tell")
+    pause, began = not_negative(every, "every"), time.monotonic()
+    look = _Look(told, pause, began)
+    steps.told_to(look)
     before = watch(look)
     try:
-        yield
+        yield steps
     finally:
         watch(before)
+        if tell is None:
+            bar.end(time.monotonic() - began)
+
+
+class _Look:
+    """The call of a function at times, not inside of itself."""
+
+    def __init__(self, told: Callable[[float], object], pause: float, began: float) -> None:
+        self._told, self._pause, self._began = told, pause, began
+        self._last = began
+        self._is_told = False
+
+    def __call__(self) -> None:
+        now = time.monotonic()
+        if self._is_told or now - self._last < self._pause:
+            return
+        self._last, self._is_told = now, True
+        try:
+            self._told(now - self._began)
+        finally:
+            self._is_told = False

@@ -25,7 +25,7 @@ for number, outline in enumerate(profile.outlines):
     print(f"outline {number}: {kind}, {len(outline.points)} corners, area {outline.area:.3f}")
 
 print("line through the middle:", profile.cast((-50, 0), (1, 0)).round(6).tolist())
-nearest, distance = profile.project([(0, 0)])
+nearest, distance = profile.nearest([(0, 0)])
 print("nearest to the origin:", nearest[0], "at", distance[0])
 print("convex parts:", len(profile.convex_parts()))
 

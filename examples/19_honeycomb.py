@@ -20,7 +20,7 @@ comb = ((panel - cells) | frame).extrude(core)
 plate = panel.extrude(sheet)
 sandwich = plate | comb.translate(0, 0, sheet) | plate.translate(0, 0, sheet + core)
 
-print("closed cells inside:", sandwich.to_mesh().components - 1)
+print("closed cells inside:", sandwich.to_mesh().surface_count - 1)
 solid = panel.extrude(core + 2 * sheet)
 print(f"share of a solid panel's volume: {sandwich.volume / solid.volume:.3f}")
 finish("honeycomb", plate | comb.translate(0, 0, sheet), colours=["#d9b23d"])

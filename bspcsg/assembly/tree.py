@@ -8,16 +8,16 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .._types import FloatArray, Scalar, Vector
+from .._types import FloatArray, Scalar
 from ..above import above
 from ..attributes.colours import AnyColor, color_of
 from ..errors import Finding, invalid_parameter, warn_of_losses
-from ..geometry import transform
-from ..geometry.arrays import axes_of
 from ..geometry.transform import Factors
 from ..operations.setops import union
+from ..owned import owning
 from ..parameters import not_negative, of_kind, shown
 from ..solid.counting import uncounted
+from ..solid.movable import Movable
 from ..solid.solid import Solid
 from .bill import Bill, bill_of
 from .clashes import Clash, are_apart, clashes_of
@@ -61,7 +61,8 @@ class Part:
         return moved(self.shape, self.factors)
 
 
-class Assembly:
+@owning
+class Assembly(Movable):
     """A tree of named, coloured, placed solids.
 
     Solids and assemblies may appear several times: instances share their geometry, in files, too.
@@ -175,36 +176,16 @@ class Assembly:
         count = len(self.parts)
         return f"Assembly({self.name!r}, {count} part{'' if count == 1 else 's'})"
 
+    def show(self) -> None:
+        """Show the parts in a notebook or in a browser (see `bspcsg.show`)."""
+        above("show")(self)
+
     def _repr_html_(self) -> str | None:
         """Return what a notebook shows: an interactive view of the union."""
         page: str | None = above("solid_html")(self.to_solid())
         return page
 
     # Transforms
-
-    def translate(self, *offset: Scalar | Vector) -> "Assembly":
-        """Return the assembly moved, as `Solid.translate` does."""
-        vector: Any = offset[0] if len(offset) == 1 else offset
-        return self._moved((transform.translation(vector),))
-
-    def rotate(self, angle: Scalar | Vector, axis: str | Vector = "z") -> "Assembly":
-        """Return the assembly rotated about an axis through the origin, in degrees."""
-        about: Any = angle
-        if axes_of(about) == 0:
-            return self._moved((transform.rotation(about, axis),))
-        return self._moved(transform.euler_rotation(about))
-
-    def scale(self, factor: Scalar | Vector) -> "Assembly":
-        """Return the assembly scaled about the origin."""
-        return self._moved((transform.scaling(factor),))
-
-    def mirror(self, normal: str | Vector) -> "Assembly":
-        """Return the mirror image in the plane through the origin with this normal."""
-        return self._moved((transform.mirroring(normal),))
-
-    def transform(self, matrix: Any) -> "Assembly":
-        """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors."""
-        return self._moved((transform.matrix_factor(matrix),))
 
     def _moved(self, factors: Factors) -> "Assembly":
         kept = tuple(factor for factor in factors if not factor.is_identity)

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from ..errors import FormatError
+from ..errors import FormatError, unreadable
 from ..formats.atomic import write_file
 from ..machine import machine
 from .engines import installed
@@ -62,8 +62,7 @@ def read(path: Path) -> dict[str, Any]:
     try:
         data = path.read_bytes()
     except OSError as error:
-        message = f"{path}: cannot read this file: {error.strerror}."
-        raise FormatError(message, "unreadable") from error
+        raise unreadable(path, error) from error
     try:
         record = json.loads(data)
     except (ValueError, RecursionError):

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, NotRequired, Self, TypedDict, cast
 
-from ..errors import FormatError
+from ..errors import FormatError, unreadable
 from ..machine import Machine
 
 #: The name that stands for standard input.
@@ -212,7 +212,7 @@ def _lines(path: Path) -> list[dict[str, Any]]:
         # Meshes kept beside a file that comes as a stream are looked for where it is read.
         data = sys.stdin.buffer.read() if str(path) == STREAM else path.read_bytes()
     except OSError as error:
-        raise FormatError(f"{path}: cannot read: {error.strerror}.", "unreadable") from error
+        raise unreadable(path, error) from error
     text = data.decode("utf-8", errors="replace")
     *whole, _torn = text.split("\n")
     return [_parsed(line, path, number) for number, line in enumerate(whole, 1) if line.strip()]

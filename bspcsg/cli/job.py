@@ -196,7 +196,7 @@ def mesh_values(mesh: "Mesh") -> dict[str, Any]:
     return {
         "triangles": len(mesh.faces),
         "vertices": len(mesh.vertices),
-        "surfaces": mesh.components if len(mesh.faces) else 0,
+        "surfaces": mesh.surface_count if len(mesh.faces) else 0,
         "genus": mesh.genus if len(mesh.faces) else 0,
         "volume": mesh.volume,
         "area": mesh.area,
@@ -233,7 +233,7 @@ def summary(name: str, mesh: "Mesh", timed: bool) -> str:
     if len(mesh.faces):
         triangles, surfaces = (
             counted(len(mesh.faces), "triangle"),
-            counted(mesh.components, "surface"),
+            counted(mesh.surface_count, "surface"),
         )
         measures = [f"genus {mesh.genus}", f"volume {mesh.volume:.9g}", "closed"]
         words = [name, triangles, surfaces, *measures]

@@ -11,6 +11,7 @@ import click
 
 from .._core import __version__
 from ..errors import BspcsgError, FormatError, InternalError, harmless
+from ..meant import question
 from .console import clock, output, standard, status, terminal
 
 _EPILOG = """\b
@@ -98,20 +99,13 @@ class _Verbs(click.Group):
     ) -> tuple[str | None, click.Command | None, list[str]]:
         known = {*_VERBS, *_ALIASES}
         if args and args[0] not in known and not args[0].startswith("-"):
-            raise click.UsageError(f"there is no verb {args[0]!r}.{_meant(args[0])}", ctx)
+            asks = question(args[0], _VERBS)
+            raise click.UsageError(f"there is no verb {args[0]!r}.{asks}", ctx)
         if args and args[0] in _FORMER and not terminal.QUIET.intersection(ctx.obj or ()):
             terminal.say(
                 "note", f"{args[0]} is called {_ALIASES[args[0]]} now; the old name goes later."
             )
         return super().resolve_command(ctx, args)
-
-
-def _meant(word: str) -> str:
-    """Return a question after the verb that a wrong one resembles."""
-    from difflib import get_close_matches
-
-    close = get_close_matches(word, _VERBS, n=1)
-    return f" Is {close[0]} meant?" if close else ""
 
 
 @click.group(

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..errors import FormatError, invalid_parameter
+from ..errors import FormatError, invalid_parameter, unreadable
 from ..parameters import file_path, seconds, shown, values_by_name
 from ..processes import run_program
 from .syntax.arguments import is_number
@@ -49,7 +49,7 @@ def read_scad(
     values = values_by_name(defines, "defines")
     _refuse_no_values(tuple(values.values()))
     if not os.path.isfile(name):
-        raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
+        raise unreadable(name)
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
         output = Path(folder, "model.csg")
         _convert(Path(name), output, values, limit)

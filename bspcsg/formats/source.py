@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from .._types import FloatArray
-from ..errors import FormatError
+from ..errors import FormatError, unreadable
 from ..parameters import file_path
 
 #: The mark that some editors put before a text.
@@ -223,8 +223,7 @@ def _readable(name: str) -> Iterator[None]:
     try:
         yield
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or type(error).__name__
-        raise FormatError(f"{name}: cannot read this file: {reason}.", "unreadable") from error
+        raise unreadable(name, error) from error
 
 
 def quoted(words: bytes) -> str:

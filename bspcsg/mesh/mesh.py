@@ -16,7 +16,7 @@ from .._core import surfaces_of as triangle_surfaces
 from .._types import FloatArray, IndexArray
 from ..attributes.attributes import Attributes, Later, Values
 from ..attributes.material import Material
-from ..errors import core_errors
+from ..errors import core_errors, deprecated
 from .certificate import Certificate, certify
 
 
@@ -157,14 +157,20 @@ class Mesh:
         return self._counts[2]
 
     @property
-    def components(self) -> int:
+    def surface_count(self) -> int:
         """Number of connected surfaces; the wall of a closed cavity is one of its own."""
         return self._counts[3]
 
     @property
+    def components(self) -> int:
+        """The old name of `surface_count`; deprecated."""
+        deprecated("Mesh.components", "surface_count")
+        return self.surface_count
+
+    @property
     def genus(self) -> int:
         """Number of handles, summed over all connected surfaces."""
-        return self.components - self.euler_number // 2
+        return self.surface_count - self.euler_number // 2
 
     def _middle(self) -> FloatArray:
         # Measuring from inside the mesh keeps the digits that a far origin would cancel.

@@ -126,7 +126,7 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
         signed_volume=mesh.volume,
         area=mesh.area,
         volume=None if solid is None else solid.volume,
-        surfaces=mesh.components if len(mesh.faces) else 0,
+        surfaces=mesh.surface_count if len(mesh.faces) else 0,
         genus=mesh.genus if edges.are_manifold else None,
         bounds=None if (box := mesh.bounds) is None else tuple(map(tuple, box.tolist())),
     )

@@ -1,8 +1,8 @@
 """Python scripts that make a solid: they leave a `result`, or call `show`.
 
-A script is an ordinary Python program; ``python part.py`` runs it as well, `show` then does
-nothing. `run_script` runs it in a process of its own, so that it can be stopped, cannot take its
-caller with it, and keeps what it prints off the caller's standard output: that goes to standard
+A script is an ordinary Python program; ``python part.py`` runs it as well, `show` then opens a page
+in a browser. `run_script` runs it in a process of its own, so that it can be stopped, cannot take
+its caller with it, and keeps what it prints off the caller's standard output: that goes to standard
 error. It is a program with all its user's rights all the same: run no script you would not run
 with ``python``.
 """
@@ -20,7 +20,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ..errors import BspcsgError, FormatError, invalid_parameter, words_of
+from ..above import above
+from ..errors import BspcsgError, FormatError, invalid_parameter, unreadable, words_of
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
 from ..parameters import file_path, seconds, texts, values_by_name
@@ -50,19 +51,34 @@ _SERVE = (
 #: A solid; of the result of an operation that, and the transform on it, for its pickle forgets it.
 _Made: TypeAlias = Solid | tuple[LastOperation, FactorChain]
 
-_shown: list[Solid] = []
+#: What a script has shown; None in a process that runs no script for another one.
+_shown: list[Solid] | None = None
 
 
 @uncounted
 def show(*solids: Any) -> None:
-    """Make solids part of a script's result; meshes of other libraries count as well.
+    """Show solids; in a script that `run_script` or the command line runs they are its result.
+
+    In a notebook each is displayed. Elsewhere a page with the interactive view of all is written
+    into the folder for temporary files and opened in the browser; where there is none, standard
+    error says which file it is.
 
     Parameters
     ----------
-    *solids : Solid or object
-        Whatever `Solid.from_mesh` takes.
+    *solids : Solid, Region, Assembly or object
+        Whatever `Solid.from_mesh` takes counts as a solid. A region is shown as a slab.
+
+    Raises
+    ------
+    UnboundedError
+        If one reaches to infinity.
+    InvalidParameterError
+        If one is empty.
     """
-    _shown.extend(Solid.from_mesh(solid) for solid in solids)
+    if _shown is None:
+        above("show_here")(*solids)
+    else:
+        _shown.extend(Solid.from_mesh(solid) for solid in solids)
 
 
 @counted
@@ -103,7 +119,7 @@ def run_script(
     name, limit = file_path(path), seconds(timeout, "timeout")
     words, values = texts(arguments, "arguments"), values_by_name(defines, "defines")
     if not os.path.isfile(name):
-        raise FormatError(f"{name}: cannot read this file: no such file.", "unreadable")
+        raise unreadable(name)
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as folder:
         answer = Path(folder, "answer")
         code = _run_child(_pickled((name, words, values, str(answer))), name, limit)
@@ -177,6 +193,8 @@ def _standard_error() -> int:
 
 
 def _answer(name: str, arguments: list[str], defines: dict[str, Any]) -> _Made | BspcsgError:
+    global _shown  # noqa: PLW0603  a process runs one script
+    _shown = []
     sys.argv = [name, *arguments]
     sys.path.insert(0, str(Path(name).parent.absolute()))
     program = ModuleType("__main__")

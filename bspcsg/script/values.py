@@ -3,10 +3,10 @@
 import ast
 from collections import deque
 from collections.abc import Iterable, Iterator
-from difflib import get_close_matches
 from types import CodeType
 
 from ..errors import FormatError
+from ..meant import question
 
 #: The global variable of a script that holds the values by their names.
 VALUES = "__defines__"
@@ -51,9 +51,7 @@ def _advice(unknown: str, known: list[str]) -> str:
     message = f"the script assigns no variable {unknown} at its top level"
     if not known:
         return f"{message}, nor any other."
-    close = get_close_matches(unknown, known, n=1)
-    guess = f" Did you mean {close[0]}?" if close else ""
-    return f"{message}.{guess} It assigns {', '.join(known)}."
+    return f"{message}.{question(unknown, known)} It assigns {', '.join(known)}."
 
 
 def _top_level(tree: ast.Module) -> Iterator[list[ast.stmt]]:

@@ -2,23 +2,26 @@
 
 Names and defaults follow OpenSCAD: bodies stand on the plane z = 0 and have their corner (boxes) or
 axis (round bodies) at the origin, unless ``center=True`` puts their middle there. Round bodies are
-polyhedra with `segments` sides around, their vertices on the true surface. Lengths are in model
-units; parameters that make no solid raise `InvalidParameterError`.
+polyhedra with `segments` sides around, by default 32 as everywhere in this package, their vertices
+on the true surface. Lengths are in model units; parameters that make no solid raise
+`InvalidParameterError`.
 """
 
 from typing import Any
 
 import numpy as np
 
-from .._types import Scalar, Vector
+from .._types import FloatArray, Scalar, Vector
 from ..errors import InvalidMeshError, invalid_parameter
 from ..geometry.hyperplane import Hyperplane
 from ..geometry.polygon import triangulate
 from ..geometry.transform import along, vector3
 from ..parameters import (
+    SEGMENTS,
     not_negative,
     number,
     positive,
+    radius,
     refuse_many_corners,
     sides_around,
     truth_value,
@@ -54,6 +57,17 @@ _BOX_FACES = np.array(
 )  # fmt: skip
 
 
+def edge_lengths(size: Any, y: Any = None, z: Any = None) -> FloatArray:
+    """Return three lengths above 0, given as one number, as three, or as a vector."""
+    alone = y is None and z is None
+    if not alone and (y is None or z is None):
+        raise invalid_parameter("A box has one edge length, or three: (1, 2, 3).")
+    lengths = vector3(size if alone else (size, y, z), "size", spread=alone)
+    for length in lengths:
+        positive(length, "size")
+    return lengths
+
+
 @counted
 def box(
     size: Scalar | Vector,
@@ -82,12 +96,7 @@ def box(
     """
     if isinstance(y, (bool, np.bool_)):
         y, center = None, bool(y)
-    if (y is None) != (z is None):
-        raise invalid_parameter("A box has one edge length, or three: box(1, 2, 3).")
-    given: Any = size if y is None else (size, y, z)
-    lengths = vector3(given, "size", spread=y is None)
-    for length in lengths:
-        positive(length, "size")
+    lengths = edge_lengths(size, y, z)
     corners = np.indices((2, 2, 2)).reshape(3, 8).T
     is_central = truth_value(center, "center")
     vertices = (corners - 0.5) * lengths if is_central else corners * lengths
@@ -95,13 +104,19 @@ def box(
 
 
 @counted
-def cube(size: Scalar | Vector, center: bool = False) -> Solid:
+def cube(
+    size: Scalar | Vector,
+    y: Scalar | bool | None = None,
+    z: Scalar | None = None,
+    *,
+    center: bool = False,
+) -> Solid:
     """Return a cube of this edge length, or a box: another name for `box`."""
-    return box(size, center=center)
+    return box(size, y, z, center=center)
 
 
 @counted
-def sphere(r: Scalar | None = None, segments: int = 32, *, d: Scalar | None = None) -> Solid:
+def sphere(r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | None = None) -> Solid:
     """Return a sphere about the origin, made of meridians and parallels.
 
     Parameters
@@ -117,12 +132,12 @@ def sphere(r: Scalar | None = None, segments: int = 32, *, d: Scalar | None = No
     >>> b.sphere(1, segments=4).to_mesh()
     Mesh(6 vertices, 8 faces)
     """
-    radius, around = positive(_radius(r, d, "A sphere"), "r"), sides_around(3, segments, "segments")
+    size, around = positive(radius(r, d, "A sphere"), "r"), sides_around(3, segments, "segments")
     bands = max(around // 2, 2)
     refuse_many_corners(around * bands, "This sphere")
     angles = unit_circle(2 * bands)[: bands + 1]
     # From pole to pole; both poles are on the axis and become one vertex each.
-    profile = np.column_stack([angles[:, 1], -angles[:, 0]]) * radius
+    profile = np.column_stack([angles[:, 1], -angles[:, 0]]) * size
     return from_arrays(*surface_of_revolution(profile, around, closed=False))
 
 
@@ -136,7 +151,7 @@ def cylinder(
     d: Scalar | None = None,
     d1: Scalar | None = None,
     d2: Scalar | None = None,
-    segments: int = 32,
+    segments: int = SEGMENTS,
     center: bool = False,
 ) -> Solid:
     """Return a cylinder, cone or frustum along z.
@@ -162,7 +177,7 @@ def cylinder(
     >>> b.cylinder(h=3, r=1, segments=4).volume
     6.0
     """
-    both = _radius(r, d)
+    both = None if r is None and d is None else radius(r, d, "A cylinder")
     low, high = (_end_radius(*end, both) for end in ((r1, d1), (r2, d2)))
     if low == high == 0:
         raise invalid_parameter("A cylinder needs a radius above 0.")
@@ -183,24 +198,31 @@ def cone(
     r: Scalar | None = None,
     *,
     d: Scalar | None = None,
-    segments: int = 32,
+    segments: int = SEGMENTS,
     center: bool = False,
 ) -> Solid:
     """Return a cone along z with its apex up: a `cylinder` whose upper radius is 0."""
-    radius = _radius(r, d, "A cone")
-    return cylinder(h, r1=radius, r2=0, segments=segments, center=center)
+    return cylinder(h, r1=radius(r, d, "A cone"), r2=0, segments=segments, center=center)
 
 
 @counted
-def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 16) -> Solid:
+def torus(
+    r: Scalar | None = None,
+    tube: Scalar | None = None,
+    *,
+    d: Scalar | None = None,
+    tube_d: Scalar | None = None,
+    segments: int = SEGMENTS,
+    tube_segments: int = SEGMENTS // 2,
+) -> Solid:
     """Return a torus around the z axis.
 
     Parameters
     ----------
-    r : float
-        From the axis to the middle of the tube.
-    tube : float
-        Radius of the tube, below `r`.
+    r, d : float
+        From the axis to the middle of the tube, or twice that instead.
+    tube, tube_d : float
+        Radius of the tube, below `r`, or its diameter instead.
     segments, tube_segments : int
         Sides around the axis and around the tube, at least 3.
 
@@ -210,7 +232,8 @@ def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 1
     >>> b.torus(3, 1).genus
     1
     """
-    major, minor = positive(r, "r"), positive(tube, "tube")
+    major = positive(radius(r, d, "The ring of a torus"), "r")
+    minor = positive(radius(tube, tube_d, "The tube of a torus"), "tube")
     if minor >= major:
         raise invalid_parameter("The tube of a torus must be thinner than its ring's radius.")
     along = sides_around(3, segments, "segments")
@@ -221,7 +244,14 @@ def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 1
 
 
 @counted
-def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
+def prism(
+    sides: int,
+    h: Scalar,
+    r: Scalar | None = None,
+    *,
+    d: Scalar | None = None,
+    center: bool = False,
+) -> Solid:
     """Return an upright regular prism.
 
     Parameters
@@ -230,8 +260,8 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
         At least 3.
     h : float
         Height.
-    r : float
-        From the axis to a vertical edge; the first one is on the x axis.
+    r, d : float
+        From the axis to a vertical edge, or twice that instead; the first one is on the x axis.
     center : bool
         True if the middle is at z = 0, instead of the lower end.
 
@@ -241,7 +271,8 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
     >>> b.prism(4, h=1, r=1).volume
     2.0
     """
-    return cylinder(h, r, segments=sides_around(3, sides, "sides"), center=center)
+    around = sides_around(3, sides, "sides")
+    return cylinder(h, radius(r, d, "A prism"), segments=around, center=center)
 
 
 @counted
@@ -288,18 +319,5 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     return from_leaf(PlaneLeaf(Hyperplane.from_numbers((x, y, z), offset)))
 
 
-def _radius(r: Scalar | None, d: Scalar | None, needed_by: str = "") -> Any:
-    """Return a radius, or half of a diameter; None if nobody needs one and none is given."""
-    if r is not None and d is not None:
-        raise invalid_parameter("Give a radius or a diameter, not both.")
-    if r is None and d is None and needed_by:
-        raise invalid_parameter(f"{needed_by} needs r, or d.")
-    return r if d is None else not_negative(d, "d") / 2
-
-
-def _end_radius(r: Scalar | None, d: Scalar | None, default: Any) -> float:
-    given = _radius(r, d)
-    value = default if given is None else given
-    if value is None:
-        raise invalid_parameter("A cylinder needs r, or both r1 and r2, or diameters.")
-    return not_negative(value, "r")
+def _end_radius(r: Scalar | None, d: Scalar | None, both: Any) -> float:
+    return not_negative(radius(r, d, "Each end of a cylinder", default=both), "r")

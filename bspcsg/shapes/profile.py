@@ -11,6 +11,7 @@ from ..errors import invalid_parameter
 from ..geometry.polygon import contours_of, directed_edges, triangulate
 from ..geometry.transform import cos_sin
 from ..parameters import (
+    SEGMENTS,
     at_least,
     not_negative,
     number,
@@ -126,7 +127,7 @@ def _rise(
 
 
 @counted
-def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = 32) -> Solid:
+def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) -> Solid:
     """Return the solid that a polygon sweeps around the z axis, from the x axis on.
 
     Parameters

@@ -5,9 +5,10 @@ from typing import TYPE_CHECKING, Any, overload
 
 from .._types import Scalar, Vector
 from ..above import above
+from ..errors import deprecated
 from ..mesh import leaving
 from .counting import uncounted
-from .measure import Measured, deprecated
+from .measure import Measured
 
 if TYPE_CHECKING:
     import manifold3d
@@ -54,6 +55,10 @@ class Convertible(Measured):
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
         above("save")(self, path, **options)
+
+    def show(self) -> None:
+        """Show the solid in a notebook or in a browser (see `bspcsg.show`)."""
+        above("show")(self)
 
     def to_csg(self, *, flat: bool = False) -> str:
         """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
@@ -144,7 +149,7 @@ class Convertible(Measured):
 
     def check(self, **options: Any) -> Any:
         """Do as `validate` does; deprecated."""
-        deprecated("check", "validate")
+        deprecated("Solid.check", "validate")
         return self.validate(**options)
 
     def _repr_html_(self) -> str | None:
@@ -152,9 +157,9 @@ class Convertible(Measured):
         page: str | None = above("solid_html")(self)
         return page
 
-    def _repr_svg_(self) -> str:
-        """Return a picture, for notebooks that show no HTML."""
-        picture: str = above("solid_svg")(self)
+    def _repr_svg_(self) -> str | None:
+        """Return a picture, for notebooks that show neither HTML nor pixels."""
+        picture: str | None = above("solid_svg")(self)
         return picture
 
     def _repr_png_(self) -> bytes | None:

@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import LimitError
+from ..geometry import transform
 from ..geometry.chain import FactorChain
 from ..mesh.mesh import Mesh
 from .expression import ExpressionNode, Pending, make_plan
@@ -21,8 +23,11 @@ def describe(node: ExpressionNode, factors: FactorChain, mesh: Mesh | None) -> s
         return f"pending: {count} operand{'' if count == 1 else 's'}{moved}"
     if isinstance(content, MeshLeaf):
         vertices, faces = content.arrays()
-        bounds = np.array([vertices.min(axis=0), vertices.max(axis=0)])
-        return _size(len(faces), bounds) + moved
+        try:
+            points = transform.apply(factors.product, vertices) if factors else vertices
+        except LimitError:
+            return f"{len(faces)} triangles{moved} beyond all doubles"
+        return _size(len(faces), np.array([points.min(axis=0), points.max(axis=0)]))
     if isinstance(content, PlaneLeaf):
         return "half-space" + moved
     if isinstance(content, ConstantLeaf):
@@ -36,5 +41,5 @@ def _size(faces: int, bounds: Any) -> str:
 
 
 def _box(bounds: Any) -> str:
-    low, high = ("(" + ", ".join(f"{x:.6g}" for x in corner) + ")" for corner in bounds)
+    low, high = ("(" + ", ".join(f"{x + 0.0:.6g}" for x in corner) + ")" for corner in bounds)
     return f"{low} to {high}"

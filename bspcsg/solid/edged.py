@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from .._types import Scalar
 from ..above import above
+from ..parameters import SEGMENTS
 from .counting import counted, uncounted
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class Edged:
         return solid
 
     @counted
-    def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = 32) -> "Solid":
+    def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = SEGMENTS) -> "Solid":
         """Return the solid with round surfaces instead of edges.
 
         Material is taken off along convex edges and filled in along concave ones, to a cylinder

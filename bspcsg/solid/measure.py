@@ -1,7 +1,6 @@
 """The measures of a solid: the queries, apart from the value that answers them."""
 
 import math
-import warnings
 from abc import ABC, abstractmethod
 from fractions import Fraction
 from typing import Any, Self
@@ -10,7 +9,7 @@ import numpy as np
 
 from .._core import Tree
 from .._types import FloatArray, IndexArray, SideArray
-from ..errors import Finding, core_errors
+from ..errors import Finding, core_errors, deprecated
 from ..mesh import interop
 from ..mesh.boxes import boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
@@ -149,13 +148,13 @@ class Measured(ABC):
     @property
     def volume_near(self) -> Fraction:
         """Volume to within 2**-100 cubic lattice steps; deprecated, see `exact_volume`."""
-        deprecated("volume_near", "volume or exact_volume")
+        deprecated("Solid.volume_near", "volume or exact_volume")
         return volume_near(self)
 
     @property
     def volume_residues(self) -> tuple[int, int] | None:
         """Six times the volume modulo two primes; deprecated, compare solids by ``==``."""
-        deprecated("volume_residues", "== or exact_volume")
+        deprecated("Solid.volume_residues", "== or exact_volume")
         return volume_residues(self)
 
     @property
@@ -200,13 +199,14 @@ class Measured(ABC):
         return self.normalized().to_mesh().euler_number
 
     @property
-    def components(self) -> int:
+    def surface_count(self) -> int:
         """Number of connected surfaces; the wall of a closed cavity is one of its own.
 
+        Before, this number was `components`, which has the parts now, each with its cavities.
         Surfaces that touch in a point or an edge only are apart, even where the edge lies in the
         middle of a face that goes on from one to the other, which the mesh does not divide there.
         """
-        return self._divided_mesh().components
+        return self._divided_mesh().surface_count
 
     @property
     def genus(self) -> int:
@@ -247,13 +247,6 @@ def volume_residues(solid: Measured) -> tuple[int, int] | None:
     """
     with core_errors():
         return solid.normalized().tree.volume_residues()
-
-
-def deprecated(name: str, instead: str) -> None:
-    """Say that a property or method of solids goes with the next version."""
-    message = f"Solid.{name} goes with the next version; use {instead}."
-    # The caller of the method.
-    warnings.warn(message, DeprecationWarning, stacklevel=3)
 
 
 def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:

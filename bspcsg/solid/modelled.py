@@ -1,10 +1,12 @@
 """The methods that make things of a solid with the floors above, apart from the value."""
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 from .._types import FloatArray, Scalar, Vector, WindingRule
 from ..above import above
+from ..parameters import SEGMENTS
+from .components import Components
 
 if TYPE_CHECKING:
     from ..bsp import HitLists, Hits
@@ -108,6 +110,23 @@ class Modelled:
         """
         parts: list[Solid] = above("decompose")(self)
         return parts
+
+    @property
+    def components(self) -> "tuple[Solid, ...]":
+        """The connected parts, each with its cavities, the largest volume first (see `decompose`).
+
+        Before, this was the number of connected surfaces: that is `surface_count`, and the number
+        of parts is ``len(solid.components)``. Compared with a number, the parts answer as that did,
+        with a `DeprecationWarning`.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> hollow = b.cube(3) - b.cube(1).translate(1, 1, 1)
+        >>> len(hollow.components), hollow.surface_count
+        (1, 2)
+        """
+        return Components.of(cast("Solid", self))
 
     def min_gap(self, other: "Solid") -> float:
         """Return the least distance of a point of one solid from one of the other.
@@ -275,7 +294,7 @@ class Modelled:
         bent: Solid = above("smooth")(self, n, sharp_angle)
         return bent
 
-    def offset(self, r: Scalar, *, segments: int = 16) -> "Solid":
+    def offset(self, r: Scalar, *, segments: int = SEGMENTS) -> "Solid":
         """Return the solid thickened by a ball, or made thinner if `r` is negative.
 
         All points of the ball about any point of the solid are in the result; for a negative `r`
@@ -310,7 +329,7 @@ class Modelled:
         moved: Solid = above("offset")(self, r, segments)
         return moved
 
-    def rounded(self, r: Scalar, *, segments: int = 16, inside: bool = False) -> "Solid":
+    def rounded(self, r: Scalar, *, segments: int = SEGMENTS, inside: bool = False) -> "Solid":
         """Return the solid with its edges rounded: what a ball that stays inside can reach.
 
         Parameters

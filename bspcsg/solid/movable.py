@@ -1,35 +1,51 @@
-"""The transforms of a solid, as methods."""
+"""The transforms of solids and of what is made of them, as methods."""
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import Any, Self
 
 from .._types import Scalar, Vector
 from ..errors import invalid_parameter
 from ..geometry import transform
 from ..geometry.arrays import axes_of
+from ..geometry.per_axis import per_axis
 from ..geometry.transform import Factors
 from ..parameters import number
 
-if TYPE_CHECKING:
-    from .solid import Solid
-
 
 class Movable(ABC):
-    """A solid that transforms move."""
+    """What transforms move in space."""
 
     __slots__ = ()
 
     @abstractmethod
-    def _moved(self, factors: Factors) -> "Solid":
-        """Return the solid moved by the factors, outermost first."""
+    def _moved(self, factors: Factors) -> Self:
+        """Return it moved by the factors, outermost first."""
 
-    def translate(self, *offset: Scalar | Vector) -> "Solid":
-        """Return the solid moved by three numbers or one vector, in model units.
+    def translate(
+        self,
+        *offset: Scalar | Vector,
+        x: Scalar | None = None,
+        y: Scalar | None = None,
+        z: Scalar | None = None,
+    ) -> Self:
+        """Return it moved by three numbers, one vector, or along the axes that are named.
 
         Exact if the numbers are whole lattice steps, as short decimals are.
+
+        Parameters
+        ----------
+        *offset : float or (3,) float
+            In model units.
+        x, y, z : float, optional
+            Instead of `offset`; 0 along an axis that is not named.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(1).translate(z=5) == b.cube(1).translate(0, 0, 5)
+        True
         """
-        vector: Any = offset[0] if len(offset) == 1 else offset
-        return self._moved((transform.translation(vector),))
+        return self._moved((transform.translation(per_axis(offset, "offset", x=x, y=y, z=z)),))
 
     def rotate(
         self,
@@ -40,8 +56,8 @@ class Movable(ABC):
         y: Scalar = 0,
         z: Scalar = 0,
         about: Vector = (0, 0, 0),
-    ) -> "Solid":
-        """Return the solid rotated about an axis.
+    ) -> Self:
+        """Return it rotated about an axis.
 
         Quarter turns about a coordinate axis are exact.
 
@@ -70,18 +86,70 @@ class Movable(ABC):
         factors = (transform.rotation(turn, axis),) if is_one else transform.euler_rotation(turn)
         return self._moved(transform.about(about, factors))
 
-    def scale(self, factor: Scalar | Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
-        """Return the solid scaled by one factor, or by one per axis; the point `about` stays."""
-        return self._moved(transform.about(about, (transform.scaling(factor),)))
+    def scale(
+        self,
+        factor: Scalar | Vector | None = None,
+        *others: Scalar,
+        x: Scalar | None = None,
+        y: Scalar | None = None,
+        z: Scalar | None = None,
+        about: Vector = (0, 0, 0),
+    ) -> Self:
+        """Return it scaled by one factor, by three, or along the axes that are named.
 
-    def mirror(self, normal: str | Vector, *, about: Vector = (0, 0, 0)) -> "Solid":
-        """Return the mirror image in the plane with this normal through the point `about`.
+        Parameters
+        ----------
+        factor : float or (3,) float
+        *others : float
+            The factors along y and z, if `factor` is that along x.
+        x, y, z : float, optional
+            Instead of `factor`; 1 along an axis that is not named.
+        about : (3,) float
+            The point that stays.
 
-        The normal is "x", "y", "z" or three numbers.
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(1).scale(z=2).volume, b.cube(1).scale(2).volume
+        (2.0, 8.0)
         """
-        return self._moved(transform.about(about, (transform.mirroring(normal),)))
+        given = () if factor is None else (factor, *others)
+        factors = per_axis(given, "scale factor", missing=1.0, x=x, y=y, z=z)
+        return self._moved(transform.about(about, (transform.scaling(factors),)))
 
-    def transform(self, matrix: Any) -> "Solid":
+    def mirror(
+        self,
+        normal: str | Vector | Scalar | None = None,
+        *others: Scalar,
+        x: Scalar | None = None,
+        y: Scalar | None = None,
+        z: Scalar | None = None,
+        about: Vector = (0, 0, 0),
+    ) -> Self:
+        """Return the mirror image in a plane.
+
+        Parameters
+        ----------
+        normal : {"x", "y", "z"} or (3,) float
+            Of the plane; need not have unit length.
+        *others : float
+            The y and z of the normal, if `normal` is its x.
+        x, y, z : float, optional
+            Instead of `normal`; 0 along an axis that is not named.
+        about : (3,) float
+            A point of the plane.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> b.cube(1).mirror("x") == b.cube(1).mirror(x=1) == b.cube(1).translate(x=-1)
+        True
+        """
+        given = () if normal is None else (normal, *others)
+        across = per_axis(given, "normal", x=x, y=y, z=z)
+        return self._moved(transform.about(about, (transform.mirroring(across),)))
+
+    def transform(self, matrix: Any) -> Self:
         """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
 
         Solids that were moved by bitwise equal matrices are combined first and moved afterwards.

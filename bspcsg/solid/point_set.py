@@ -6,12 +6,17 @@ does not belong to the set, such as its tree, its lattice or how it was made. Al
 """
 
 from abc import ABC, abstractmethod
-from typing import Any, Self
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from .._types import SideArray
+from ..above import above
 from ..errors import invalid_parameter
+from ..meant import no_attribute
 from ..parameters import shown
 from .counting import uncounted
+
+_Set = TypeVar("_Set", bound="PointSet")
 
 
 class PointSet(ABC):
@@ -43,6 +48,28 @@ class PointSet(ABC):
     @abstractmethod
     def __sub__(self, other: Any) -> Self:
         """Difference."""
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Say which name is meant; checkers of types know all names as it is."""
+            raise no_attribute(self, name, f"{type(self).__name__!r} object")
+
+    def union(self, *others: Self | Iterable[Self]) -> Self:
+        """Return what is inside this set or one of the others; ``|`` does it with one."""
+        return _combined("union", self, others)
+
+    def intersection(self, *others: Self | Iterable[Self]) -> Self:
+        """Return what is inside this set and all others; ``&`` does it with one."""
+        return _combined("intersection", self, others)
+
+    def difference(self, *others: Self | Iterable[Self]) -> Self:
+        """Return what is inside this set and none of the others; ``-`` does it with one."""
+        return _combined("difference", self, others)
+
+    def symmetric_difference(self, *others: Self | Iterable[Self]) -> Self:
+        """Return what is inside an odd number of the sets; ``^`` does it with one."""
+        return _combined("symmetric_difference", self, others)
 
     def __eq__(self, other: object) -> bool:
         """Say whether both are the same set of points, exactly."""
@@ -97,3 +124,12 @@ class PointSet(ABC):
     def __bool__(self) -> bool:
         """Say whether the set is not empty; this evaluates it."""
         return not self.is_empty
+
+
+def _combined(
+    operation: Literal["union", "intersection", "difference", "symmetric_difference"],
+    first: _Set,
+    others: Iterable[Any],
+) -> _Set:
+    made: _Set = above(operation)(first, *others)
+    return made

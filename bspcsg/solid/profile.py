@@ -48,7 +48,9 @@ class Profile:
     def lines(self) -> list[str]:
         """Return a line for each stage, and one for the reason."""
         lines = [f"{s.name}: {s.seconds:.4f} s, {s.count}" for s in self.stages]
-        return lines if self.handed_on is None else [*lines, f"to the descent, for {self.handed_on}"]
+        return (
+            lines if self.handed_on is None else [*lines, f"to the descent, for {self.handed_on}"]
+        )
 
     def __str__(self) -> str:
         """Return the lines as one text."""

@@ -11,6 +11,7 @@ from typing import Generic, Literal, TypeAlias, TypeVar
 
 from .._types import ProgramLine
 from ..errors import invalid_parameter
+from ..meant import question
 from ..parameters import shown
 
 Operator: TypeAlias = Literal["or", "and", "xor", "not"]
@@ -65,7 +66,8 @@ def program_of(op: str, count: int) -> list[ProgramLine]:
         If there is no such operation, or no operand.
     """
     if not isinstance(op, str) or op not in _NAMED:
-        raise invalid_parameter(f"Unknown operation {shown(op)}; one of {', '.join(_NAMED)}.")
+        message = f"Unknown operation {shown(op)}; one of {', '.join(_NAMED)}."
+        raise invalid_parameter(message + question(op, _NAMED))
     if count == 0:
         raise invalid_parameter(f"The {op} of no operands cannot be compared.")
     lines: list[ProgramLine] = [("leaf", [number]) for number in range(count)]

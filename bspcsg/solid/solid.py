@@ -23,6 +23,7 @@ from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
 from ..mesh import interop, visuals
 from ..mesh.mesh import Mesh
+from ..owned import owning
 from ..parameters import (
     no_options,
     not_negative,
@@ -60,6 +61,7 @@ from .sayings import Sayings, later_attributes, said_of
 _SMALL = 20_000
 
 
+@owning
 class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
@@ -495,7 +497,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
     def _mesh_at_hand(self) -> Mesh | None:
         """Return the mesh if it is known, or if a small result only has to be written out."""
-        leaf = self._node.content if self._placed is None and not self._factors else self._placed
+        leaf = self._placed or self._node.content
         if self._mesh is not None or not isinstance(leaf, TreeLeaf) or leaf.result.is_empty:
             return self._mesh
         stats = leaf.result.stats()

@@ -51,7 +51,7 @@ class Facts:
             mesh.volume,
             mesh.area,
             mesh.euler_number,
-            mesh.components,
+            mesh.surface_count,
             mesh.open_edges,
         )
 

@@ -58,7 +58,7 @@ def compare(solid: "b.Solid", expect: dict[str, Any]) -> None:
         "area": mesh.area,
         "vertices": len(mesh.vertices),
         "faces": len(mesh.faces),
-        "parts": mesh.components,
+        "parts": mesh.surface_count,
         "euler": mesh.euler_number,
         "empty": solid.is_empty,
     }

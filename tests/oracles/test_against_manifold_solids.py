@@ -46,7 +46,7 @@ def bodies() -> list[b.Solid]:
 
 def connected() -> list[b.Solid]:
     """Return bodies of one surface, and again moved, of which Manifold's genus is a sum's."""
-    own = [body for body in bodies() if len(body.decompose()) == 1 and body.components == 1]
+    own = [body for body in bodies() if len(body.decompose()) == 1 and body.surface_count == 1]
     return (own + [body.rotate(x=10, y=20, z=30) for body in own])[:10]
 
 
@@ -329,7 +329,7 @@ def test_every_method_of_manifold_has_a_row() -> None:
 
 
 def test_genus_is_that_of_manifold_where_there_is_one_surface() -> None:
-    single = [s for s in bodies() if len(s.faces) and s.normalized().to_mesh().components == 1]
+    single = [s for s in bodies() if len(s.faces) and s.normalized().to_mesh().surface_count == 1]
     assert len(single) >= 5
     for body in single:
         assert body.genus == body.to_manifold().genus() == 1 - body.euler_number // 2

@@ -48,6 +48,6 @@ def test_parts_of_prisms_are_prisms_over_parts(first: int, axis: str) -> None:
         assert len(parts) == len(expected), seed
         assert np.allclose([part.volume for part in parts], sorted(expected, reverse=True)), seed
         assert b.union(parts).volume == pytest.approx(prism.volume)
-        divided += prism.to_mesh().components < prism.components
+        divided += prism.to_mesh().surface_count < prism.surface_count
     # Else no edge lay in the middle of a wall that goes on from one part to another.
     assert divided > 0

@@ -72,7 +72,7 @@ def test_lines_through_regions(seed: int) -> None:
 def test_nearest_boundary_points(seed: int) -> None:
     region = bsp.Region(random_loops(seed, 1, 6, 9), winding="nonzero")
     points = np.random.default_rng(seed).uniform(-2, 10, (50, 2))
-    nearest, distance = region.project(points)
+    nearest, distance = region.nearest(points)
     loops = region.to_polygons()
     edges = [pair for p in loops for pair in zip(p, np.roll(p, -1, axis=0), strict=True)]
     samples = np.concatenate([np.linspace(a, e, 400) for a, e in edges])

@@ -24,7 +24,7 @@ def finding(solid: "b.Solid", code: str) -> "b.Finding | None":
 
 
 def shape(mesh: "b.Mesh") -> tuple[int, int]:
-    return mesh.components, mesh.genus
+    return mesh.surface_count, mesh.genus
 
 
 def bound_of(solid: "b.Solid") -> float:
@@ -203,7 +203,7 @@ def test_a_tolerance_beyond_the_model_leaves_a_body() -> None:
     before = ball(32) - b.cube(0.1)
     after = before.simplify(1000)
     mesh = after.to_mesh()
-    assert mesh.components == 2 and len(mesh.faces) <= 12
+    assert mesh.surface_count == 2 and len(mesh.faces) <= 12
     assert mesh.certificate.ok and 0 < mesh.volume < before.volume + 1
     assert bound_of(after) < 2.1
 

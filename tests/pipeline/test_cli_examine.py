@@ -89,17 +89,31 @@ def test_differences_as_json(folder: Path, capsys: Capture) -> None:
 
 def test_a_tolerance(folder: Path, capsys: Capture) -> None:
     put("longer.off", cuboid((0, 0, 0), (2, 2, 2.001)))
-    assert ran(capsys, "compare", "a.off", "longer.off", "--tol", "1e-4")[0] == 1
-    code, out, _ = ran(capsys, "compare", "a.off", "longer.off", "--tol", "0.01")
+    assert ran(capsys, "compare", "a.off", "longer.off", "--tolerance", "1e-4")[0] == 1
+    code, out, _ = ran(capsys, "compare", "a.off", "longer.off", "--tolerance", "0.01")
     assert code == 0 and out.endswith("The sets differ, within the tolerance.\n")
+
+
+def test_the_tolerance_has_its_old_name_and_units(folder: Path, capsys: Capture) -> None:
+    put("longer.off", cuboid((0, 0, 0), (2, 2, 2.001)))
+    for given in (
+        ["--tol", "0.01"],
+        ["--tol=0.01"],
+        ["--tolerance", "0.1um"],
+        ["--tolerance", "1m"],
+    ):
+        code = ran(capsys, "compare", "a.off", "longer.off", *given)[0]
+        assert code == (given[-1] == "0.1um")
+    _, out, _ = ran(capsys, "compare", "--help")
+    assert "--tolerance LENGTH" in out and "--tol " not in out
 
 
 @pytest.mark.parametrize(
     ("arguments", "code", "words"),
     [
         (["a.off"], 2, "Missing argument"),
-        (["a.off", "c.stl", "--tol", "-1"], 2, "--tol"),
-        (["a.off", "c.stl", "--tol", "1", "--samples", "0"], 2, "--samples"),
+        (["a.off", "c.stl", "--tolerance", "-1"], 2, "--tol"),
+        (["a.off", "c.stl", "--tolerance", "1", "--samples", "0"], 2, "--samples"),
         (["a.off", "none.stl"], 3, "none.stl"),
         (["a.off", "open.off"], 4, "not closed"),
     ],

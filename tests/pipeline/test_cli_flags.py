@@ -210,7 +210,7 @@ def test_files_beside_are_kept_as_well(folder: Path, capsys: Capture, words: lis
 @pytest.mark.parametrize(
     "line",
     [
-        "compare a.off c.stl --tol nan",
+        "compare a.off c.stl --tolerance nan",
         "compare a.off c.stl --samples 99999999999999999999",
         "crosscheck a.off c.stl --samples 99999999999999999999",
         "repair a.off -o x.ply --timeout nan",
@@ -370,7 +370,7 @@ def test_variables_of_python_scripts(folder: Path, capsys: Capture) -> None:
     assert (code, err) == (0, "") and b.load("x.off").volume == 7
     code, _, err = ran(capsys, "run", "m.py", "-o", "x.off", "-D", "sise=2")
     assert code == 3 and "m.py: the script assigns no variable sise" in err
-    assert "Did you mean size? It assigns size, word, sure, said, count, known, result." in err
+    assert "Is size meant? It assigns size, word, sure, said, count, known, result." in err
 
 
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="needs openscad")

@@ -1,5 +1,6 @@
 """Pictures at the command line."""
 
+import io
 import json
 import os
 from pathlib import Path
@@ -225,3 +226,33 @@ def test_doctor_knows_what_pictures_need(capsys: Capture, monkeypatch: pytest.Mo
     assert code == 6 and parts["pillow"]["found"] == ""
     assert parts["pillow"]["remedy"] == "pip install pillow"
     assert parts["ezdxf"]["found"]
+
+
+# Found: a textured file was drawn without a word on what is missing.
+def test_one_colour_of_a_texture_is_said(folder: Path, capsys: Capture) -> None:
+    data = io.BytesIO()
+    Image.fromarray(np.full((4, 4, 3), (255, 0, 0), dtype=np.uint8)).save(data, "PNG")
+    cube = b.cube(2).to_mesh()
+    textured = b.Solid(
+        cube.vertices,
+        cube.faces,
+        vertex_attributes={"uv": np.full((8, 2), 0.5)},
+        face_attributes={"material": ["red"] * 12},
+        materials={"red": b.Material((1, 1, 1), texture=data.getvalue())},
+    )
+    textured.save("red.glb")
+    code, _, err = ran(capsys, "render", "red.glb", "-o", "x.png", "--background", "white")
+    assert code == 0 and "of its texture a face shows one colour" in err
+    _, green, blue = np.asarray(Image.open("x.png").convert("RGB"))[200, 400]
+    assert green == blue == 0
+    assert "texture" not in ran(capsys, "render", "a.off", "-o", "x.png")[2]
+    assert "texture" not in ran(capsys, "render", "red.glb", "-o", "x.png", "--colours", "part")[2]
+
+
+def test_very_many_triangles_are_drawn_by_a_buffer(
+    folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("bspcsg.bsp.painting.picture._MOST_ORDERED", 0)
+    monkeypatch.setattr("bspcsg.bsp.painting.picture.painted", None)
+    code, out, _ = ran(capsys, "render", "a.off", "c.stl", "-o", "x.png", "--view", "top")
+    assert code == 0 and "24 polygons" in out and Path("x.png").stat().st_size > 500

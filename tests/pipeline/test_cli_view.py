@@ -58,6 +58,19 @@ def test_the_page_is_called_as_the_file_and_not_as_a_part_of_it(
     assert Path(told["output"]).name == "two.html"
 
 
+# Found: `lecture` demanded -o, `view` did not.
+def test_the_lecture_is_a_temporary_page_that_is_opened(
+    folder: Path, capsys: Capture, opened: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(folder))
+    code, out, err = ran(capsys, "lecture", "--json")
+    page = Path(json.loads(out)["output"])
+    assert (code, err, opened) == (0, "", [page.as_uri()]) and page.is_relative_to(folder)
+    assert ran(capsys, "lecture", "-o", "x.html")[0] == 0 and len(opened) == 1
+    monkeypatch.setenv("DISPLAY", "")
+    assert "note: there is no screen here" in ran(capsys, "lecture")[2]
+
+
 @pytest.mark.parametrize(
     ("changes", "arguments", "words"),
     [

@@ -25,6 +25,14 @@ def files(folder: Path) -> None:
 #: Commands, exit codes, and what appears on standard error, in order.
 ERRORS = [
     (["unoin"], 2, "there is no verb 'unoin'. Is union meant?\n  Try: bspcsg --help"),
+    (["diff"], 2, "there is no verb 'diff'. Is difference meant?\n  Try: bspcsg --help"),
+    (["subtract"], 2, "there is no verb 'subtract'. Is difference meant?\n  Try: bspcsg --help"),
+    (["add"], 2, "there is no verb 'add'. Is union meant?\n  Try: bspcsg --help"),
+    (
+        ["intersect"],
+        2,
+        "there is no verb 'intersect'. Is intersection meant?\n  Try: bspcsg --help",
+    ),
     (["boolean"], 2, "there is no verb 'boolean'.\n  Try: bspcsg --help"),
     (
         ["union", "a.off", "-o", "x.ply"],

@@ -198,7 +198,7 @@ def test_measures_and_topology(name: str) -> None:
         assert float(solid.volume_exact) == pytest.approx(case.volume, rel=1e-8)
     if case.area is not None:
         assert mesh.area == pytest.approx(case.area, rel=1e-8)
-    assert (mesh.euler_number, mesh.components) == (case.euler, case.parts)
+    assert (mesh.euler_number, mesh.surface_count) == (case.euler, case.parts)
     assert solid.genus == case.parts - case.euler // 2
 
 

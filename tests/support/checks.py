@@ -64,4 +64,4 @@ def assert_sound(solid: "b.Solid") -> "b.Mesh":
 
 def facts(mesh: "b.Mesh") -> tuple[int, int, int]:
     """Return vertices, faces and connected surfaces."""
-    return len(mesh.vertices), len(mesh.faces), mesh.components
+    return len(mesh.vertices), len(mesh.faces), mesh.surface_count

@@ -59,7 +59,7 @@ def test_measures() -> None:
     assert list(s.bounds or ()) == [0, 6]
     assert [part.pairs.tolist() for part in s.components] == [[[0, 1]], [[4, 6]]]
     assert s.classify([0, 0.5, 1, 2]).tolist() == [0, 1, 0, -1]
-    nearest, distance = s.project([2, 3, -5, 0.4])
+    nearest, distance = s.nearest([2, 3, -5, 0.4])
     assert nearest[:, 0].tolist() == [1, 4, 0, 0]
     assert distance.tolist() == [1, 1, 5, 0.4]
     assert bsp.Intervals([(0, 0.1)]).measure == Fraction(1, 10)
@@ -103,9 +103,9 @@ def test_bad_pairs(pairs: Any) -> None:
 
 def test_bad_questions() -> None:
     with pytest.raises(b.InvalidMeshError):
-        bsp.Intervals().project([1])
+        bsp.Intervals().nearest([1])
     with pytest.raises(b.InvalidMeshError):
-        bsp.Intervals([(0, 1)]).project([math.nan])
+        bsp.Intervals([(0, 1)]).nearest([math.nan])
     with pytest.raises(b.InvalidMeshError):
         bsp.Intervals([(0, 1)]).scale(0)
     with pytest.raises(b.LimitError):

@@ -161,7 +161,7 @@ def test_boundary_measures_the_set(dimension: int) -> None:
 def test_nearest_boundary_points(dimension: int) -> None:
     cube = bsp.ObjectTree(box_facets(np.zeros(dimension), np.full(dimension, 4.0)))
     points = np.random.default_rng(1).uniform(-3, 7, (60, dimension))
-    nearest, distance = cube.project(points)
+    nearest, distance = cube.nearest(points)
     inside = cube.classify(points) > 0
     # Inside a box the nearest wall, outside the point clamped to it.
     clamped = np.linalg.norm(points - np.clip(points, 0, 4), axis=1)
@@ -170,7 +170,7 @@ def test_nearest_boundary_points(dimension: int) -> None:
     assert np.allclose(np.linalg.norm(points - nearest, axis=1), distance)
     assert 0 < inside.sum() < 60
     with pytest.raises(b.InvalidMeshError):
-        bsp.ObjectTree.uniform(dimension, full=False).project(points)
+        bsp.ObjectTree.uniform(dimension, full=False).nearest(points)
 
 
 @pytest.mark.parametrize("dimension", DIMENSIONS)

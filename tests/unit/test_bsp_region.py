@@ -133,7 +133,7 @@ def test_questions() -> None:
     assert region.cast((0, 1), (1, 0)).tolist() == [[0, 1], [3, 4], [7, 8]]
     assert (~region).cast((0, 10), (1, 1)).tolist() == [[-math.inf, math.inf]]
     assert region.cast((0, -1), (1, 0)).shape == (0, 2)
-    nearest, distance = region.project([(2, 1.9), (-3, -4)])
+    nearest, distance = region.nearest([(2, 1.9), (-3, -4)])
     assert nearest.tolist() == [[2, 1], [0, 0]]
     assert distance.tolist() == pytest.approx([0.9, 5])
 
@@ -239,9 +239,9 @@ def test_bad_parameters() -> None:
         lambda: R.half_plane((1, 0, 0), 1),
         lambda: plate().cast((0, 0), (0, 0)),
         lambda: plate().cast((0, math.inf), (1, 0)),
-        lambda: plate().project([(math.nan, 0)]),
-        lambda: plate().project([1, 2, 3]),
-        lambda: R.full().project([(0, 0)]),
+        lambda: plate().nearest([(math.nan, 0)]),
+        lambda: plate().nearest([1, 2, 3]),
+        lambda: R.full().nearest([(0, 0)]),
         lambda: plate().transform(np.zeros((3, 3))),
         lambda: plate().scale(0),
         lambda: plate().translate(1, 2, 3),
@@ -284,3 +284,11 @@ def test_named_operations_refuse_a_mixture(operation: Any, other: Any) -> None:
     for operands in [(R.rectangle(1, 1), other), (other, R.rectangle(1, 1))]:
         with pytest.raises(b.InvalidParameterError):
             operation(*operands)
+
+
+def test_nearest_points_have_their_old_name() -> None:
+    for one in (plate(), plate().tree, bsp.Intervals([(0, 1)])):
+        with pytest.warns(DeprecationWarning, match=r"project goes .* use nearest") as warned:
+            found = one.project([[0.5, 0.5][: one.dimension]])
+        assert warned[0].filename == __file__
+        assert (found[0] == one.nearest([[0.5, 0.5][: one.dimension]])[0]).all()

@@ -202,11 +202,11 @@ class TestValues:
 
     def test_nearest_points(self) -> None:
         line = SubHyperplane((0, 1), 2, Intervals([(-4, -3), (-1, 0)]))
-        nearest, distance = line.project([(0.5, 5), (1.5, 2), (9, 2)])
+        nearest, distance = line.nearest([(0.5, 5), (1.5, 2), (9, 2)])
         assert nearest.tolist() == [[0.5, 2], [1, 2], [4, 2]]
         assert distance.tolist() == [3, 0.5, 5]
         with pytest.raises(InvalidParameterError):
-            (line - line).project([(0, 0)])
+            (line - line).nearest([(0, 0)])
 
     @pytest.mark.parametrize(
         ("normal", "part"),

@@ -315,7 +315,7 @@ def test_counts_of_random_triangles() -> None:
         linked = nx.Graph(edges)
         mesh = b.Mesh(rng.normal(size=(most, 3)), faces, np.zeros((len(faces), 2), np.int64))
         assert mesh.open_edges == sum(is_open)
-        assert mesh.components == nx.number_connected_components(linked)
+        assert mesh.surface_count == nx.number_connected_components(linked)
         assert mesh.euler_number == len(linked) - len(edges) + len(faces)
 
 

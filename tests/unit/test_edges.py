@@ -398,7 +398,7 @@ def test_blends_may_take_all_of_a_face(verb: str, share: float) -> None:
         full = getattr(body, verb)(rim, room * share)
         nearly = getattr(body, verb)(rim, room * (1 - 1e-6))
         assert full.volume == pytest.approx(nearly.volume, rel=1e-5)
-        assert full.components == 1 and full.to_mesh().certificate.ok
+        assert full.surface_count == 1 and full.to_mesh().certificate.ok
         with pytest.raises(b.InvalidParameterError, match="no room"):
             getattr(body, verb)(rim, room * 1.001)
 
@@ -418,4 +418,4 @@ def test_blends_of_all_edges_may_take_all_of_some_faces(verb: str, size: tuple[i
     body = b.box(*size).rotate((10, 20, 30))
     full, nearly = (getattr(body, verb)(body.edges(), room) for room in (1, 1 - 1e-6))
     assert full.volume == pytest.approx(nearly.volume, rel=1e-5)
-    assert full.components == 1 and full.to_mesh().certificate.ok
+    assert full.surface_count == 1 and full.to_mesh().certificate.ok

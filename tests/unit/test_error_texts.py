@@ -1,10 +1,14 @@
 """Errors and findings quote files, and steer no terminal: they hold no control characters."""
 
+import copy
+import errno
 import json
 import pickle
 import re
 import warnings
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -81,3 +85,35 @@ def test_errors_and_findings_of_any_kind() -> None:
         assert str(kind("a\x1bb\nc\td\x9b", "code", [1])) == "a\ufffdb\nc\td\ufffd"
     found = b.Finding("code", "note", "a\x07b", (), 1)
     assert json.dumps(found.message, ensure_ascii=False) == '"a\ufffdb"'
+
+
+# Found: a file that was not there was no FileNotFoundError.
+@pytest.mark.parametrize(
+    "call",
+    [
+        b.load,
+        b.Solid.from_mesh,
+        b.Assembly.load,
+        b.run_script,
+        lambda path: b.csg.load(f"{path}.csg"),
+        lambda path: b.csg.load(f"{path}.scad"),
+        b.Region.from_svg,
+        lambda path: b.text("a", font=f"{path}.ttf"),
+    ],
+)
+def test_missing_files_are_errors_of_files_too(call: Callable[[str], Any]) -> None:
+    with pytest.raises(FileNotFoundError, match=r"missing.*: cannot read this file: ") as caught:
+        call("missing.stl")
+    error = caught.value
+    assert isinstance(error, b.FormatError) and isinstance(error, ValueError)
+    assert (error.code, error.where, error.errno) == ("unreadable", (), errno.ENOENT)
+    assert str(error.filename).startswith("missing.stl")
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.code, again.filename) == (str(error), error.code, error.filename)
+    assert type(again) is type(copy.copy(error)) is type(error)
+
+
+def test_files_that_are_there_and_cannot_be_read_are_not_missing(tmp_path: Path) -> None:
+    with pytest.raises(b.FormatError) as caught:
+        b.load(tmp_path, format="stl")
+    assert not isinstance(caught.value, FileNotFoundError)

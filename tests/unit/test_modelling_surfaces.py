@@ -211,7 +211,7 @@ def ball(p: Any) -> Any:
 def test_a_ball_is_as_near_as_its_grid(edge: float) -> None:
     found = b.level_set(ball, BOX, edge)
     assert_sound(found)
-    assert found.genus == 0 and found.components == 1
+    assert found.genus == 0 and found.surface_count == 1
     assert found.volume == pytest.approx(4 / 3 * np.pi, rel=2 * edge**2)
     radii = np.linalg.norm(found.vertices, axis=1)
     assert abs(radii - 1).max() < edge**2

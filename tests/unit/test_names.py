@@ -1,7 +1,12 @@
 """The names of the package are those of `__all__`, one object each, whoever asks for them."""
 
+import inspect
 import pickle
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, cast
+
+import pytest
 
 import bspcsg as b
 
@@ -27,3 +32,81 @@ def test_no_module_hides_a_public_name() -> None:
     # An import of `bspcsg.name` would put the module where the name was.
     beside = {path.stem for path in Path(b.__file__).parent.iterdir()}
     assert beside & set(b.__all__) <= set(b._PARTS)
+
+
+PUBLIC = [getattr(home, name) for home in (b, b.bsp) for name in home.__all__]
+CLASSES = [kind for kind in PUBLIC if inspect.isclass(kind) and kind.__module__[:6] == "bspcsg"]
+
+
+# Found: TypeErrors named classes that users do not know, as `Movable.translate`.
+def test_methods_are_named_after_public_classes() -> None:
+    known = {kind.__qualname__ for kind in CLASSES}
+    for kind in CLASSES:
+        for name, method in inspect.getmembers(kind, inspect.isfunction):
+            if not name.startswith("_") and method.__module__.startswith("bspcsg"):
+                assert method.__qualname__.partition(".")[0] in known, method.__qualname__
+                assert pickle.loads(pickle.dumps(method)) is method
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda s: s.translate(w=1), r"^Solid\.translate\(\) got an unexpected keyword"),
+        (lambda s: s.fillet(), r"^Solid\.fillet\(\) missing 2 required"),
+        (lambda s: s.project(3), r"^Solid\.project\(\) takes 1 positional"),
+        (lambda s: s.equals(), r"^Solid\.equals\(\) missing"),
+        (lambda s: s.load(), r"^Solid\.load\(\) missing"),
+        (lambda s: s.slice(0).cast(), r"^Region\.cast\(\) missing"),
+        (lambda s: cast(Any, b.Assembly("a", s)).rotate(w=1), r"^Assembly\.rotate\(\) got"),
+    ],
+)
+def test_type_errors_name_the_class_that_was_used(call: Callable[[Any], Any], words: str) -> None:
+    with pytest.raises(TypeError, match=words):
+        call(b.cube(1))
+
+
+def test_own_copies_of_methods_are_the_same_methods() -> None:
+    from bspcsg.solid.edged import Edged
+
+    assert b.Solid.fillet is not Edged.fillet and b.Solid.fillet.__doc__ == Edged.fillet.__doc__
+    assert inspect.signature(b.Solid.fillet) == inspect.signature(Edged.fillet)
+    with b.union() as block:
+        part = b.box(4, 3, 2)
+        part.chamfer(part.edges().parallel("z"), 1)
+    assert block.solid.volume == 20
+
+
+@pytest.mark.parametrize(
+    ("owner", "word", "name"),
+    [
+        (b.cube(1), "diff", "difference"),
+        (b.cube(1), "subtract", "difference"),
+        (b.cube(1), "add", "union"),
+        (b.Region.circle(1), "intersect", "intersection"),
+        (b.Region.circle(1), "xor", "symmetric_difference"),
+        (b.cube(1), "bounding_box", "bounds"),
+        (b.cube(1), "fillett", "fillet"),
+        (b.bsp.Intervals(), "add", "union"),
+        (b, "diff", "difference"),
+        (b, "symmetric_difference", "xor"),
+        (b, "cuboid", "cube"),
+    ],
+)
+def test_names_of_other_libraries_lead_to_the_one_here(owner: Any, word: str, name: str) -> None:
+    with pytest.raises(AttributeError, match=rf"no attribute '{word}'\. Is {name} meant\?$"):
+        getattr(owner, word)
+
+
+def test_names_that_nobody_can_mean_are_only_refused() -> None:
+    for owner, name in ((b.cube(1), "zzzzzz"), (b.cube(1), "_reps"), (b, "zzzzzz")):
+        with pytest.raises(AttributeError, match=rf"has no attribute '{name}'$"):
+            getattr(owner, name)
+    assert not hasattr(b.cube(1), "__array__") and not hasattr(b.cube(1), "diff")
+
+
+def test_operations_by_other_names_are_asked_about() -> None:
+    (v, f), op = (b.cube(1).vertices, b.cube(1).faces), "subtract"
+    with pytest.raises(b.InvalidParameterError, match=r"Is difference meant\?$"):
+        b.boolean(v, f, v, f, op)  # type: ignore[arg-type]
+    with pytest.raises(b.InvalidParameterError, match=r"Is difference meant\?$"):
+        b.bsp.merge(b.Region.circle(1), b.Region.circle(1), op)  # type: ignore[arg-type]

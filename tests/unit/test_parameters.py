@@ -190,7 +190,7 @@ NOT_FINITE: dict[str, Callable[[], object]] = {
     "classify": lambda: b.cube(1).classify([[0, NAN, 0]]),
     "first_hit": lambda: CASTER.first_hit([0, 0, NAN], ALONG),
     "direction": lambda: CASTER.first_hit(ORIGIN, [0, 0, NAN]),
-    "project": lambda: bsp.Region(SQUARE).project([(NAN, 0)]),
+    "nearest": lambda: bsp.Region(SQUARE).nearest([(NAN, 0)]),
 }
 
 
@@ -234,7 +234,7 @@ COORDINATES: dict[str, tuple[Any, Callable[[Any], object]]] = {
     "RayCaster": (EDGES, bsp.RayCaster),
     "first_hit": (ORIGIN, lambda array: CASTER.first_hit(array, ALONG)),
     "max_t": ([3.0], lambda array: CASTER.occluded([ORIGIN], directions=[ALONG], max_t=array)),
-    "project": (SQUARE, bsp.Region(SQUARE).project),
+    "nearest": (SQUARE, bsp.Region(SQUARE).nearest),
     "visibility_polygon": (
         EDGES,
         lambda array: bsp.visibility_polygon(array, (5, 5), (-9, -9), (9, 9)),

@@ -1,5 +1,6 @@
 """Components with their cavities, and the two sides of a plane."""
 
+import pickle
 from fractions import Fraction
 from functools import partial
 from typing import Any
@@ -55,7 +56,7 @@ def test_many_cavities_ask_the_shell_around_them_once(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(parts_module, "Solid", counted)
     (part,) = connected_parts(whole)
-    assert part.components == 31 and len(shells) == 1
+    assert part.surface_count == 31 and len(shells) == 1
 
 
 def test_nothing_has_no_parts() -> None:
@@ -75,13 +76,13 @@ def grooved(depth: float, tags: Any = None) -> b.Solid:
 def test_a_face_that_goes_on_across_an_edge_joins_no_parts() -> None:
     pinched, whole = grooved(4), grooved(3.9)
     assert [part.volume for part in pinched.decompose()] == pytest.approx([pinched.volume / 2] * 2)
-    assert (pinched.components, whole.components) == (2, 1)
+    assert (pinched.surface_count, whole.surface_count) == (2, 1)
     left, right = pinched.split("x", 2)
     assert pinched.decompose()[0] in (left, right)
     # The mesh, which is closed without that, does not divide the top.
-    assert pinched.to_mesh().components == 1
+    assert pinched.to_mesh().surface_count == 1
     for same in (left | right, b.Solid.from_mesh(pinched.to_mesh()), pinched.translate(1, 2, 3)):
-        assert (same.components, len(same.decompose())) == (2, 2)
+        assert (same.surface_count, len(same.decompose())) == (2, 2)
 
 
 def test_parts_beside_an_edge_keep_what_is_said_of_their_faces() -> None:
@@ -122,7 +123,7 @@ def test_many_edges_in_one_face_cost_each_alike() -> None:
     for count in (100, 400):
         plate = plate_with_grooves(count)
         plate.to_mesh()
-        assert plate.components == count + 1
+        assert plate.surface_count == count + 1
         times[count] = seconds(partial(getattr, plate, "components"), 3)
     assert times[400] < 10 * times[100]
 
@@ -161,3 +162,22 @@ def test_faces_around_a_corner_cost_each_alike() -> None:
         whole.to_mesh()
         times[sides] = seconds(partial(connected_parts, whole), 3)
     assert times[16_000] < 8 * times[4_000]
+
+
+def test_components_are_the_parts() -> None:
+    pair = (b.cube(3) - b.cube(1).translate(1, 1, 1)) | b.cube(1).translate(x=5)
+    assert [part.volume for part in pair.components] == [26, 1]
+    assert (len(pair.components), pair.surface_count, b.Solid.empty().components) == (2, 3, ())
+    assert isinstance(pair.components, tuple) and pair.components == pair.components
+    assert pickle.loads(pickle.dumps(pair.components)) == pair.components
+
+
+def test_components_as_a_number_warn() -> None:
+    hollow = b.cube(3) - b.cube(1).translate(1, 1, 1)
+    parts: Any = hollow.components
+    for is_so in (parts.__eq__, lambda count: not parts.__ne__(count)):
+        with pytest.warns(DeprecationWarning, match="surface_count") as warned:
+            assert is_so(2)
+        assert warned[0].filename == __file__
+    with pytest.warns(DeprecationWarning, match="surface_count"):
+        assert hollow.to_mesh().components == 2

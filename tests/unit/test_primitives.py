@@ -1,5 +1,6 @@
 """Primitives: sizes, places, topology, exactness, and what they refuse."""
 
+import inspect
 import math
 from collections.abc import Callable
 from typing import Any, cast
@@ -296,3 +297,85 @@ def test_wrong_sizes_are_told_as_they_were_given() -> None:
         b.cylinder(h=1, d=-2)
     with pytest.raises(b.InvalidParameterError, match=r"^r must not be below 0, but is -2"):
         b.cylinder(h=1, r1=-2, r2=1)
+
+
+@pytest.mark.parametrize(
+    ("by_radius", "by_diameter"),
+    [
+        (b.sphere(2), b.sphere(d=4)),
+        (b.cylinder(3, 2), b.cylinder(3, d=4)),
+        (b.cone(3, 2), b.cone(3, d=4)),
+        (b.prism(5, 3, 2), b.prism(5, 3, d=4)),
+        (b.torus(3, 1), b.torus(d=6, tube_d=2)),
+        (b.Region.circle(2), b.Region.circle(d=4)),
+        (b.pipe([(0, 0), (9, 0)], 2, inner=1), b.pipe([(0, 0), (9, 0)], d=4, inner_d=2)),
+    ],
+)
+def test_round_shapes_take_a_diameter(by_radius: Any, by_diameter: Any) -> None:
+    assert by_radius == by_diameter
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        b.sphere,
+        b.Region.circle,
+        lambda **given: b.cylinder(3, **given),
+        lambda **given: b.cone(3, **given),
+        lambda **given: b.prism(5, 3, **given),
+        lambda **given: b.torus(tube=0.1, **given),
+        lambda **given: b.pipe([(0, 0), (9, 0)], **given),
+    ],
+)
+def test_round_shapes_need_one_radius_above_0(make: Callable[..., Any]) -> None:
+    for given, words in (
+        ({"r": 1, "d": 2}, "not both"),
+        ({}, "needs r, or d"),
+        ({"d": -1}, "d must not be below 0"),
+        ({"d": 0}, "above 0"),
+        ({"d": "2"}, "d must be a number"),
+    ):
+        with pytest.raises(b.InvalidParameterError, match=words) as caught:
+            make(**given)
+        assert caught.value.code == "invalid_parameter"
+
+
+def test_sizes_are_numbers_or_one_tuple() -> None:
+    assert len({b.box(1, 2, 3), b.box((1, 2, 3)), b.cube(1, 2, 3), b.cube((1, 2, 3))}) == 1
+    rectangle = b.Region.rectangle
+    assert len({rectangle(2, 3), rectangle((2, 3)), rectangle(np.array([2, 3]))}) == 1
+    assert rectangle(2) == rectangle((2, 2)) and rectangle((2, 3), center=True).bounds is not None
+    rounded = b.rounded_box((4, 3, 2), 0.5)
+    assert len({rounded, b.rounded_box(4, 3, 2, 0.5), b.rounded_box(4, 3, 2, r=0.5)}) == 1
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: b.Region.rectangle((1, 2, 3)),
+        lambda: b.Region.rectangle((1, 2), 3),
+        lambda: b.Region.rectangle((1, -2)),
+        lambda: b.rounded_box(4),
+        lambda: b.rounded_box(4, 3, 2),
+        lambda: b.rounded_box(4, 0.5, r=0.5),
+        lambda: b.rounded_box((4, 3, 2), 4, 3, 0.5),
+        lambda: b.cube(1, 2),
+    ],
+)
+def test_sizes_of_another_number_are_refused(call: Callable[[], Any]) -> None:
+    with pytest.raises(b.InvalidParameterError) as caught:
+        call()
+    assert caught.value.code == "invalid_parameter"
+
+
+def test_circles_have_one_default_of_segments() -> None:
+    found = {}
+    for owner in (b, b.bsp, b.Solid, b.Region):
+        calls = {name: getattr(owner, name) for name in dir(owner) if not name.startswith("_")}
+        for name, call in calls.items():
+            taken = inspect.signature(call).parameters if inspect.isroutine(call) else {}
+            if "segments" in taken and taken["segments"].default is not inspect.Parameter.empty:
+                found[f"{owner.__name__}.{name}"] = taken["segments"].default
+    # Of a spline these are the chords from one point to the next.
+    del found["bspcsg.spline"]
+    assert len(found) > 10 and {*found.values()} == {32}, found

@@ -1,6 +1,8 @@
 """Long calls are watched, and stopped by what watches them."""
 
+import io
 import itertools
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -9,6 +11,8 @@ from typing import Any
 import pytest
 
 import bspcsg as b
+from bspcsg import watching
+from support.cli import Capture
 
 
 class StopError(Exception):
@@ -84,3 +88,57 @@ def test_what_watches_may_use_the_library() -> None:
     with b.progress(lambda _: volumes.append((b.cube(2) - b.cube(1)).volume), every=0):
         work_until(lambda: volumes)
     assert set(volumes) == {7.0}
+
+
+class Terminal(io.StringIO):
+    """Standard error of somebody who sits there."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
+    """Return what stands for standard error from now on, without patience."""
+    found = Terminal()
+    monkeypatch.setattr(sys, "stderr", found)
+    monkeypatch.setattr(watching, "_PATIENCE", 0.0)
+    return found
+
+
+# Found: `with progress():` was a TypeError.
+def test_a_bar_shows_the_share_of_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = on_terminal(monkeypatch)
+    with b.progress(of=4, every=0) as step:
+        for _ in range(3):
+            step()
+        assert (step.done, step.share) == (3, 0.75)
+    *_, first, second, last = terminal.getvalue().split("\r")
+    assert first.startswith("█" * 15 + "░" * 15 + "  50%  2 of 4  ")
+    assert second.startswith("█" * 22 + "░" * 8 + "  75%  3 of 4  ")
+    assert last.endswith(" s\n") and "75%" in last and terminal.getvalue().count("\n") == 1
+
+
+def test_without_a_number_the_bar_shows_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    terminal = on_terminal(monkeypatch)
+    with b.progress(every=0.05) as step:
+        work_until(terminal.getvalue)
+    assert step.share is None and "working …" in terminal.getvalue()
+
+
+def test_short_work_and_files_have_no_bar(capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
+    with b.progress(of=1) as step:
+        step()
+    found = Terminal()
+    monkeypatch.setattr(sys, "stderr", found)
+    with b.progress(of=1, every=0) as step:
+        step()
+    assert found.getvalue() == "" and capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("given", [{"of": 0}, {"of": -1}, {"of": 1.5}, {"of": "all"}, {"tell": 3}])
+def test_bars_of_no_steps_are_refused(given: dict[str, Any]) -> None:
+    with pytest.raises(b.InvalidParameterError) as caught, b.progress(**given):
+        pass
+    assert caught.value.code == "invalid_parameter"
+    with b.progress(lambda _: None) as step, pytest.raises(b.InvalidParameterError):
+        step(-1)

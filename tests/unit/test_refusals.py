@@ -31,9 +31,9 @@ def in_order(function: Callable[..., Any]) -> Callable[..., Any]:
     return lambda **given: function(*given.values())
 
 
-def watched(tell: Any, every: Any) -> None:
+def watched(tell: Any, every: Any, of: Any) -> None:
     """Do nothing, and be told of it."""
-    with b.progress(tell, every=every):
+    with b.progress(tell, every=every, of=of):
         pass
 
 
@@ -49,7 +49,7 @@ ROWS: dict[str, Row] = {
     "box of three": (b.box, {"size": (1, 2, 3)}),
     "cone": (b.cone, {"h": 1, "r": 1, "segments": 8, "center": False}),
     "cone by d": (b.cone, {"h": 1, "d": 1}),
-    "cube": (b.cube, {"size": 1, "center": True}),
+    "cube": (b.cube, {"size": 1, "y": 2, "z": 3, "center": True}),
     "cylinder": (b.cylinder, {"h": 1, "r": 1, "segments": 8, "center": True}),
     "cylinder by r1": (b.cylinder, {"h": 1, "r1": 1, "r2": 2}),
     "cylinder by d1": (b.cylinder, {"h": 1, "d1": 1, "d2": 2}),
@@ -68,7 +68,8 @@ ROWS: dict[str, Row] = {
     "extrude with taper": (b.extrude, {"polygon": SQUARE, "h": 1, "taper": 0.1}),
     "grid": (b.grid, {"shape": S, "counts": (2, 2), "steps": (5, 5), "center": True}),
     "half_space": (b.half_space, {"normal": (0, 0, 1), "offset": 1}),
-    "helix": (b.helix, {"r": 1, "pitch": 1, "turns": 2, "r2": 2, "segments": 8}),
+    "helix": (b.helix, {"r": 1, "lead": 1, "turns": 2, "r2": 2, "segments": 8}),
+    "helix by pitch": (b.helix, {"r": 1, "pitch": 1, "turns": 2}),
     "level_set": (
         b.level_set,
         {
@@ -83,14 +84,17 @@ ROWS: dict[str, Row] = {
     "load": (b.load, {"path": SCRIPT}),
     "loft": (b.loft, {"profiles": [(SQUARE, 0), (SQUARE, 1)], "closed": False}),
     "pipe": (b.pipe, {"path": [(0, 0, 0), (0, 0, 2)], "r": 1, "inner": 0.5, "segments": 8}),
+    "pipe by d": (b.pipe, {"path": [(0, 0, 0), (0, 0, 2)], "d": 1, "inner_d": 0.5}),
     "polar_pattern": (
         b.polar_pattern,
         {"shape": S, "count": 3, "angle": 90, "axis": "x", "center": (9, 0, 0)},
     ),
     "prism": (b.prism, {"sides": 5, "h": 1, "r": 1, "center": True}),
-    "progress": (watched, {"tell": lambda told: None, "every": 1.0}),
+    "prism by d": (b.prism, {"sides": 5, "h": 1, "d": 1}),
+    "progress": (watched, {"tell": lambda told: None, "every": 1.0, "of": 2}),
     "revolve": (b.revolve, {"polygon": SQUARE, "angle": 90, "segments": 8}),
     "rounded_box": (b.rounded_box, {"size": (1, 2, 3), "r": 0.1, "segments": 8, "center": True}),
+    "rounded_box of three": (in_order(b.rounded_box), {"x": 1, "y": 2, "z": 3, "r": 0.1}),
     "save": (b.save, {"solid": S, "path": "x.ply", "text": False}),
     "set_threads": (b.set_threads, {"n": 0}),
     "show": (in_order(b.show), {"one": S}),
@@ -112,6 +116,7 @@ ROWS: dict[str, Row] = {
         | {"spacing": 1, "direction": "ltr", "language": "en", "script": "Latn", "segments": 8},
     ),
     "torus": (b.torus, {"r": 3, "tube": 1, "segments": 8, "tube_segments": 8}),
+    "torus by d": (b.torus, {"d": 3, "tube_d": 1}),
     "validate": (in_order(b.validate), {"op": "union", "one": S, "two": OTHER}),
     "Solid": (
         Solid,
@@ -157,9 +162,29 @@ ROWS: dict[str, Row] = {
     "Solid.translate by a vector": (in_order(S.translate), {"offset": (1, 2, 3)}),
     "Solid.trim": (S.trim, {"normal": (0, 0, 1), "offset": 1}),
     "Solid.warp": (S.warp, {"f": lambda p: p * 2, "winding": "positive"}),
+    **{
+        f"{kind}.{name} by numbers": (in_order(getattr(shape, name)), given)
+        for kind, shape, given in (
+            ("Solid", S, {"x": 3, "y": 2, "z": 1}),
+            ("Assembly", A, {"x": 3, "y": 2, "z": 1}),
+            ("Region", R, {"x": 3, "y": 2}),
+        )
+        for name in ("scale", "mirror")
+    },
+    **{
+        f"{kind}.{name} by axes": (getattr(shape, name), dict.fromkeys(axes, 2))
+        for kind, shape, axes in (("Solid", S, "xyz"), ("Assembly", A, "xyz"), ("Region", R, "xy"))
+        for name in ("translate", "scale", "mirror")
+    },
+    **{
+        f"{kind}.{name}": (in_order(getattr(one, name)), {"one": other, "two": other})
+        for kind, one, other in (("Solid", S, OTHER), ("Region", R, R))
+        for name in ("union", "intersection", "difference", "symmetric_difference")
+    },
     "Region": (Region, {"outlines": [SQUARE], "winding": "positive", "pitch": -9}),
     "Region.cast": (R.cast, {"origin": (0, 0), "direction": (1, 0)}),
     "Region.circle": (Region.circle, {"r": 1, "segments": 8}),
+    "Region.circle by d": (Region.circle, {"d": 1}),
     "Region.classify": (R.classify, {"points": [(0, 0)]}),
     "Region.compose": (Region.compose, {"regions": [R, R]}),
     "Region.equals": (R.equals, {"other": R}),
@@ -177,14 +202,16 @@ ROWS: dict[str, Row] = {
         | {"winding": "positive", "pitch": -9},
     ),
     "Region.half_plane": (Region.half_plane, {"normal": (1, 0), "offset": 1, "pitch": -9}),
-    "Region.mirror": (R.mirror, {"normal": (1, 0)}),
+    "Region.mirror": (R.mirror, {"normal": (1, 0), "about": (1, 2)}),
+    "Region.nearest": (R.nearest, {"points": [(0, 0)]}),
     "Region.offset": (R.offset, {"delta": 1, "join": "miter", "segments": 8, "miter_limit": 4}),
     "Region.polygon": (Region.polygon, {"points": SQUARE, "pitch": -9}),
     "Region.project": (R.project, {"points": [(0, 0)]}),
+    "Region.rectangle of two": (Region.rectangle, {"width": (1, 2)}),
     "Region.rectangle": (Region.rectangle, {"width": 1, "height": 2, "center": True}),
     "Region.revolve": (R.revolve, {"angle": 90, "segments": 8}),
-    "Region.rotate": (R.rotate, {"angle": 10}),
-    "Region.scale": (R.scale, {"factor": 2}),
+    "Region.rotate": (R.rotate, {"angle": 10, "about": (1, 2)}),
+    "Region.scale": (R.scale, {"factor": 2, "about": (1, 2)}),
     "Region.simplify": (R.simplify, {"tolerance": 0.1}),
     "Region.split": (R.split, {"normal": (1, 0), "offset": 1}),
     "Region.to_dxf": (R.to_dxf, {"path": "x.dxf"}),
@@ -197,10 +224,11 @@ ROWS: dict[str, Row] = {
     "Assembly": (b.Assembly, {"name": "x", "content": S, "color": (1, 0, 0), "density": 2}),
     "Assembly.clashes": (A.clashes, {"clearance": 0.1}),
     "Assembly.load": (b.Assembly.load, {"path": SCRIPT}),
-    "Assembly.mirror": (A.mirror, {"normal": (1, 0, 0)}),
-    "Assembly.rotate": (A.rotate, {"angle": 10, "axis": "z"}),
+    "Assembly.mirror": (A.mirror, {"normal": (1, 0, 0), "about": (1, 2, 3)}),
+    "Assembly.rotate": (A.rotate, {"angle": 10, "axis": "z", "about": (1, 2, 3)}),
+    "Assembly.rotate by axes": (A.rotate, {"x": 10, "y": 20, "z": 30}),
     "Assembly.save": (A.save, {"path": "x.3mf"}),
-    "Assembly.scale": (A.scale, {"factor": 2}),
+    "Assembly.scale": (A.scale, {"factor": 2, "about": (1, 2, 3)}),
     "Assembly.transform": (A.transform, {"matrix": np.eye(4)}),
     "Assembly.translate": (in_order(A.translate), {"offset": (1, 2, 3)}),
     "Material": (b.Material, {"color": (1, 0, 0)}),
@@ -218,6 +246,8 @@ def _elsewhere(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
 ) -> Iterator[None]:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("webbrowser.open", lambda _: True)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     if "from_dxf" in request.node.name:
         R.to_dxf("good.dxf")
     with warnings.catch_warnings():

@@ -64,7 +64,7 @@ def brute_force(region: Region, points: FloatArray) -> FloatArray:
 def test_nearest_points_are_those_of_all_edges() -> None:
     region = Region.compose(circles(60)) - tangle(12, 2)
     points = RANDOM.random((300, 2)) * 3 - 1
-    nearest, distance = region.project(points)
+    nearest, distance = region.nearest(points)
     assert np.abs(distance - brute_force(region, points)).max() < 1e-12
     assert np.abs(np.hypot(*(nearest - points).T) - distance).max() < 1e-15
     assert brute_force(region, nearest).max() < 1e-12
@@ -73,9 +73,9 @@ def test_nearest_points_are_those_of_all_edges() -> None:
 def test_nearest_points_on_edges_as_long_as_the_lattice() -> None:
     """The edge's length does not spoil the place along it; its ends are rounded at their size."""
     points = [(0.1, 3), (-1, 7), (4, -3), (1 / 3, 1e-9)]
-    nearest, _ = Region.half_plane((0, 1), 0).project(points)
+    nearest, _ = Region.half_plane((0, 1), 0).nearest(points)
     assert nearest.tolist() == [[x, 0] for x, _ in points]
-    slanted, _ = Region.half_plane((3, 4), 0).project([(3, 4), (-1, 7)])
+    slanted, _ = Region.half_plane((3, 4), 0).nearest([(3, 4), (-1, 7)])
     assert np.abs(slanted - [(0, 0), (-4, 3)]).max() < 2**53 * 1e-9 * 2**-53
 
 

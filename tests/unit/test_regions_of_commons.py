@@ -168,8 +168,8 @@ def test_nearest_points() -> None:
     """testProject_fullAndEmpty, _halfSpace and _rect."""
     for nothing in (Region.full(), Region.empty()):
         with pytest.raises(InvalidParameterError):
-            nothing.project([(0, 0)])
-    found, _ = HALF.project([(0, 0), (-1, 0), (2, -1), (-3, 1)])
+            nothing.nearest([(0, 0)])
+    found, _ = HALF.nearest([(0, 0), (-1, 0), (2, -1), (-3, 1)])
     assert found.tolist() == [[0, 0], [-1, 0], [2, 0], [-3, 0]]
     asked: list[tuple[float, float]]
     asked = [(0, 0), (1, 0), (1.5, 0), (2, 0), (3, 0), (1, 3), (1.5, 3), (2, 3), (3, 3)]
@@ -177,12 +177,12 @@ def test_nearest_points() -> None:
     expected: list[list[float]]
     expected = [[1, 1], [1, 1], [1.5, 1], [2, 1], [2, 1], [1, 2], [1.5, 2], [2, 2], [2, 2]]
     expected += [[1, 1.5], [1, 1.5], [2, 1.5]]
-    assert rect(1, 1, 1, 1).project(asked)[0].tolist() == expected
+    assert rect(1, 1, 1, 1).nearest(asked)[0].tolist() == expected
 
 
 def test_a_point_as_near_to_four_sides() -> None:
     """testProject_rect in its middle: any side is right, and here it is one of the boundary's."""
-    nearest, distance = rect(1, 1, 1, 1).project([(1.5, 1.5)])
+    nearest, distance = rect(1, 1, 1, 1).nearest([(1.5, 1.5)])
     assert distance.tolist() == [0.5]
     assert rect(1, 1, 1, 1).classify(nearest).tolist() == [0]
 

@@ -2,6 +2,7 @@ import contextlib
 import io
 import math
 import sys
+import webbrowser
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -10,6 +11,7 @@ import pytest
 
 import bspcsg as b
 from bspcsg.script import run as running
+from support.cli import Capture
 
 
 @pytest.fixture
@@ -131,7 +133,7 @@ def test_names_that_are_not_assigned_cannot_be_set(tmp_path: Path) -> None:
         b.run_script(path, defines={"size": 1, "sise": 2})
     assert caught.value.code == "unknown_name"
     assert str(caught.value) == (
-        f"{path}: the script assigns no variable sise at its top level. Did you mean size? It"
+        f"{path}: the script assigns no variable sise at its top level. Is size meant? It"
         " assigns size, a, c, d, e, f, result, late, early."
     )
     for name in "half", "sys", "b":
@@ -190,14 +192,77 @@ def test_scripts_that_end_without_an_answer(tmp_path: Path) -> None:
 
 
 def test_a_script_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(b.FormatError, match="no such file"):
+    with pytest.raises(b.FormatError, match="No such file"):
         b.run_script(tmp_path / "none.py")
 
 
-def test_show_does_nothing_elsewhere() -> None:
-    b.show(b.cube(1))
-    with pytest.raises(b.InvalidMeshError):
-        b.show(object())
+@pytest.fixture
+def pages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+    """Return the pages that a browser is asked to open, on a machine with a screen."""
+    asked: list[Path] = []
+
+    def opening(address: str) -> bool:
+        asked.append(Path(address.removeprefix("file://")))
+        return True
+
+    monkeypatch.setattr(webbrowser, "open", opening)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    for name in ("SSH_CONNECTION", "SSH_TTY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("DISPLAY", ":0")
+    return asked
+
+
+# Found: `show` did nothing, silently.
+@pytest.mark.parametrize(
+    "thing",
+    [
+        b.cube(2) - b.cube(1),
+        b.Region.circle(2),
+        b.Assembly("two", [b.cube(1), b.Assembly("lid", b.cube(1).translate(z=2))]),
+    ],
+)
+def test_show_opens_a_page(thing: Any, pages: list[Path], capsys: Capture) -> None:
+    thing.show()
+    b.show(thing)
+    assert [page.suffix for page in pages] == [".html", ".html"]
+    texts = [page.read_text("utf-8") for page in pages]
+    assert texts[0] == texts[1] and 'id="bspcsg-viewer"' in texts[0]
+    assert capsys.readouterr() == ("", "")
+
+
+def test_several_things_are_on_one_page(pages: list[Path]) -> None:
+    b.show()
+    assert not pages
+    b.show(b.cube(1), (b.cube(2).vertices, b.cube(2).faces))
+    assert len(pages) == 1 and pages[0].read_text("utf-8").count("12 triangles") >= 2
+
+
+def test_without_a_browser_show_says_where_the_page_is(
+    pages: list[Path], capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DISPLAY", "")
+    monkeypatch.setenv("WAYLAND_DISPLAY", "")
+    b.cube(1).show()
+    monkeypatch.setenv("DISPLAY", ":0")
+    monkeypatch.setattr(webbrowser, "open", lambda _: False)
+    b.cube(1).show()
+    out, err = capsys.readouterr()
+    first, second = err.splitlines()
+    assert not pages and out == ""
+    for line, words in ((first, "no screen here"), (second, "no browser could be started")):
+        assert Path(line.partition(":")[0]).is_file() and words in line
+
+
+def test_what_cannot_be_shown_is_refused(pages: list[Path]) -> None:
+    things: list[Any] = [b.Solid.empty(), b.Region.empty(), object()]
+    for thing in things:
+        with pytest.raises(b.InvalidMeshError):
+            b.show(thing)
+    for endless in (~b.cube(1), ~b.Region.circle(1)):
+        with pytest.raises(b.UnboundedError):
+            endless.show()
+    assert not pages
 
 
 # Found: `run` took a script that gives up by `sys.exit("…")` for done, and lost a `result` before
@@ -260,5 +325,5 @@ def test_times_without_end(tmp_path: Path) -> None:
 
 
 def test_names_too_long_for_a_script() -> None:
-    with pytest.raises(b.FormatError, match="no such file"):
+    with pytest.raises(b.FormatError, match="No such file"):
         b.run_script("a" * 300)

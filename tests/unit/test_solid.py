@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg import bsp
 from bspcsg.solid import measure
 from bspcsg.solid.measure import volume_near
 
@@ -85,7 +86,13 @@ def test_truth_means_not_empty() -> None:
 
 def test_measures_of_a_box() -> None:
     box = b.box((1, 2, 3)).translate(0.5, 0, 0)
-    assert (box.volume, box.area, box.genus, box.euler_number, box.components) == (6, 22, 0, 2, 1)
+    assert (box.volume, box.area, box.genus, box.euler_number, box.surface_count) == (
+        6,
+        22,
+        0,
+        2,
+        1,
+    )
     assert box.volume_exact == Fraction(6)
     assert box.bounds is not None
     assert box.bounds.tolist() == [[0.5, 0, 0], [1.5, 2, 3]]
@@ -95,7 +102,7 @@ def test_measures_of_a_box() -> None:
 
 def test_measures_of_the_empty_set() -> None:
     empty = b.cube(1) - b.cube(1)
-    assert (empty.volume, empty.area, empty.genus, empty.components) == (0, 0, 0, 0)
+    assert (empty.volume, empty.area, empty.genus, empty.surface_count) == (0, 0, 0, 0)
     assert empty.bounds is None
     assert np.isnan(empty.centroid).all()
     mesh = empty.to_mesh()
@@ -113,7 +120,7 @@ def test_unbounded_solids_have_no_measures(name: str) -> None:
 
 def test_a_cavity_is_a_surface_of_its_own() -> None:
     hollow = b.cube(3, center=True) - b.cube(1, center=True)
-    assert (hollow.components, hollow.genus, hollow.euler_number) == (2, 0, 4)
+    assert (hollow.surface_count, hollow.genus, hollow.euler_number) == (2, 0, 4)
 
 
 @pytest.mark.parametrize(("shift", "simple"), [((20, 0, 0), True), ((3, 0.5, 0.5), False)])
@@ -201,13 +208,13 @@ def test_boxes_turned_together_unite_as_if_they_had_not_been() -> None:
         angles = rng.uniform(-180, 180, 3)
         a, c = b.cube(1).rotate(angles), b.cube(1).translate(1, 0, 0).rotate(angles)
         mesh = (a | c).to_mesh()
-        assert (mesh.components, mesh.euler_number) == (1, 2)
+        assert (mesh.surface_count, mesh.euler_number) == (1, 2)
 
 
 def test_a_result_is_turned_as_a_whole() -> None:
     union = b.cube(1) | b.cube(1).translate(1, 0, 0)
     mesh = (union.rotate(30) | b.cube(1).translate(9, 0, 0)).to_mesh()
-    assert (mesh.components, mesh.euler_number) == (2, 4)
+    assert (mesh.surface_count, mesh.euler_number) == (2, 4)
 
 
 def test_identity_transforms_change_nothing() -> None:
@@ -333,13 +340,18 @@ def test_repr_of_large_results_makes_no_mesh() -> None:
 def test_repr_tells_what_is_known_and_evaluates_nothing() -> None:
     a = b.cube(1)
     assert repr(a) == "Solid(12 triangles, bounds (0, 0, 0) to (1, 1, 1))"
-    assert repr(a.rotate(30)).endswith("transformed)")
+    assert repr(a.translate(1, 2, 3)) == "Solid(12 triangles, bounds (1, 2, 3) to (2, 3, 4))"
+    assert repr(a.rotate(90).scale(z=2)) == "Solid(12 triangles, bounds (-1, 0, 0) to (0, 1, 2))"
+    far = a.scale(1e300).scale(1e300)
+    assert repr(far) == "Solid(12 triangles, transformed beyond all doubles)"
     difference = b.cube(2) - a
     assert repr(difference) == "Solid(pending: 2 operands)"
     assert difference.volume == 7
     count = len((b.cube(2) - a).faces)
     assert repr(difference) == f"Solid({count} triangles, bounds (0, 0, 0) to (2, 2, 2))"
-    assert repr(difference.rotate(30)) == "Solid(evaluated, without a mesh, transformed)"
+    assert (
+        repr(difference.rotate(90)) == f"Solid({count} triangles, bounds (-2, 0, 0) to (0, 2, 2))"
+    )
     moved = difference.translate(1, 0, 0)
     assert moved.volume == difference.volume
     assert repr(moved) == f"Solid({count} triangles, bounds (1, 0, 0) to (3, 2, 2))"
@@ -575,3 +587,32 @@ def test_numbers_of_sources_do_not_tell_what_was_asked_for(asked: bool) -> None:
     kept = seen(seen(first.mirror((1, 0, 0))) - moved())
     solid = seen(seen(kept - seen(moved() ^ moved())) | moved())
     assert set(solid.to_mesh().source[:, 0].tolist()) == {0, 1}
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        [b.cube(2), b.cube(2).translate(1, 1, 1), b.cube(1)],
+        [bsp.Region.rectangle(2), bsp.Region.rectangle(3, 1), bsp.Region.rectangle(1, 3)],
+        [bsp.Intervals([(0, 2)]), bsp.Intervals([(1, 3)]), bsp.Intervals([(0, 5)])],
+    ],
+    ids=["solids", "regions", "intervals"],
+)
+def test_set_operations_have_names_beside_the_signs(sets: Any) -> None:
+    one, other, third = sets
+    assert one.union(other, third) == one.union([other, third]) == one | other | third
+    assert one.intersection(other, third) == one & other & third
+    assert one.difference(other, third) == one - other - third
+    assert one.symmetric_difference(other, third) == one ^ other ^ third
+    assert type(one.union(other)) is type(one) and one.difference() == one
+
+
+def test_set_operations_by_name_refuse_other_operands() -> None:
+    wrong: list[Any] = [3, bsp.Region.circle(1), "cube", [b.cube(1), None]]
+    for other in wrong:
+        with pytest.raises(b.InvalidParameterError) as caught:
+            b.cube(1).union(other)
+        assert caught.value.code == "invalid_parameter"
+    with b.union() as block:
+        b.cube(1).difference(b.cube(0.5))
+    assert block.solid.volume == 0.875

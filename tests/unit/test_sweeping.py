@@ -124,6 +124,7 @@ def test_empty_regions_sweep_nothing() -> None:
         (lambda: b.pipe(ELBOW, 1, inner=1), "below r", ()),
         (lambda: b.pipe(ELBOW, 0), "above 0", ()),
         (lambda: b.helix(1, 1, 0), "turns", ()),
+        (lambda: b.helix(1, turns=1), "lead must be a number", ()),
         (lambda: b.helix(-1, 1, 1), "above 0", ()),
         (lambda: b.spline([(0, 0)]), "2 points", ()),
         (lambda: b.spline([(0, 0), (1, 1), (1, 1)]), "one place", (1,)),
@@ -214,7 +215,7 @@ def test_holes_go_to_holes() -> None:
     assert duct.genus == 1 and duct.to_mesh().certificate.ok
     two = b.Region.circle(1).translate(-3, 0) | b.Region.circle(1).translate(3, 0)
     legs = b.loft([(two, 0), (two.rotate(20), 5)])
-    assert legs.to_mesh().components == 2
+    assert legs.to_mesh().surface_count == 2
 
 
 def test_closed_lofts_have_a_hole() -> None:
@@ -267,3 +268,10 @@ def test_paths_that_doubles_cannot_measure_are_refused(far: float) -> None:
         b.sweep(square, [(0, 0, 0), (far, 0, 0)])
     with pytest.raises(b.LimitError, match="measure"):
         b.spline([(0, 0), (far, 0), (0, 1)])
+
+
+def test_the_lead_of_a_helix_has_its_old_name() -> None:
+    with pytest.warns(DeprecationWarning, match=r"use lead\.$") as warned:
+        path = b.helix(5, pitch=2, turns=1)
+    assert warned[0].filename == __file__
+    assert (path == b.helix(5, lead=2, turns=1)).all()

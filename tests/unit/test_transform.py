@@ -4,6 +4,7 @@ import math
 import pickle
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -252,3 +253,65 @@ def test_what_is_too_thin_for_doubles_is_empty_however_it_is_turned(height: floa
     assert (turned.rotate(10, "x") | b.cube(1)).volume == 1
     with pytest.raises(b.InvalidMeshError, match="no face of positive area"):
         b.Solid(np.zeros((3, 3)), [[0, 1, 2]]).rotate(30, "x").to_mesh()
+
+
+WEDGE = b.Assembly("wedge", b.box(1, 2, 3) - b.cube(1)), b.box(1, 2, 3) - b.cube(1)
+
+
+def solid_of(shape: b.Solid | b.Assembly) -> b.Solid:
+    return shape if isinstance(shape, b.Solid) else shape.to_solid()
+
+
+# Found: `translate(z=5)` and `scale(z=2)` were TypeErrors, `rotate(z=90)` was not.
+@pytest.mark.parametrize("shape", WEDGE, ids=["assembly", "solid"])
+def test_transforms_take_values_numbers_and_names_of_axes(shape: b.Solid | b.Assembly) -> None:
+    same = [
+        [shape.translate((0, 0, 5)), shape.translate(0, 0, 5), shape.translate(z=5)],
+        [shape.rotate(90, "y"), shape.rotate((0, 90, 0)), shape.rotate(y=90)],
+        [shape.scale((1, 1, 2)), shape.scale(1, 1, 2), shape.scale(z=2)],
+        [shape.scale(factor=2), shape.scale(2), shape.scale(2, 2, 2), shape.scale(x=2, y=2, z=2)],
+        [shape.mirror((0, 1, 0)), shape.mirror(0, 1, 0), shape.mirror("y"), shape.mirror(y=3)],
+        [shape.scale(x=2, about=(1, 0, 0)), shape.scale((2, 1, 1)).translate(x=-1)],
+    ]
+    for forms in same:
+        assert len({solid_of(form) for form in forms}) == 1
+
+
+def test_transforms_of_the_plane_do_so_too() -> None:
+    ell = b.Region.rectangle(3, 2) - b.Region.rectangle(1, 1)
+    same = [
+        [ell.translate((0, 5)), ell.translate(0, 5), ell.translate(y=5)],
+        [ell.scale((1, 2)), ell.scale(1, 2), ell.scale(y=2), ell.scale(y=2, about=(7, 0))],
+        [ell.scale(factor=2), ell.scale(2), ell.scale(x=2, y=2)],
+        [ell.mirror((1, 0)), ell.mirror(1, 0), ell.mirror("x"), ell.mirror(x=2)],
+        [ell.rotate(90, about=(1, 0)), ell.translate(x=-1).rotate(90).translate(x=1)],
+        [ell.mirror("y", about=(0, 1)), ell.mirror("y").translate(y=2)],
+    ]
+    for forms in same:
+        assert len({*forms}) == 1
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda s: s.translate(), "offset is missing"),
+        (lambda s: s.scale(), "scale factor is missing"),
+        (lambda s: s.mirror(), "normal is missing"),
+        (lambda s: s.translate((1, 2, 3), x=1), "offset is given twice: .* x= and y="),
+        (lambda s: s.scale(2, y=1), "given twice"),
+        (lambda s: s.mirror("x", y=1), "given twice"),
+        (lambda s: s.translate(x="far"), "x must be a number"),
+        (lambda s: s.scale(y=math.nan), "y must be finite"),
+        (lambda s: s.mirror("w"), "x"),
+        (lambda s: s.mirror(x=0), "zero|normal"),
+        (lambda s: s.scale(x=0), "flattens|determinant"),
+        (lambda s: s.translate(1, 2, 3, 4), "offset"),
+    ],
+)
+@pytest.mark.parametrize("shape", [b.cube(1), b.Region.rectangle(1), WEDGE[0]])
+def test_transforms_refuse_what_is_no_place(
+    call: Callable[[Any], Any], words: str, shape: Any
+) -> None:
+    with pytest.raises(b.InvalidParameterError, match=words) as caught:
+        call(shape)
+    assert caught.value.code == "invalid_parameter"

@@ -24,7 +24,7 @@ Edges: TypeAlias = Literal["feature", "all", "none"]
 _NEAR = 1e-6
 
 #: Cosine between normal and view up to which a facet is seen edge-on: its sign is rounding.
-_EDGE_ON = 1e-9
+EDGE_ON = 1e-9
 
 #: Pixels by which a picture is painted beyond its frame.
 _BLEED = 8.0
@@ -83,7 +83,7 @@ class Scene:
 
 def facing(facets: Facets, camera: Camera) -> BoolArray:
     """Return which facets turn their plus side to the viewer, (k,); none that are seen edge-on."""
-    return camera.facing(facets.firsts, facets.normals) > _EDGE_ON
+    return camera.facing(facets.firsts, facets.normals) > EDGE_ON
 
 
 def painted(

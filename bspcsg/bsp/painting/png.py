@@ -2,11 +2,11 @@
 
 import io
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..._types import FloatArray
+from ..._types import BoolArray, FloatArray, IndexArray
 from ...errors import BspcsgError, LimitError
 from .clip import following, owners
 from .colours import ColourArray
@@ -43,23 +43,66 @@ def image(
     painting: Painting, background: ColourArray | None, line: float, samples: int
 ) -> "Image.Image":
     """Return the pixels; parameters are those of `png`."""
-    try:
-        from PIL import Image, ImageDraw
-    except ImportError as error:
-        message = "PNG pictures need Pillow: pip install pillow."
-        raise BspcsgError(message, "missing_dependency") from error
-    width, height = painting.size
+    pillow = _pillow()
+    large = canvas_size(painting.size, samples)
+    back = (0, 0, 0, 0) if background is None else tuple(background.tolist())
+    canvas = pillow.Image.new("RGBA" if background is None else "RGB", large, back)
+    _paint(pillow.ImageDraw.Draw(canvas), painting, line_samples(line, samples), samples)
+    return _reduced(canvas, samples)
+
+
+def png_of_samples(
+    nearest: IndexArray,
+    fills: ColourArray,
+    ink: BoolArray,
+    background: ColourArray | None,
+    samples: int,
+) -> bytes:
+    """Return the bytes of a PNG file of what each sample shows (see `raster`)."""
+    pillow = _pillow()
+    if background is None:
+        cover = ((nearest >= 0) | ink).astype(np.uint8) * 255
+        pixels = np.dstack([np.zeros((*nearest.shape, 3), dtype=np.uint8), cover])
+    else:
+        pixels = np.tile(background, (*nearest.shape, 1))
+    is_covered = nearest >= 0
+    pixels[is_covered, :3] = fills[nearest[is_covered]]
+    pixels[ink, :3] = _INK
+    buffer = io.BytesIO()
+    _reduced(pillow.Image.fromarray(pixels), samples).save(buffer, "PNG", optimize=True)
+    return buffer.getvalue()
+
+
+def canvas_size(size: tuple[int, int], samples: int) -> tuple[int, int]:
+    """Return how many samples a picture has across and down, if they are not too many."""
+    width, height = size
     if width * height * samples**2 > _MOST:
         message = f"A picture is painted on at most {_MOST} pixels; choose fewer samples."
         raise LimitError(message, "too_large")
-    large = samples * width, samples * height
-    back = (0, 0, 0, 0) if background is None else tuple(background.tolist())
-    canvas = Image.new("RGBA" if background is None else "RGB", large, back)
-    _paint(ImageDraw.Draw(canvas), painting, max(1, round(line * samples)), samples)
-    if background is None:
+    return samples * width, samples * height
+
+
+def line_samples(line: float, samples: int) -> int:
+    """Return the width of lines in samples."""
+    return max(1, round(line * samples))
+
+
+def _reduced(canvas: "Image.Image", samples: int) -> "Image.Image":
+    """Return a picture whose pixels are the means of samples."""
+    if canvas.mode == "RGBA":
         # With cover multiplied in, means are right at the border of what is transparent.
         return canvas.convert("RGBa").reduce(samples).convert("RGBA")
     return canvas.reduce(samples)
+
+
+def _pillow() -> Any:
+    try:
+        import PIL.Image
+        import PIL.ImageDraw
+    except ImportError as error:
+        message = "PNG pictures need Pillow: pip install pillow."
+        raise BspcsgError(message, "missing_dependency") from error
+    return PIL
 
 
 def _paint(draw: "ImageDraw.ImageDraw", painting: Painting, width: int, samples: int) -> None:

@@ -61,6 +61,11 @@ class StabTrace:
     tests: int
     steps: tuple[StabStep, ...]
 
+    def __repr__(self) -> str:
+        """Say what the ray met and cost; `steps` shows the way."""
+        counts = f"{self.nodes} nodes, {self.leaves} leaves, {self.tests} tests"
+        return f"StabTrace({self.hits!r}, {counts}, {len(self.steps)} steps)"
+
 
 def stab_step(row: "_StabRow") -> StabStep:
     """Return a step of the core's row."""

@@ -75,12 +75,12 @@ class FlatSet(TreeSet):
 
     # Questions
 
-    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+    def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
         """Return the boundary point nearest to each point, and how far it is.
 
-        See `ObjectTree.project`.
+        See `ObjectTree.nearest`.
         """
-        return self.tree.project(points)
+        return self.tree.nearest(points)
 
     # As a value
 

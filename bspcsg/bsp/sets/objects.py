@@ -14,6 +14,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import Scalar, SetOp, WindingRule
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...mesh import interop
+from ...owned import owning
 from ...parameters import (
     SET_OPS,
     dimension_number,
@@ -36,6 +37,7 @@ from .tree_set import TreeSet, set_of
 Set = TypeVar("Set", bound=TreeSet)
 
 
+@owning
 class ObjectTree(TreeQueries):
     """A set of points as a partition tree; an immutable value.
 

@@ -13,18 +13,23 @@ from ...above import above
 from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
 from ...geometry.arrays import doubles
+from ...geometry.per_axis import per_axis
 from ...geometry.transform import Factor
 from ...mesh import interop
+from ...owned import owning
 from ...parameters import (
+    SEGMENTS,
     function_of,
     number,
     of_kind,
     pair,
     positive,
+    radius,
     shown,
     sides_around,
     truth_value,
     winding_rule,
+    word,
 )
 from ...shapes.primitives import extrude, revolve
 from ...shapes.sweep import unit_circle
@@ -38,7 +43,10 @@ from .plane_queries import PlaneQueries, on_one_lattice, vector2
 #: The rules that say which winding numbers count as inside, in the plane.
 FillRule: TypeAlias = WindingRule | Literal["negative"]
 
+_AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
+
+@owning
 class Region(PlaneQueries):
     """A polygonal set of the plane.
 
@@ -121,18 +129,32 @@ class Region(PlaneQueries):
 
     @classmethod
     def rectangle(
-        cls, width: Scalar, height: Scalar | None = None, *, center: bool = False
+        cls, width: Scalar | Vector, height: Scalar | None = None, *, center: bool = False
     ) -> Self:
-        """Return a rectangle with its lowest corner, or its middle, at the origin."""
-        w = positive(width, "width")
-        h = w if height is None else positive(height, "height")
+        """Return a rectangle with its lowest corner, or its middle, at the origin.
+
+        Its sides are two numbers or one pair; one number alone makes a square.
+        """
+        sides = pair(width, "size") if height is None else (width, height)
+        w, h = positive(sides[0], "width"), positive(sides[1], "height")
         corners = np.array([(0, 0), (w, 0), (w, h), (0, h)], dtype=np.float64)
         return cls(corners - (w / 2, h / 2) if truth_value(center, "center") else corners)
 
     @classmethod
-    def circle(cls, r: Scalar, segments: int = 64) -> Self:
-        """Return a regular polygon with its corners on the circle about the origin."""
-        return cls(unit_circle(sides_around(3, segments, "segments")) * positive(r, "r"))
+    def circle(
+        cls, r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | None = None
+    ) -> Self:
+        """Return a regular polygon with its corners on the circle about the origin.
+
+        Parameters
+        ----------
+        r, d : float
+            Radius, or diameter instead.
+        segments : int
+            Sides around, at least 3.
+        """
+        size = positive(radius(r, d, "A circle"), "r")
+        return cls(unit_circle(sides_around(3, segments, "segments")) * size)
 
     @classmethod
     def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
@@ -210,26 +232,64 @@ class Region(PlaneQueries):
 
     # Transforms
 
-    def translate(self, *offset: Scalar | Vector) -> "Region":
-        """Return the region moved by two numbers or one vector; exact for whole lattice steps."""
-        vector: Any = offset[0] if len(offset) == 1 else offset
-        return self._placed(transform.translation([*vector2(vector, "offset"), 0.0]))
+    def translate(
+        self, *offset: Scalar | Vector, x: Scalar | None = None, y: Scalar | None = None
+    ) -> "Region":
+        """Return the region moved by two numbers, one vector, or along the axes that are named.
 
-    def rotate(self, angle: Scalar) -> "Region":
-        """Return the region turned counterclockwise about the origin, in degrees.
+        Exact for whole lattice steps.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.rectangle(2, 1).translate(y=3).bounds.tolist()
+        [[0.0, 3.0], [2.0, 4.0]]
+        """
+        step = vector2(per_axis(offset, "offset", x=x, y=y), "offset")
+        return self._placed(transform.translation([*step, 0.0]))
+
+    def rotate(self, angle: Scalar, *, about: Vector = (0, 0)) -> "Region":
+        """Return the region turned counterclockwise about a point, in degrees.
 
         Quarter turns are exact.
         """
-        return self._placed(transform.rotation(number(angle, "angle"), "z"))
+        return self._placed_about(about, transform.rotation(number(angle, "angle"), "z"))
 
-    def scale(self, factor: Scalar | Vector) -> "Region":
-        """Return the region scaled about the origin, by one factor or one per axis."""
-        x, y = vector2(pair(factor, "factor"), "factor")
-        return self._placed(transform.scaling([x, y, 1.0]))
+    def scale(
+        self,
+        factor: Scalar | Vector | None = None,
+        *others: Scalar,
+        x: Scalar | None = None,
+        y: Scalar | None = None,
+        about: Vector = (0, 0),
+    ) -> "Region":
+        """Return the region scaled by one factor, by two, or along the axes that are named.
 
-    def mirror(self, normal: Vector) -> "Region":
-        """Return the mirror image in the line through the origin with this normal."""
-        return self._placed(transform.mirroring([*vector2(normal, "normal"), 0.0]))
+        The point `about` stays.
+        """
+        given = () if factor is None else (factor, *others)
+        factors = per_axis(given, "scale factor", missing=1.0, x=x, y=y)
+        along = vector2(pair(factors, "factor"), "factor")
+        return self._placed_about(about, transform.scaling([*along, 1.0]))
+
+    def mirror(
+        self,
+        normal: str | Vector | Scalar | None = None,
+        *others: Scalar,
+        x: Scalar | None = None,
+        y: Scalar | None = None,
+        about: Vector = (0, 0),
+    ) -> "Region":
+        """Return the mirror image in the line through the point `about` with this normal.
+
+        The normal is "x", "y", a vector, two numbers, or has the named coordinates.
+        """
+        given = () if normal is None else (normal, *others)
+        across = per_axis(given, "normal", x=x, y=y)
+        if isinstance(across, str):
+            across = _AXES[word(_AXES, across.lower(), "normal")]
+        factor = transform.mirroring([*vector2(across, "normal"), 0.0])
+        return self._placed_about(about, factor)
 
     def transform(self, matrix: Any) -> "Region":
         """Return the image under an affine map, a (3, 3) or (2, 3) matrix for column vectors.
@@ -247,6 +307,14 @@ class Region(PlaneQueries):
         wide = np.eye(4)
         wide[:2, [0, 1, 3]] = rows[:2]
         return self._placed(transform.matrix_factor(wide))
+
+    def _placed_about(self, point: Vector, factor: Factor) -> "Region":
+        """Return the image under a factor that leaves a point where it is, not the origin."""
+        x, y = vector2(point, "about")
+        placed = self
+        for one in reversed(transform.about((x, y, 0.0), (factor,))):
+            placed = placed._placed(one)
+        return placed
 
     def _placed(self, factor: Factor) -> "Region":
         motion = transform.lattice_motion((factor,), self.pitch)
@@ -278,7 +346,7 @@ class Region(PlaneQueries):
         delta: Scalar,
         join: Literal["round", "miter", "square", "bevel"] = "round",
         *,
-        segments: int = 32,
+        segments: int = SEGMENTS,
         miter_limit: Scalar = 1e6,
     ) -> "Region":
         """Return the region with its outline moved outwards.
@@ -424,7 +492,7 @@ class Region(PlaneQueries):
             self, height, center=center, twist=twist, scale=scale, slices=slices, taper=taper
         )
 
-    def revolve(self, *, angle: Scalar = 360.0, segments: int = 32) -> Solid:
+    def revolve(self, *, angle: Scalar = 360.0, segments: int = SEGMENTS) -> Solid:
         """Return what the region sweeps around the z axis, x being the distance from the axis.
 
         See `bspcsg.revolve`; empty for an empty region.
@@ -440,6 +508,10 @@ class Region(PlaneQueries):
     def to_dxf(self, path: str | os.PathLike[str]) -> None:
         """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
         above("save_dxf")(self, path)
+
+    def show(self) -> None:
+        """Show the region in a notebook, or as a slab in a browser (see `bspcsg.show`)."""
+        above("show")(self)
 
     def to_shapely(self) -> Any:
         """Return a ``shapely.MultiPolygon``; shapely must be installed."""

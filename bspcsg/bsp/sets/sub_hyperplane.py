@@ -9,7 +9,7 @@ from typing import Any, Self, TypeAlias
 import numpy as np
 
 from ..._types import FloatArray, Scalar
-from ...errors import LimitError, UnboundedError, invalid_parameter
+from ...errors import LimitError, UnboundedError, deprecated, invalid_parameter
 from ...geometry.arrays import doubles
 from ...parameters import shown
 from .interval import Intervals
@@ -203,7 +203,7 @@ class SubHyperplane(SetOperators):
             return [self._lifted(corners) for corners in self._part.convex_parts()]
         return [self._lifted(pair[:, None]) for pair in self._part.pairs]
 
-    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+    def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
         """Return the nearest point of the part, its border included, to each point.
 
         Parameters
@@ -226,9 +226,14 @@ class SubHyperplane(SetOperators):
         flat = self._flattened(array)
         outside = self._part.classify(flat) < 0
         if outside.any():
-            flat[outside] = self._part.project(flat[outside])[0]
+            flat[outside] = self._part.nearest(flat[outside])[0]
         nearest = self._lifted(flat)
         return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
+
+    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Do as `nearest` does; deprecated, for a projection is a shadow."""
+        deprecated("SubHyperplane.project", "nearest")
+        return self.nearest(points)
 
     # Set operations
 

@@ -132,6 +132,10 @@ class MergeTrace:
         """Yield the steps."""
         return iter(self.steps)
 
+    def __repr__(self) -> str:
+        """Say how many steps there are; iterating shows them."""
+        return f"MergeTrace({self.op}, {len(self)} steps)"
+
     @property
     def cases(self) -> tuple[SplitCase, ...]:
         """The cases of all splits in their order."""

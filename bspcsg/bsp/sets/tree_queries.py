@@ -18,7 +18,7 @@ class TreeQueries(TreeSet):
 
     __slots__ = ()
 
-    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+    def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
         """Return the boundary point nearest to each point, and how far it is.
 
         Parameters

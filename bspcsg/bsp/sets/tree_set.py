@@ -5,8 +5,8 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Self
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import Scalar, SetOp, SideArray
-from ...errors import core_errors, invalid_parameter
+from ..._types import FloatArray, Scalar, SetOp, SideArray
+from ...errors import core_errors, deprecated, invalid_parameter
 from ...parameters import shown
 from ...solid.point_set import PointSet
 from ...solid.sides import sides_of
@@ -87,6 +87,15 @@ class TreeSet(PointSet):
             +1 inside, 0 on the boundary, -1 outside.
         """
         return sides_of(point_rows(points, self.dimension), self._tree)
+
+    @abstractmethod
+    def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the boundary point nearest to each point, and how far it is."""
+
+    def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Do as `nearest` does; deprecated, for a projection is a shadow."""
+        deprecated(f"{type(self).__name__}.project", "nearest")
+        return self.nearest(points)
 
     @property
     def measure(self) -> Fraction:

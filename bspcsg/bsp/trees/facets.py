@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..._core import suited_pitch
-from ..._types import FloatArray, IndexArray
+from ..._types import FloatArray, IndexArray, MeshArrays
 from ...errors import InvalidMeshError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles, doubles_or_none
 from ...geometry.hyperplane import exact_point
@@ -64,14 +64,20 @@ def _polygons(facets: Any) -> Corners:
 
 def mesh_triangles(mesh: Any) -> FloatArray:
     """Return the (n, 3, 3) triangles of whatever holds a mesh; it need not be closed."""
+    vertices, faces = mesh_of(mesh)
+    triangles: FloatArray = vertices[faces]
+    return triangles
+
+
+def mesh_of(mesh: Any) -> MeshArrays:
+    """Return the vertices and triangles of whatever holds a mesh; it need not be closed."""
     if isinstance(mesh, Solid):
         mesh = mesh.to_mesh()
     vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
     if faces.size and (faces.min() < 0 or faces.max() >= len(vertices)):
         message = "A face names a vertex that does not exist."
         raise InvalidMeshError(message, "index_out_of_range")
-    triangles: FloatArray = vertices[faces]
-    return triangles
+    return vertices, faces
 
 
 def chosen_pitch(given: Any, points: FloatArray) -> int:

@@ -129,6 +129,10 @@ class Construction:
         """Yield the divisions."""
         return iter(self.divisions)
 
+    def __repr__(self) -> str:
+        """Say how many divisions there are; iterating shows them."""
+        return f"Construction({len(self)} divisions, {len(self.facets)} pieces)"
+
     def __getitem__(self, node: int) -> Division:
         """Return the division that made a node."""
         return self.divisions[node]
@@ -265,6 +269,11 @@ class RayTrace:
     def nodes(self) -> tuple[int, ...]:
         """The inner nodes visited, in their order."""
         return tuple(s.node for s in self.steps if s.kind == "visit" and s.node is not None)
+
+    def __repr__(self) -> str:
+        """Say what is hit and what it cost; `steps` shows the way."""
+        met = "no facet" if self.facet is None else f"facet {self.facet} at t = {self.t:.6g}"
+        return f"RayTrace({met}, {len(self.steps)} steps, cost {self.cost})"
 
     @property
     def leaves(self) -> int:

@@ -15,6 +15,7 @@ from ...formats.atomic import write_file
 from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
+from ...owned import owning
 from ...parameters import at_least, not_negative, shown, word
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
@@ -34,7 +35,11 @@ if TYPE_CHECKING:
 #: Margin around the facets for regions, as a share of their largest extent.
 MARGIN = 0.05
 
+#: Nodes of the largest tree that notebooks draw: so many take a second, and two megabytes.
+_MOST_DRAWN = 10_000
 
+
+@owning
 class PartitionTree(Ordered):
     """A binary space partition tree over points, segments or polygons.
 
@@ -499,6 +504,10 @@ class PartitionTree(Ordered):
     def to_svg(self, size: int = 480) -> str:
         """Return a picture of a 2D tree: regions in grey, fragments in black, as SVG."""
         return to_svg(self, size)
+
+    def _repr_svg_(self) -> str | None:
+        """Return the picture for notebooks; None for trees that are not in the plane."""
+        return self.to_svg() if self.dimension == 2 and len(self) <= _MOST_DRAWN else None
 
     # As a value
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import FormatError
+from ...errors import FormatError, unreadable
 from ...formats.registry import FORMATS
 from ...parameters import SET_OPS
 from .case import SCRIPT, Case, Operand, command_for, digest_of, digest_of_mesh
@@ -70,7 +70,7 @@ def inputs_in(paths: Sequence[Path]) -> CaseInputs:
     cases: list[Path] = []
     for path in paths:
         if not path.is_file():
-            raise FormatError(f"{path}: cannot read this file: no such file.", "unreadable")
+            raise unreadable(path)
         _kind_of(path, meshes, scripts, cases).append(path)
     return CaseInputs(tuple(meshes), tuple(scripts), tuple(cases))
 
@@ -192,7 +192,7 @@ def _readable(reader: Callable[[Path], Any], path: Path) -> Any:
     try:
         return reader(path)
     except OSError as error:
-        raise FormatError(f"{path}: cannot read: {error.strerror}.", "unreadable") from error
+        raise unreadable(path, error) from error
 
 
 def _listed(path: Path) -> Iterator[Case]:

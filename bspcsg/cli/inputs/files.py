@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar
 
 import click
 
-from ...errors import Finding, FormatError, InvalidMeshError
+from ...errors import Finding, FormatError, InvalidMeshError, unreadable
 from ..console import standard
 from ..console.output import Output, counted
 from .lengths import MILLIMETRES
@@ -376,8 +376,7 @@ def _text_of(path: Path) -> str:
     try:
         return _decoded(limited_content(path), str(path))
     except OSError as error:
-        message = f"{path}: cannot read this file: {error.strerror}."
-        raise FormatError(message, "unreadable") from error
+        raise unreadable(path, error) from error
 
 
 def _decoded(data: bytes, name: str) -> str:

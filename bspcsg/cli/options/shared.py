@@ -4,16 +4,23 @@ import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 from click.core import ParameterSource
 
+from ...meant import question
 from ...parameters import MOST_PITCH, MOST_SECONDS, MOST_THREADS
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..inputs.scripts import STREAMED, SUFFIXES
 
 _Command = TypeVar("_Command", bound=Callable[..., Any])
+
+
+if TYPE_CHECKING:
+    _Choice = click.Choice[str]
+else:
+    _Choice = click.Choice
 
 
 class Further(click.Option):
@@ -75,6 +82,38 @@ class FiniteRange(click.FloatRange):
         if not math.isfinite(number):
             self.fail(f"{number} is not finite.", param, ctx)
         return number
+
+
+class Renamed(click.Option):
+    """An option with one value that takes its old name, too, which the help leaves out.
+
+    Parameters
+    ----------
+    *given, **options
+        As for any option.
+    old : str
+    """
+
+    def __init__(self, *given: Any, old: str, **options: Any) -> None:
+        super().__init__(*given, **options)
+        self._old = old
+
+    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        """Let the parser know both names."""
+        super().add_to_parser(parser, ctx)
+        parser.add_option(obj=self, opts=[self._old], dest=self.name, nargs=self.nargs)
+
+
+class Words(_Choice):
+    """Some words, of which an error names the one that is meant."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the word of a text."""
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            asks = question(value, map(str, self.choices))
+            raise click.BadParameter(error.message + asks, ctx, param) from error
 
 
 SECONDS = FiniteRange(0, MOST_SECONDS, min_open=True)

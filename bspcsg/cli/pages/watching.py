@@ -3,15 +3,14 @@
 import os
 import threading
 import time
-import webbrowser
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...browsing import opened
 from ...errors import BspcsgError
 from ..console import clock, output
 from ..console.output import Output
-from ..console.screen import has_screen
 from ..job import Job
 from .live import LiveServer, Site, stamp
 from .showing import folders_of, page_of
@@ -100,8 +99,8 @@ class Watching:
         server = LiveServer(site, port)
         threading.Thread(target=server.serve_forever, args=(_LOOK,), daemon=True).start()
         self._out.note(f"{server.address} shows the result until Ctrl-C")
-        if opens and has_screen():
-            webbrowser.open(server.address)
+        if opens:
+            opened(server.address)
         return server
 
     def _page(self, path: str) -> str | None:

@@ -9,8 +9,9 @@ from ..console import output
 from ..console.output import Output, grouped
 from ..console.tables import table_text
 from ..inputs.files import Inputs, shown
+from ..inputs.lengths import as_length
 from ..options.patterns import file_argument
-from ..options.shared import SAMPLES, FiniteRange, common, reading, sets, verb
+from ..options.shared import SAMPLES, Renamed, common, reading, sets, verb
 from ..pages.written import PAGE, refuse_page, write_page
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 _EPILOG = """\b
 Examples:
-  bspcsg compare old.stl new.stl --tol 1e-6 || echo changed
+  bspcsg compare old.stl new.stl --tolerance 1e-6 || echo changed
   bspcsg compare old.stl new.stl --html difference.html
 """
 
@@ -28,11 +29,12 @@ Examples:
 @file_argument("A", "a")
 @file_argument("B", "b")
 @click.option(
-    "--tol",
-    metavar="DISTANCE",
-    type=FiniteRange(min=0),
-    default=0.0,
-    help="Distance of the surfaces, in model units, up to which they count as the same.",
+    "--tolerance",
+    cls=Renamed,
+    old="--tol",
+    metavar="LENGTH",
+    callback=as_length,
+    help="Distance of the surfaces, as 0.01mm, up to which they count as the same.",
 )
 @click.option(
     "--samples",
@@ -49,7 +51,13 @@ Examples:
 @sets
 @common
 def compare(
-    a: Path, b: Path, tol: float, samples: int, seed: int, page: Path | None, **given: Any
+    a: Path,
+    b: Path,
+    tolerance: float | None,
+    samples: int,
+    seed: int,
+    page: Path | None,
+    **given: Any,
 ) -> int:
     """Say whether two files hold the same set of points, and how they differ.
 
@@ -59,8 +67,9 @@ def compare(
     from ...parameters import set_threads
     from ...verify.comparison import compare as compared
 
+    tol = tolerance or 0.0
     if tol and not samples:
-        raise click.UsageError("--tol needs distances, so --samples must be above 0.")
+        raise click.UsageError("--tolerance needs distances, so --samples must be above 0.")
     set_threads(given["threads"])
     out = Output.of(given)
     inputs = Inputs.of(out, given)

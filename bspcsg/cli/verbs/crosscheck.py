@@ -26,7 +26,7 @@ from ..options.campaign import (
     as_shard,
 )
 from ..options.patterns import files_argument
-from ..options.shared import SAMPLES, SECONDS, FilePath, further, telling, verb
+from ..options.shared import SAMPLES, SECONDS, FilePath, Words, further, telling, verb
 
 if TYPE_CHECKING:
     from ...campaign.cases.case import Case
@@ -56,7 +56,7 @@ _FILE = FilePath()
     "--op",
     "operations",
     multiple=True,
-    type=click.Choice(SET_OPS),
+    type=Words(SET_OPS),
     help="Operation on each pair; may be repeated, by default all four.",
 )
 @click.option(

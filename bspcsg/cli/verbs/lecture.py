@@ -5,6 +5,7 @@ from typing import Any
 
 import click
 
+from ...browsing import opened, temporary_page
 from ..console import output
 from ..console.output import Output
 from ..inputs.files import shown
@@ -12,7 +13,8 @@ from ..options.shared import FilePath, common, verb
 from ..pages.written import refuse_page, write_page
 
 _EPILOG = """\b
-Example:
+Examples:
+  bspcsg lecture
   bspcsg lecture -o lecture.html
 """
 
@@ -22,23 +24,26 @@ Example:
     "-o",
     "--output",
     "target",
-    required=True,
     metavar="FILE",
     type=FilePath(),
-    help="Page to write, ending in .html.",
+    help="Page to write, ending in .html; by default a temporary one, opened in a browser.",
 )
 @common
-def lecture(target: Path, **given: Any) -> int:
+def lecture(target: Path | None, **given: Any) -> int:
     """Write one page that explains partition trees with figures to drag and to step through.
 
     It needs no network: the figures call the core of bspcsg, compiled to WebAssembly, in the page.
-    Open it in a browser.
     """
     from ...report.lecture.page import CHAPTERS, lecture_page
 
-    refuse_page(target)
-    size = write_page(target, lecture_page())
-    line = f"{shown(target)}  {len(CHAPTERS)} chapters"
-    document = {"output": str(target), "chapters": len(CHAPTERS), "bytes": size}
-    Output.of(given).result(line, document)
+    out = Output.of(given)
+    page = temporary_page("lecture") if target is None else target
+    refuse_page(page)
+    size = write_page(page, lecture_page())
+    reason = opened(page.as_uri()) if target is None else ""
+    if reason:
+        out.note(reason)
+    line = f"{shown(page)}  {len(CHAPTERS)} chapters"
+    document = {"output": str(page), "chapters": len(CHAPTERS), "bytes": size}
+    out.result(line, document)
     return output.DONE

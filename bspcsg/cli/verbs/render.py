@@ -34,6 +34,10 @@ _STYLES = ("shaded", "hidden", "edges")
 #: The background that lets through what is behind the picture.
 _TRANSPARENT = "none"
 
+_TEXTURES = (
+    "of its texture a face shows one colour, that in its middle; bspcsg view shows all of it."
+)
+
 #: Pictures of one turn at most, and how many there are unless that is said.
 _MOST_FRAMES, _FRAMES = 360, 36
 
@@ -198,7 +202,7 @@ class _Rendering(Drawing):
         else:
             picture = self._picture(layers)
             data = picture.svg.encode() if self.suffix == ".svg" else picture.png
-            polygons = len(picture.painting.source)
+            polygons = picture.polygons
             more, words = {"polygons": polygons}, counted(polygons, "polygon")
         return data, f"{width} x {height} pixels  {words}", {**values, **more}
 
@@ -209,7 +213,7 @@ class _Rendering(Drawing):
 
     def _colours(self, layers: "list[Layer]") -> Any:
         """Return a colour for each face, one for all, or None for the one that is usual."""
-        from ...report.viewer.faces import face_colours
+        from ...report.viewer.faces import are_textured, face_colours
 
         given = self.settings["colours"]
         if given is not None and given.startswith("#"):
@@ -222,6 +226,8 @@ class _Rendering(Drawing):
             colours = face_colours(layers, given)
         except BspcsgError as error:
             raise click.UsageError(f"--colours: {error.message}") from None
+        if given is None and are_textured(layers):
+            self.out.note(_TEXTURES)
         return colours if len(colours) else None
 
     def _picture(self, layers: "list[Layer]") -> "Picture":
@@ -261,9 +267,9 @@ class _Rendering(Drawing):
 
 
 def _used(faces: Any) -> Any:
-    import numpy as np
+    from ...formats.raw import compacted
 
-    return np.unique(faces)
+    return compacted(faces)[0]
 
 
 def _room_to_turn(points: "FloatArray") -> "FloatArray":

@@ -1,17 +1,15 @@
 """The verb that shows files in a browser: view."""
 
 import sys
-import tempfile
-import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...browsing import opened, temporary_page
 from ..console import output
 from ..console.output import Output, counted
-from ..console.screen import has_screen
 from ..inputs.files import STREAM, Inputs, is_dropped, shown
 from ..options.patterns import files_argument
 from ..options.shared import PORT, FilePath, common, is_given, reading, verb
@@ -87,13 +85,15 @@ class _Viewing:
         layers, unit = self._scene(self._files)
         title = ", ".join(layer.name for layer in layers)
         page = view_page(layers, title, unit=unit)
-        target = self._target or _temporary(self._files[0])
+        first = self._files[0]
+        stem = "view" if str(first) == STREAM else first.stem
+        target = self._target or temporary_page(stem)
         size = write_page(target, page)
         if size > _LARGE:
             self._out.note(f"the page has {size / 1e6:.0f} MB; browsers take a while for it.")
         opens = self._settings["opens"] and not is_dropped(target)
-        opened = opens and self._opened(target.resolve().as_uri())
-        self._tell(target, layers, size, opened)
+        is_open = opens and self._opened(target.resolve().as_uri())
+        self._tell(target, layers, size, is_open)
         return output.DONE
 
     @property
@@ -121,9 +121,9 @@ class _Viewing:
             else site_of_folder(folder, self._scene)
         )
         server = LiveServer(site, self._settings["port"])
-        opened = self._settings["opens"] and self._opened(server.address)
+        is_open = self._settings["opens"] and self._opened(server.address)
         files = [str(path) for path in self._files]
-        document = {"files": files, "address": server.address, "opened": opened}
+        document = {"files": files, "address": server.address, "opened": is_open}
         self._out.result(f"{server.address}  until Ctrl-C", document)
         sys.stdout.flush()
         server.serve()
@@ -145,15 +145,12 @@ class _Viewing:
 
     def _opened(self, address: str) -> bool:
         """Open the page, or say why not."""
-        if not has_screen():
-            self._out.note("there is no screen here; open the page in a browser yourself.")
-            return False
-        if webbrowser.open(address):
-            return True
-        self._out.note("no browser could be started; open the page yourself.")
-        return False
+        reason = opened(address)
+        if reason:
+            self._out.note(reason)
+        return not reason
 
-    def _tell(self, target: Path, layers: "list[Layer]", size: int, opened: bool) -> None:
+    def _tell(self, target: Path, layers: "list[Layer]", size: int, is_open: bool) -> None:
         triangles = sum(len(layer.faces) for layer in layers)
         line = f"{shown(target)}  {counted(triangles, 'triangle')}  {size / 1000:.0f} kB"
         document = {
@@ -161,12 +158,6 @@ class _Viewing:
             "output": str(target),
             "triangles": triangles,
             "bytes": size,
-            "opened": opened,
+            "opened": is_open,
         }
         self._out.result(line, document)
-
-
-def _temporary(shown_first: Path) -> Path:
-    """Return a name for a page in a folder of its own, which stays."""
-    stem = "view" if str(shown_first) == STREAM else shown_first.stem
-    return Path(tempfile.mkdtemp(prefix="bspcsg-")) / f"{stem}.html"

@@ -13,7 +13,7 @@ _SMALLEST = 1e-21
 
 
 @counted
-def offset(solid: Solid, r: Scalar, segments: int = 16) -> Solid:
+def offset(solid: Solid, r: Scalar, segments: int) -> Solid:
     """Return the solid with its surface moved outwards (see `Solid.offset`)."""
     distance, around = number(r, "r"), sides_around(4, segments, "segments")
     if not distance:
@@ -23,7 +23,7 @@ def offset(solid: Solid, r: Scalar, segments: int = 16) -> Solid:
 
 
 @counted
-def rounded(solid: Solid, r: Scalar, segments: int = 16, inside: bool = False) -> Solid:
+def rounded(solid: Solid, r: Scalar, segments: int, inside: bool) -> Solid:
     """Return the solid with round edges (see `Solid.rounded`)."""
     radius = positive(r, "r")
     first = radius if truth_value(inside, "inside") else -radius

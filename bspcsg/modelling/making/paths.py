@@ -6,14 +6,20 @@ from typing import Any
 import numpy as np
 
 from ..._types import FloatArray, Scalar
-from ...errors import LimitError, invalid_parameter
+from ...errors import LimitError, deprecated, invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.transform import cos_sin
-from ...parameters import number, positive, refuse_many_corners, sides_around, truth_value
+from ...parameters import SEGMENTS, number, positive, refuse_many_corners, sides_around, truth_value
 
 
 def helix(
-    r: Scalar, pitch: Scalar, turns: Scalar, *, r2: Scalar | None = None, segments: int = 32
+    r: Scalar,
+    lead: Scalar | None = None,
+    turns: Scalar | None = None,
+    *,
+    r2: Scalar | None = None,
+    segments: int = SEGMENTS,
+    pitch: Scalar | None = None,
 ) -> FloatArray:
     """Return points of a helix about the z axis, from (r, 0, 0) on upwards.
 
@@ -21,7 +27,7 @@ def helix(
     ----------
     r : float
         Radius.
-    pitch : float
+    lead : float
         Height of one turn; 0 makes a circle or a flat spiral.
     turns : float
         Above 0 counter-clockwise seen from above, a right-handed thread; below 0 clockwise.
@@ -29,6 +35,8 @@ def helix(
         Radius at the end, for a helix on a cone.
     segments : int
         Points in each turn, at least 3.
+    pitch : float, optional
+        The old name of `lead`; deprecated, for elsewhere it is the step of the lattice.
 
     Returns
     -------
@@ -47,7 +55,10 @@ def helix(
     >>> b.helix(10, 2, turns=3, segments=24).shape
     (73, 3)
     """
-    start, rise, rounds = positive(r, "r"), number(pitch, "pitch"), number(turns, "turns")
+    if pitch is not None:
+        deprecated("pitch of bspcsg.helix", "lead")
+        lead = pitch
+    start, rise, rounds = positive(r, "r"), number(lead, "lead"), number(turns, "turns")
     end = start if r2 is None else positive(r2, "r2")
     around = sides_around(3, segments, "segments")
     if rounds == 0:

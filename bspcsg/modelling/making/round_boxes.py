@@ -7,11 +7,10 @@ import numpy as np
 
 from ..._types import FloatArray, IndexArray, Scalar, Vector
 from ...errors import invalid_parameter
-from ...geometry.transform import vector3
 from ...mesh.weld import welded
-from ...parameters import not_negative, positive, refuse_many_corners, sides_around, truth_value
+from ...parameters import SEGMENTS, not_negative, refuse_many_corners, sides_around, truth_value
 from ...shapes.arrays import from_arrays
-from ...shapes.primitives import box
+from ...shapes.primitives import box, edge_lengths
 from ...solid.counting import counted
 from ...solid.solid import Solid
 from .patches import patch_directions, patch_faces
@@ -19,7 +18,11 @@ from .patches import patch_directions, patch_faces
 
 @counted
 def rounded_box(
-    size: Scalar | Vector, r: Scalar, *, segments: int = 32, center: bool = False
+    size: Scalar | Vector,
+    *numbers: Scalar,
+    r: Scalar | None = None,
+    segments: int = SEGMENTS,
+    center: bool = False,
 ) -> Solid:
     """Return a box with round edges and corners.
 
@@ -27,6 +30,8 @@ def rounded_box(
     ----------
     size : float or (3,) float
         Edge lengths; one number makes a cube.
+    *numbers : float
+        The other two edge lengths, if `size` is the first one; and the radius, unless it is named.
     r : float
         Radius, at most half of the shortest edge; 0 makes a box.
     segments : int
@@ -46,11 +51,15 @@ def rounded_box(
     >>> import bspcsg as b
     >>> round(b.rounded_box((4, 3, 2), 0.5, segments=4).volume, 4)
     20.1667
+    >>> b.rounded_box(4, 3, 2, r=0.5) == b.rounded_box((4, 3, 2), 0.5)
+    True
     """
-    lengths = vector3(size, "size", spread=True)
-    for length in lengths:
-        positive(length, "size")
-    radius, around = not_negative(r, "r"), sides_around(4, segments, "segments")
+    given = numbers if r is None else (*numbers, r)
+    if len(given) not in (1, 3):
+        raise invalid_parameter("A rounded box has one size or three, and r: (4, 3, 2), 0.5.")
+    *others, round_by = given
+    lengths = edge_lengths(size, *others)
+    radius, around = not_negative(round_by, "r"), sides_around(4, segments, "segments")
     if radius == 0:
         return box(lengths, center=center)
     if radius > lengths.min() / 2:

@@ -12,9 +12,11 @@ from ...geometry.polygon import contours_of, directed_edges, triangulate
 from ...geometry.transform import cos_sin
 from ...parameters import (
     MOST_CORNERS,
+    SEGMENTS,
     not_negative,
     number,
     positive,
+    radius,
     refuse_many_corners,
     sides_around,
 )
@@ -40,7 +42,7 @@ def sweep(
     twist: Along = 0.0,
     scale: Along = 1.0,
     frame: Frame = "parallel",
-    segments: int = 32,
+    segments: int = SEGMENTS,
 ) -> Solid:
     """Return what a profile sweeps that is carried along a path, standing across it.
 
@@ -118,17 +120,25 @@ def sweep(
 
 
 @counted
-def pipe(path: Any, r: Scalar, *, inner: Scalar = 0.0, segments: int = 32) -> Solid:
+def pipe(
+    path: Any,
+    r: Scalar | None = None,
+    *,
+    d: Scalar | None = None,
+    inner: Scalar | None = None,
+    inner_d: Scalar | None = None,
+    segments: int = SEGMENTS,
+) -> Solid:
     """Return a round bar along a path, or a pipe.
 
     Parameters
     ----------
     path : (n, 3) or (n, 2) array_like of float
         As for `sweep`; corners are mitred.
-    r : float
-        Radius.
-    inner : float
-        Radius of the bore, below `r`; 0 for a bar.
+    r, d : float
+        Radius, or diameter instead.
+    inner, inner_d : float, optional
+        Radius of the bore, below `r`, or its diameter instead; 0, the default, for a bar.
     segments : int
         Sides around, at least 3.
 
@@ -143,7 +153,8 @@ def pipe(path: Any, r: Scalar, *, inner: Scalar = 0.0, segments: int = 32) -> So
     >>> b.pipe([(0, 0, 0), (0, 0, 5)], 2, inner=1, segments=4).volume
     30.0
     """
-    outer, bore = positive(r, "r"), not_negative(inner, "inner")
+    outer = positive(radius(r, d, "A pipe"), "r")
+    bore = not_negative(radius(inner, inner_d, "A bore", default=0.0), "inner")
     if bore >= outer:
         raise invalid_parameter(f"inner must be below r: {bore:g} is not below {outer:g}.")
     circle = unit_circle(sides_around(3, segments, "segments"))

@@ -11,7 +11,7 @@ import pyclipper
 from ..._types import FloatArray, Scalar
 from ...bsp import Region
 from ...errors import InvalidMeshError, LimitError, invalid_parameter
-from ...parameters import number, refuse_many_corners, sides_around, word
+from ...parameters import SEGMENTS, number, refuse_many_corners, sides_around, word
 
 #: The form of corners where the outline moves away from them.
 Join: TypeAlias = Literal["round", "miter", "square", "bevel"]
@@ -46,7 +46,7 @@ def offset_region(
     delta: Scalar,
     join: Join = "round",
     *,
-    segments: int = 32,
+    segments: int = SEGMENTS,
     miter_limit: Scalar = _MITER_LIMIT,
 ) -> Region:
     """Return a region with its outline moved outwards (see `Region.offset`)."""

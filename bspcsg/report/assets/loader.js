@@ -4,6 +4,9 @@
 const bspcsgViews = (() => {
   // Browsers keep about sixteen drawing contexts a page alive; a few are enough to compare.
   const MOST_OPEN = 4;
+  // In a notebook the viewer may come from a cell that is not there.
+  const PATIENCE = 5000;
+  const WAITS = "To turn this, run the first cell that shows a solid: it holds the viewer for all.";
   const opened = [];
   let bundle = null;
 
@@ -13,9 +16,21 @@ const bspcsgViews = (() => {
     return new Uint8Array(await new Response(stream).arrayBuffer());
   }
 
+  /** The viewer of this page, or, in a notebook, that which a cell holds for all. */
+  function packedViewer() {
+    const { textContent, dataset: { ask } } = document.getElementById("bspcsg-viewer");
+    if (!ask) return textContent.trim();
+    return new Promise((resolve) => {
+      addEventListener("message", ({ source, data }) => {
+        if (source === parent && typeof data?.[ask] === "string") resolve(data[ask]);
+      });
+      parent.postMessage(ask, "*");
+    });
+  }
+
   function viewer() {
     bundle ??= (async () => {
-      const code = await unpacked(document.getElementById("bspcsg-viewer").textContent.trim());
+      const code = await unpacked(await packedViewer());
       const script = document.createElement("script");
       script.textContent = new TextDecoder().decode(code);
       document.head.append(script);
@@ -49,8 +64,11 @@ const bspcsgViews = (() => {
   async function open(host, closable) {
     const reason = obstacle();
     if (reason) return tell(host, reason);
+    const waiting = setTimeout(() => tell(host, WAITS), PATIENCE);
     try {
       const { open: start } = await viewer();
+      clearTimeout(waiting);
+      host.querySelector(".say")?.remove();
       const stage = Object.assign(document.createElement("div"), { className: "stage" });
       host.classList.add("open");
       host.prepend(stage);
@@ -66,6 +84,7 @@ const bspcsgViews = (() => {
       if (opened.length > MOST_OPEN) opened[0].shut();
       return entry.view;
     } catch (error) {
+      clearTimeout(waiting);
       host.classList.remove("open");
       host.querySelector(".stage")?.remove();
       return tell(host, `The 3D view could not be opened: ${error.message}`);

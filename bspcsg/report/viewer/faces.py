@@ -53,6 +53,16 @@ def face_colours(layers: Sequence[Layer], name: str | None = None) -> FloatArray
     return np.concatenate(found)
 
 
+def are_textured(layers: Sequence[Layer]) -> bool:
+    """Say whether layers look like pictures, of which each face shows one colour only."""
+    paints = [paint for layer in layers for paint in layer.paints]
+    return any(
+        isinstance(paint, Labels) and paint.uv is not None and any(paint.images)
+        for paint in paints
+        if paint.name in OWN
+    )
+
+
 def _of_layer(layer: Layer, name: str) -> FloatArray:
     paint = next((paint for paint in layer.paints if paint.name == name), None)
     if paint is None:

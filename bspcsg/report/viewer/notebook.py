@@ -1,10 +1,12 @@
 """The view of a solid in a notebook: the interactive one, or a picture."""
 
+from collections.abc import Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
 from ...errors import BspcsgError, MissingPartError, held
 from .layer import Layer
+from .sharing import NOTEBOOK, is_notebook, running_cell, viewer_name
 from .still import rough_picture
 from .view import view_page
 
@@ -39,23 +41,37 @@ def solid_html(solid: "Solid") -> str | None:
     count = f"{len(layer.faces):,} triangles"
     if len(layer.faces) > _MOST_IN_VIEW:
         said = f"{count} are too many for a notebook; save the solid and use bspcsg view."
-        return solid_svg(solid) + _paragraph(said)
+        return _picture(solid).svg + _paragraph(said)
     try:
-        page = view_page([layer], f"solid of {count}", embedded=True)
+        return framed([layer], f"solid of {count}")
     except MissingPartError:
         return None
-    return (
-        f'<iframe srcdoc="{escape(page)}" title="solid of {count}" sandbox="allow-scripts"'
-        f' style="width:100%;height:{_HEIGHT}px;border:0"></iframe>'
+
+
+def framed(layers: Sequence[Layer], title: str) -> str:
+    """Return the interactive view of layers in a frame.
+
+    In a notebook all views have one viewer, which comes with the first.
+    """
+    cell = running_cell()
+    shared = "" if cell is None else viewer_name()
+    page = view_page(layers, title, embedded=True, shared=shared)
+    frame = (
+        f'<iframe srcdoc="{escape(page)}" title="{escape(title)}" class="bspcsg"'
+        f' sandbox="allow-scripts" style="width:100%;height:{_HEIGHT}px;border:0"></iframe>'
     )
+    return frame if cell is None else frame + NOTEBOOK.script(cell)
 
 
-def solid_svg(solid: "Solid") -> str:
-    """Return a picture of a solid as SVG; above some thousand triangles it shows the shape only."""
+def solid_svg(solid: "Solid") -> str | None:
+    """Return a picture of a solid as SVG; above some thousand triangles it shows the shape only.
+
+    None in a notebook that has pixels, too: it stores all forms that there are.
+    """
     sentence = _obstacle(solid)
     if sentence:
         return _words(sentence)
-    return _picture(solid).svg
+    return None if is_notebook() and _has_pillow() else _picture(solid).svg
 
 
 def solid_png(solid: "Solid") -> bytes | None:
@@ -77,11 +93,15 @@ def _picture(solid: "Solid") -> "Picture":
     return rough_picture(_layer(solid), _SIZE, _MOST_IN_PICTURE)
 
 
-def _figure(region: "Region") -> "Picture":
-    """Return a region as what one sees from above of a slab of it."""
+def slab(region: "Region") -> Layer:
+    """Return a region as a slab, of which it is what one sees from above."""
     low, high = held(region.bounds, "the bounds of a region")
     mesh = region.extrude(float((high - low).max())).to_mesh()
-    return rough_picture(Layer("region", mesh.vertices, mesh.faces), _SIZE, _MOST_IN_FIGURE, "top")
+    return Layer("region", mesh.vertices, mesh.faces)
+
+
+def _figure(region: "Region") -> "Picture":
+    return rough_picture(slab(region), _SIZE, _MOST_IN_FIGURE, "top")
 
 
 def _png(picture: "Picture") -> bytes | None:
@@ -91,6 +111,14 @@ def _png(picture: "Picture") -> bytes | None:
         if error.code != "missing_dependency":
             raise
         return None
+
+
+def _has_pillow() -> bool:
+    try:
+        import PIL  # noqa: F401
+    except ImportError:
+        return False
+    return True
 
 
 def _obstacle(solid: "Solid") -> str:

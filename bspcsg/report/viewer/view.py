@@ -22,6 +22,7 @@ def view_page(
     landmarks: Sequence[Landmark] = (),
     notes: Sequence[str] = (),
     live: str = "",
+    shared: str = "",
 ) -> str:
     """Return a page that shows meshes, whole in one file.
 
@@ -41,6 +42,8 @@ def view_page(
         Sentences below the title.
     live : str
         The address at which the page asks whether it is out of date, on the server that it is from.
+    shared : str
+        The name of a viewer that the page around this one holds; by default the page has its own.
 
     Raises
     ------
@@ -59,6 +62,7 @@ def view_page(
         size=" × ".join(f"{side:.6g}" for side in (high - low).tolist()),
         unit=unit,
         embedded=embedded,
+        shared=shared,
     )
 
 

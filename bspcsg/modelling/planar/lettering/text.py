@@ -12,7 +12,7 @@ import numpy as np
 from ...._types import FloatArray, Scalar
 from ....bsp import Region
 from ....errors import InvalidParameterError, invalid_parameter
-from ....parameters import positive, refuse_many_corners, shown, sides_around
+from ....parameters import SEGMENTS, positive, refuse_many_corners, shown, sides_around
 from .fonts import FAMILY, FontFile, font_file, opened
 from .shaping import Glyph, PlacedGlyph, Writing, shaped
 
@@ -81,7 +81,7 @@ def text(
     direction: Direction | None = None,
     language: str = "en",
     script: str | None = None,
-    segments: int = 32,
+    segments: int = SEGMENTS,
 ) -> Region:
     """Return a line of text, laid out by HarfBuzz.
 

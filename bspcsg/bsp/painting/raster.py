@@ -1,0 +1,351 @@
+"""Pictures of very many triangles by a z-buffer: the nearest triangle in the middle of each sample.
+
+A tree that cuts a million triangles takes most of a minute; a sample knows what it shows without
+an order of all. Borders are half-open, and an edge is crossed by the same arithmetic for both of
+its triangles, so that no sample between neighbours is lost or taken twice.
+
+References
+----------
+Catmull 1974, "A subdivision algorithm for computer display of curved surfaces".
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray
+from .camera import Camera
+from .colours import ColourArray, lit
+from .painting import EDGE_ON, Edges, Style
+
+#: Rows of triangles, and samples, that are looked at together: arrays of some megabytes.
+_MOST_AT_ONCE = 1 << 20
+
+
+@dataclass(frozen=True, eq=False)
+class Triangles:
+    """Triangles with common vertices, and how they are to look.
+
+    Parameters
+    ----------
+    vertices : (n, 3) float64
+    faces : (m, 3) int64
+    colours : (m, 3) uint8
+    """
+
+    vertices: FloatArray
+    faces: IndexArray
+    colours: ColourArray
+
+    @cached_property
+    def areas(self) -> FloatArray:
+        """Twice the areas along the normals, (m, 3)."""
+        a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
+        (px, py, pz), (qx, qy, qz) = (b - a).T, (c - a).T
+        return np.stack([py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx], axis=1)
+
+    @cached_property
+    def normals(self) -> FloatArray:
+        """Unit normals, (m, 3); zero for triangles without area."""
+        lengths = np.sqrt(np.einsum("ij,ij->i", self.areas, self.areas))
+        normals: FloatArray = self.areas / np.where(lengths > 0, lengths, 1)[:, None]
+        return normals
+
+    def facing(self, camera: Camera) -> BoolArray:
+        """Return which triangles turn their plus side to the viewer, (m,)."""
+        front: BoolArray = camera.facing(self.vertices[self.faces[:, 0]], self.normals) > EDGE_ON
+        return front
+
+    @cached_property
+    def _joints(self) -> tuple[IndexArray, BoolArray]:
+        """The half-edges in an order in which those of an edge follow each other.
+
+        And which of them is the first of just two that run in opposite directions.
+        """
+        start, end = self.faces.ravel(), self.faces[:, [1, 2, 0]].ravel()
+        keys = np.minimum(start, end) * len(self.vertices) + np.maximum(start, end)
+        order = np.argsort(keys, kind="stable")
+        keys, forth = keys[order], (start < end)[order]
+        same = np.concatenate([[False], keys[1:] == keys[:-1], [False]])
+        is_pair = same[1:-1] & ~same[:-2] & ~same[2:] & (forth[1:] != forth[:-1])
+        return order, np.concatenate([is_pair, [False]])
+
+    @property
+    def is_closed(self) -> bool:
+        """True if all edges belong to two triangles, and the volume is above zero."""
+        _, is_first = self._joints
+        if 2 * np.count_nonzero(is_first) != self.faces.size:
+            return False
+        firsts = self.vertices[self.faces[:, 0]] - self.vertices[self.faces[0, 0]]
+        return float(np.einsum("ij,ij->", firsts, self.areas)) > 0
+
+    def edges(self, front: BoolArray, edges: Edges, crease: float) -> IndexArray:
+        """Return the edges to draw as pairs of vertices, (k, 2), as `Facets.features` has them.
+
+        Parameters
+        ----------
+        front : (m,) bool
+            The triangles that face the viewer.
+        edges, crease
+            As for `picture`.
+        """
+        order, is_first = self._joints
+        second = np.concatenate([[False], is_first[:-1]])
+        drawn = ~(is_first | second)
+        if edges == "all":
+            drawn |= is_first
+        elif edges == "feature":
+            places = np.flatnonzero(is_first)
+            one, other = order[places] // 3, order[places + 1] // 3
+            cosines = np.einsum("ij,ij->i", self.normals[one], self.normals[other])
+            wide = np.asarray((self.areas != 0).any(axis=1))
+            bent = (cosines < np.cos(np.radians(crease))) | (front[one] != front[other])
+            drawn[places] = bent & wide[one] & wide[other]
+        else:
+            drawn[:] = False
+        chosen = order[drawn]
+        return np.stack([self.faces.ravel()[chosen], self.faces[:, [1, 2, 0]].ravel()[chosen]], 1)
+
+
+class Buffer:
+    """Samples, and what is nearest in each.
+
+    Parameters
+    ----------
+    camera : Camera
+    size : (int, int)
+        Samples across and down.
+    """
+
+    def __init__(self, camera: Camera, size: tuple[int, int]) -> None:
+        self._camera = camera
+        self.width, self.height = size
+        self._depths = np.full(self.width * self.height, np.inf)
+        #: The triangle that is nearest in each sample, -1 for none.
+        self.nearest = np.full(self.width * self.height, -1, dtype=np.int64)
+
+    def placed(self, vertices: FloatArray) -> FloatArray:
+        """Return columns, rows and depths of points, (n, 3); whole numbers are middles of samples.
+
+        Depths grow away from the viewer, and are linear on planes as they are seen.
+        """
+        placed = self._camera.place(vertices)
+        image = self._camera.flatten(placed) * (self.height / 2)
+        depth = -1 / placed[:, 2] if self._camera.is_perspective else placed[:, 2]
+        across = self.width / 2 + image[:, 0] - 0.5
+        return np.column_stack([across, self.height / 2 - image[:, 1] - 0.5, depth])
+
+    def fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
+        """Let the chosen triangles be seen where nothing is nearer."""
+        for some in _shares(self._rows(placed, faces[chosen]), _MOST_AT_ONCE):
+            self._fill(placed, faces, chosen[some])
+
+    def _rows(self, placed: FloatArray, faces: IndexArray) -> IndexArray:
+        """Return how many rows of samples each triangle meets."""
+        down = placed[:, 1][faces]
+        first, last = self._span(down.min(axis=1), down.max(axis=1), self.height)
+        return last - first
+
+    @staticmethod
+    def _span(low: FloatArray, high: FloatArray, end: int) -> tuple[IndexArray, IndexArray]:
+        """Return the whole numbers in half-open intervals, from 0 on and below an end."""
+        first, last = (np.ceil(np.clip(x, 0, end)).astype(np.int64) for x in (low, high))
+        return first, np.maximum(first, last)
+
+    def _fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
+        corners = placed[faces[chosen]]
+        # The lowest corner first, so that an edge runs the same way for both of its triangles.
+        order = np.argsort(corners[:, :, 1], axis=1, kind="stable")
+        (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = (
+            np.take_along_axis(corners, order[:, k, None, None], axis=1)[:, 0].T for k in range(3)
+        )
+        first, last = self._span(y0, y2, self.height)
+        owner, row = _expanded(last - first)
+        row += first[owner]
+        long = _slopes(x2 - x0, y2 - y0)
+        lower, upper = _slopes(x1 - x0, y1 - y0), _slopes(x2 - x1, y2 - y1)
+        area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+        across = _slopes((z1 - z0) * (y2 - y0) - (z2 - z0) * (y1 - y0), area)
+        down = _slopes((x1 - x0) * (z2 - z0) - (x2 - x0) * (z1 - z0), area)
+        one = x0[owner] + (row - y0[owner]) * long[owner]
+        is_low = row < y1[owner]
+        start = np.where(is_low, x0[owner], x1[owner])
+        since = row - np.where(is_low, y0[owner], y1[owner])
+        other = start + since * np.where(is_low, lower[owner], upper[owner])
+        left, right = self._span(np.minimum(one, other), np.maximum(one, other), self.width)
+        seen = np.flatnonzero(right > left)
+        low, high = np.minimum(np.minimum(z0, z1), z2), np.maximum(np.maximum(z0, z1), z2)
+        owner, row, left, right = owner[seen], row[seen], left[seen], right[seen]
+        at_left = z0[owner] + down[owner] * (row - y0[owner]) - across[owner] * x0[owner]
+        for some in _shares(right - left, _MOST_AT_ONCE):
+            span, column = _expanded((right - left)[some])
+            span += some.start
+            mine = owner[span]
+            column += left[span]
+            depth = at_left[span] + across[mine] * column
+            self._put(
+                row[span] * self.width + column, np.clip(depth, low[mine], high[mine]), chosen[mine]
+            )
+
+    def _put(self, samples: IndexArray, depths: FloatArray, triangles: IndexArray) -> None:
+        np.minimum.at(self._depths, samples, depths)
+        is_nearest = depths == self._depths[samples]
+        self.nearest[samples[is_nearest]] = triangles[is_nearest]
+
+    def lines(self, ends: FloatArray) -> BoolArray:
+        """Return the samples in which lines are seen, (height, width).
+
+        Parameters
+        ----------
+        ends : (k, 2, 3) float64
+            As `placed` returns them.
+        """
+        marked = np.zeros(self.width * self.height, dtype=bool)
+        behind = self._farthest_around()
+        ends = self._framed(ends)
+        counts = np.ceil(np.abs(ends[:, 1, :2] - ends[:, 0, :2]).max(axis=1, initial=0)) + 1
+        counts = counts.astype(np.int64)
+        for some in _shares(counts, _MOST_AT_ONCE):
+            owner, step = _expanded(counts[some])
+            owner += some.start
+            share = (step / np.maximum(counts[owner] - 1, 1))[:, None]
+            x, y, z = (ends[owner, 0] * (1 - share) + ends[owner, 1] * share).T
+            column, row = np.rint(x).astype(np.int64), np.rint(y).astype(np.int64)
+            inside = (column >= 0) & (column < self.width) & (row >= 0) & (row < self.height)
+            samples = (row * self.width + column)[inside]
+            marked[samples[z[inside] <= behind[samples]]] = True
+        return marked.reshape(self.height, self.width)
+
+    def _framed(self, ends: FloatArray) -> FloatArray:
+        """Return the parts of lines that may be in the picture."""
+        start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+        first, last = np.zeros(len(ends)), np.ones(len(ends))
+        for axis, extent in ((0, self.width), (1, self.height)):
+            with np.errstate(all="ignore"):
+                meets = np.stack([(s - start[:, axis]) / along[:, axis] for s in (-1, extent)])
+            is_level = along[:, axis] == 0
+            first = np.where(is_level, first, np.maximum(first, np.fmin(*meets)))
+            last = np.where(is_level, last, np.minimum(last, np.fmax(*meets)))
+        kept = last >= first
+        limits = np.stack([first, last], axis=1)[kept]
+        framed: FloatArray = start[kept, None] + limits[:, :, None] * along[kept, None]
+        return framed
+
+    def _farthest_around(self) -> FloatArray:
+        """Return for each sample the greatest depth in it and beside it: lines lie between."""
+        depths = self._depths.reshape(self.height, self.width)
+        padded = np.pad(depths, 1, mode="edge")
+        wide = np.maximum(np.maximum(padded[:, :-2], padded[:, 1:-1]), padded[:, 2:])
+        farthest: FloatArray = np.maximum(np.maximum(wide[:-2], wide[1:-1]), wide[2:]).ravel()
+        return farthest
+
+
+def raster(
+    scene: Triangles,
+    camera: Camera,
+    size: tuple[int, int],
+    *,
+    style: Style,
+    edges: Edges,
+    crease: float,
+    cull: bool | None,
+    line: int,
+) -> tuple[IndexArray, ColourArray, BoolArray]:
+    """Return what each sample shows.
+
+    Parameters
+    ----------
+    scene : Triangles
+    camera : Camera
+    size : (int, int)
+        Samples across and down.
+    style, edges, crease, cull
+        As for `picture`.
+    line : int
+        Width of edges in samples.
+
+    Returns
+    -------
+    nearest : (height, width) int64
+        The triangle that is seen, -1 for none.
+    fills : (m, 3) uint8
+        The colours of triangles in this light.
+    ink : (height, width) bool
+        Where edges are.
+    """
+    buffer = Buffer(camera, size)
+    placed = buffer.placed(scene.vertices)
+    front = scene.facing(camera)
+    is_culled = _hides_its_back(scene, camera) if cull is None else cull
+    chosen = np.flatnonzero(front) if is_culled else np.arange(len(scene.faces))
+    buffer.fill(placed, scene.faces, chosen)
+    ink = buffer.lines(placed[scene.edges(front, edges, crease)])
+    shape = size[1], size[0]
+    if style == "hidden":
+        fills = np.full((len(scene.faces), 3), 255, dtype=np.uint8)
+    else:
+        normals = np.where(front[:, None], scene.normals, -scene.normals)
+        fills = lit(scene.colours, normals, camera.axes)
+    return buffer.nearest.reshape(shape), fills, _thickened(ink, line)
+
+
+def in_front(points: FloatArray, camera: Camera) -> bool:
+    """Say whether all points are before the eye, so that nothing has to be cut off."""
+    return not camera.is_perspective or bool((camera.place(points)[:, 2] > 0).all())
+
+
+def _hides_its_back(scene: Triangles, camera: Camera) -> bool:
+    eye = camera.eye
+    if eye is not None:
+        low, high = scene.vertices.min(axis=0), scene.vertices.max(axis=0)
+        if ((eye >= low) & (eye <= high)).all():
+            return False
+    return scene.is_closed
+
+
+def _thickened(marked: BoolArray, width: int) -> BoolArray:
+    """Return marks as discs of a width."""
+    reach = (width - 1) / 2
+    thick = marked.copy()
+    far = int(np.ceil(reach))
+    for down in range(-far, far + 1):
+        for across in range(-far, far + 1):
+            if down**2 + across**2 <= (reach + 0.25) ** 2:
+                to, of = _shifted(down, across)
+                thick[to] |= marked[of]
+    return thick
+
+
+def _shifted(down: int, across: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
+    """Return where what is in an array goes that is shifted, and what of it does."""
+    steps = down, across
+    to = tuple(slice(max(step, 0), min(step, 0) or None) for step in steps)
+    of = tuple(slice(max(-step, 0), min(-step, 0) or None) for step in steps)
+    return to, of
+
+
+def _slopes(rise: FloatArray, run: FloatArray) -> FloatArray:
+    """Return quotients, and 0 where there is none: no sample needs it then."""
+    with np.errstate(all="ignore"):
+        slopes = rise / run
+    return np.where(np.isfinite(slopes), slopes, 0.0)
+
+
+def _expanded(counts: IndexArray) -> tuple[IndexArray, IndexArray]:
+    """Return for rows of so many things whose each is, and its number there."""
+    owner = np.repeat(np.arange(len(counts)), counts)
+    starts = np.cumsum(counts) - counts
+    return owner, np.arange(len(owner)) - starts[owner]
+
+
+def _shares(counts: IndexArray, most: int) -> Iterator[slice]:
+    """Yield ranges of rows whose counts come to about so many, in order."""
+    ends = np.cumsum(counts)
+    start = 0
+    while start < len(counts):
+        before = ends[start - 1] if start else 0
+        end = max(int(np.searchsorted(ends, before + most, side="right")), start + 1)
+        yield slice(start, end)
+        start = end

@@ -1,0 +1,35 @@
+"""Arguments that have a number for each axis, in the three ways in which callers give them."""
+
+from typing import Any
+
+from ..errors import invalid_parameter
+from ..parameters import number
+
+
+def per_axis(given: tuple[Any, ...], name: str, *, missing: float = 0.0, **axes: Any) -> Any:
+    """Return what was given axis by axis: as one value, as numbers, or by the names of the axes.
+
+    Parameters
+    ----------
+    given : tuple
+        One value alone, still unchecked, or a number for each axis.
+    name : str
+        Of the value, for errors.
+    missing : float
+        What stands for an axis that is not named, where others are.
+    **axes : float or None
+        The numbers by the names of the axes, in their order.
+
+    Raises
+    ------
+    InvalidParameterError
+        If nothing is given, or something in two ways.
+    """
+    named = {axis: number(value, axis) for axis, value in axes.items() if value is not None}
+    if bool(given) == bool(named):
+        fault = "given twice" if given else "missing"
+        ways = " and ".join(f"{axis}=" for axis in axes)
+        raise invalid_parameter(f"The {name} is {fault}: give a value, or numbers, or {ways}.")
+    if named:
+        return tuple(named.get(axis, missing) for axis in axes)
+    return given[0] if len(given) == 1 else given
