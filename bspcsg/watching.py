@@ -28,12 +28,12 @@ def progress(tell: Callable[[float], object], *, every: float = 0.1) -> Iterator
 
     Examples
     --------
-    >>> import bspcsg as b
+    >>> import bspcsg as csg
     >>> def patient(seconds):
     ...     if seconds > 60:
     ...         raise TimeoutError("this takes too long")
-    >>> with b.progress(patient):
-    ...     (b.cube(2) - b.sphere(1)).volume < 8
+    >>> with csg.progress(patient):
+    ...     (csg.cube(2) - csg.sphere(1)).volume < 8
     True
     """
     told, pause = function_of(tell, "tell"), not_negative(every, "every")

@@ -42,8 +42,8 @@ class Mesh:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> mesh = b.cube(2).to_mesh()
+    >>> import bspcsg as csg
+    >>> mesh = csg.cube(2).to_mesh()
     >>> mesh
     Mesh(8 vertices, 12 faces)
     >>> mesh.volume, mesh.area, mesh.euler_number

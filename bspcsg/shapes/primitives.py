@@ -76,8 +76,8 @@ def box(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.box(1, 2, 3).volume, b.box((1, 2, 3)) == b.box(1, 2, 3)
+    >>> import bspcsg as csg
+    >>> csg.box(1, 2, 3).volume, csg.box((1, 2, 3)) == csg.box(1, 2, 3)
     (6.0, True)
     """
     if isinstance(y, (bool, np.bool_)):
@@ -113,8 +113,8 @@ def sphere(r: Scalar | None = None, segments: int = 32, *, d: Scalar | None = No
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.sphere(1, segments=4).to_mesh()
+    >>> import bspcsg as csg
+    >>> csg.sphere(1, segments=4).to_mesh()
     Mesh(6 vertices, 8 faces)
     """
     radius, around = positive(_radius(r, d, "A sphere"), "r"), sides_around(3, segments, "segments")
@@ -158,8 +158,8 @@ def cylinder(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.cylinder(h=3, r=1, segments=4).volume
+    >>> import bspcsg as csg
+    >>> csg.cylinder(h=3, r=1, segments=4).volume
     6.0
     """
     both = _radius(r, d)
@@ -206,8 +206,8 @@ def torus(r: Scalar, tube: Scalar, *, segments: int = 32, tube_segments: int = 1
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.torus(3, 1).genus
+    >>> import bspcsg as csg
+    >>> csg.torus(3, 1).genus
     1
     """
     major, minor = positive(r, "r"), positive(tube, "tube")
@@ -237,8 +237,8 @@ def prism(sides: int, h: Scalar, r: Scalar, *, center: bool = False) -> Solid:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.prism(4, h=1, r=1).volume
+    >>> import bspcsg as csg
+    >>> csg.prism(4, h=1, r=1).volume
     2.0
     """
     return cylinder(h, r, segments=sides_around(3, sides, "sides"), center=center)
@@ -273,10 +273,10 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> (b.cube(2) & b.half_space((0, 0, 1), 0.5)).volume
+    >>> import bspcsg as csg
+    >>> (csg.cube(2) & csg.half_space((0, 0, 1), 0.5)).volume
     2.0
-    >>> b.half_space((1, 1, 1), 1).classify([(1, 0, 0), (0.5, 0.25, 0.25)]).tolist()
+    >>> csg.half_space((1, 1, 1), 1).classify([(1, 0, 0), (0.5, 0.25, 0.25)]).tolist()
     [0, 0]
     """
     try:

@@ -58,8 +58,8 @@ class Movable(ABC):
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
+        >>> import bspcsg as csg
+        >>> csg.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
         [-2.0, 0.0, 0.0]
         """
         turns = number(x, "x"), number(y, "y"), number(z, "z")

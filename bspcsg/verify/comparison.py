@@ -75,8 +75,8 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> found = compare(b.cube(2), b.box((2, 2, 2.5)), samples=100)
+    >>> import bspcsg as csg
+    >>> found = compare(csg.cube(2), csg.box((2, 2, 2.5)), samples=100)
     >>> found.equal, found.difference.volume, round(found.hausdorff, 9)
     (False, 2.0, 0.5)
     """

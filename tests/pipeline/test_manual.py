@@ -103,6 +103,18 @@ def test_every_public_name_is_in_the_api() -> None:
     assert {f"bspcsg.bsp.analysis.{name}" for name in own} <= documented
 
 
+# Found: the examples took the name `b`, which operands have in those of trimesh.
+def test_examples_have_one_name_for_the_package() -> None:
+    written = [ROOT / "README.md", *PAGES, *(ROOT / "examples").rglob("*.py")]
+    written += [*(ROOT / "examples").glob("*.md"), *(ROOT / "bspcsg").rglob("*.py")]
+    names = {
+        name
+        for path in written
+        for name in re.findall(r"\bimport bspcsg as (\w+)", path.read_text("utf-8"))
+    }
+    assert names == {"csg"}
+
+
 def modules() -> list[str]:
     """Return the modules of the package whose docstrings have examples."""
     files = [path for path in (ROOT / "bspcsg").rglob("*.py") if ">>> " in path.read_text("utf-8")]
