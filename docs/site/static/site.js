@@ -18,6 +18,10 @@ document.addEventListener("DOMContentLoaded", () => {
   for (const head of document.querySelectorAll("th")) {
     if (!head.textContent.trim()) head.setAttribute("role", "presentation");
   }
+  // Signatures with a line for each parameter are no lists of terms with their meanings.
+  for (const part of document.querySelectorAll("dt dl, dt dl > dd")) {
+    part.setAttribute("role", "presentation");
+  }
   scrollByKeyboard();
   window.addEventListener("resize", scrollByKeyboard);
   document.addEventListener("click", () => setTimeout(scrollByKeyboard));
