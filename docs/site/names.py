@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator
 
 from docutils import nodes
-from sphinx.addnodes import index, pending_xref
+from sphinx.addnodes import desc, index, pending_xref
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.nodes import make_refnode
@@ -27,10 +27,17 @@ _KEPT = (nodes.reference, nodes.title, pending_xref)
 _GLOSSARY, _WORDS = "docs/glossary", "Words used elsewhere"
 
 
-def _full_name(env: BuildEnvironment, written: str) -> str | None:
-    """Return the whole name of an object, None if there is none."""
+def _full_name(env: BuildEnvironment, written: str, owners: list[str]) -> str | None:
+    """Return the whole name of an object, first among the members of owners; None if not there."""
     objects = env.domains.python_domain.objects
-    return next((home + written for home in _HOMES if home + written in objects), None)
+    homes = [*(f"{owner}." for owner in owners), *_HOMES]
+    return next((home + written for home in homes if home + written in objects), None)
+
+
+def _owners(node: nodes.Node) -> list[str]:
+    """Return the whole names of the classes that a text describes, or members of which."""
+    described = [above[0] for above in _above(node) if isinstance(above, desc)]
+    return [id_ for signature in described for id_ in signature["ids"]]
 
 
 def _link(app: Sphinx, docname: str, name: str, shown: nodes.Node) -> nodes.reference:
@@ -51,7 +58,7 @@ def _linked(app: Sphinx, tree: nodes.document, docname: str) -> None:
         written = literal.astext()
         match = _WRITTEN.fullmatch(written)
         if match and (in_api or re.match(r"[A-Z]|\w+\.", written)):
-            name = _full_name(app.env, match[1])
+            name = _full_name(app.env, match[1], _owners(literal))
             if name is not None:
                 literal.replace_self(_link(app, docname, name, literal.deepcopy()))
 
