@@ -5,8 +5,8 @@ differences merge those trees in exact arithmetic; the result leaves as a closed
 
 Examples
 --------
->>> import bspcsg as b
->>> part = b.cube(10, center=True) - b.cylinder(h=20, r=3, segments=4, center=True)
+>>> import bspcsg as csg
+>>> part = csg.cube(10, center=True) - csg.cylinder(h=20, r=3, segments=4, center=True)
 >>> part.volume
 820.0
 """

@@ -111,9 +111,9 @@ def progress(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> parts = [b.cube(2) - b.sphere(size) for size in (1, 1.2)]
-    >>> with b.progress(of=len(parts)) as step:
+    >>> import bspcsg as csg
+    >>> parts = [csg.cube(2) - csg.sphere(size) for size in (1, 1.2)]
+    >>> with csg.progress(of=len(parts)) as step:
     ...     for part in parts:
     ...         print(part.volume < 8)
     ...         step()
@@ -122,8 +122,8 @@ def progress(
     >>> def patient(seconds):
     ...     if seconds > 60:
     ...         raise TimeoutError("this takes too long")
-    >>> with b.progress(patient):
-    ...     (b.cube(2) - b.sphere(1)).volume < 8
+    >>> with csg.progress(patient):
+    ...     (csg.cube(2) - csg.sphere(1)).volume < 8
     True
     """
     steps = Steps(None if of is None else at_least(1, of, "of"))

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-import bspcsg as b
+import bspcsg as csg
 
 rng = np.random.default_rng(1)
-start = b.sphere(1, segments=32)
+start = csg.sphere(1, segments=32)
 solid = start
 for k in range(1, 21):
-    tool = b.cube(1, center=True).rotate(rng.uniform(0, 360, 3)).translate(rng.uniform(-1, 1, 3))
+    tool = csg.cube(1, center=True).rotate(rng.uniform(0, 360, 3)).translate(rng.uniform(-1, 1, 3))
     solid = (solid - tool) | (solid & tool)
     if k % 5 == 0:
         mesh = solid.to_mesh()

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import picture
 
-import bspcsg as b
+import bspcsg as csg
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
 size = int(sys.argv[2]) if len(sys.argv) > 2 else 420
 
-goat = b.load(Path(__file__).parent / "meshes" / "goathead.obj")
-ball = b.sphere(4.2, segments=48).translate(2.4, 4, 2.6)
+goat = csg.load(Path(__file__).parent / "meshes" / "goathead.obj")
+ball = csg.sphere(4.2, segments=48).translate(2.4, 4, 2.6)
 
 tiles = []
 for name, solid in {

@@ -1,6 +1,6 @@
 """Autopartition: a tree over segments, and the bounds of the lecture measured."""
 
-import bspcsg as b
+import bspcsg as csg
 from bspcsg import bsp
 from bspcsg.bsp import analysis
 
@@ -9,7 +9,7 @@ tree = bsp.PartitionTree(segments, "random", seed=1)
 print(tree, "cuts", len(tree.splits), "times")
 
 print("\nFragments and time, against n + 2 n ln n (segments), n² (grid), n (surfaces):")
-balls = [b.sphere(1, segments=count) for count in (16, 32, 64)]
+balls = [csg.sphere(1, segments=count) for count in (16, 32, 64)]
 print(analysis.growth_table((100, 200, 400, 800), (16, 32, 64, 128), balls, trials=3))
 
 print("\nHow often the line of one segment cuts another, by what lies between (4000 orders):")

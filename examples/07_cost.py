@@ -1,6 +1,6 @@
 """The cost of a partition tree: pivot policies compared, in the plane and for a surface."""
 
-import bspcsg as b
+import bspcsg as csg
 from bspcsg import bsp
 from bspcsg.bsp import analysis
 
@@ -20,7 +20,7 @@ for alpha in (0.0, 0.25, 0.5, 0.75, 1.0):
         f" point cost {tree.cost('point'):6.3f}, ray cost {tree.cost('ray'):7.3f}"
     )
 
-plate = b.cube(1).scale((4, 3, 1)) - b.cylinder(4, 0.6, segments=24).translate(2, 1.5, -1)
+plate = csg.cube(1).scale((4, 3, 1)) - csg.cylinder(4, 0.6, segments=24).translate(2, 1.5, -1)
 mesh = plate.to_mesh()
 print(f"\nA drilled plate of {len(mesh.faces)} triangles:")
 print(bsp.compare_policies(mesh.vertices[mesh.faces], top=8))

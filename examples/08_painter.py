@@ -5,18 +5,18 @@ from pathlib import Path
 
 import numpy as np
 
-import bspcsg as b
+import bspcsg as csg
 from bspcsg import bsp
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
 out.mkdir(parents=True, exist_ok=True)
 
 # A bracket with holes, shaded and as a line drawing.
-plate = b.box((60, 40, 8)) | b.box((8, 40, 30)) | b.cylinder(h=20, r=9).translate(38, 20, 0)
-part = plate - b.cylinder(h=60, r=5).translate(38, 20, -5)
+plate = csg.box((60, 40, 8)) | csg.box((8, 40, 30)) | csg.cylinder(h=20, r=9).translate(38, 20, 0)
+part = plate - csg.cylinder(h=60, r=5).translate(38, 20, -5)
 for x, y in ((16, 7), (16, 33), (53, 7), (53, 33)):
-    part = part - b.cylinder(h=30, r=3).translate(x, y, -5)
-part = part - b.cylinder(h=30, r=6).rotate((0, 90, 0)).translate(-5, 20, 19)
+    part = part - csg.cylinder(h=30, r=3).translate(x, y, -5)
+part = part - csg.cylinder(h=30, r=6).rotate((0, 90, 0)).translate(-5, 20, 19)
 
 shaded = bsp.picture(part, size=(560, 420))
 shaded.save(out / "painter_part.svg")
@@ -38,7 +38,7 @@ painted = tree.back_to_front(direction=above.direction).source.tolist()
 print(f"cycle: bars in the order of painting {painted}")
 
 # A scan in perspective; y is up.
-goat = bsp.PartitionTree.from_mesh(b.load(Path(__file__).parent / "meshes" / "goathead.obj"))
+goat = bsp.PartitionTree.from_mesh(csg.load(Path(__file__).parent / "meshes" / "goathead.obj"))
 towards = bsp.Camera.perspective((7, 5, 14), (0, 0, 0), up=(0, 1, 0), field_of_view=25)
 portrait = towards.fitted(goat.fragments.vertices, 1.0)
 scan = bsp.picture(goat, camera=portrait, size=(360, 360), colors="#dec4a0", crease=60)

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-import bspcsg as b
+import bspcsg as csg
 from bspcsg import bsp
 
 out = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
 size = int(sys.argv[2]) if len(sys.argv) > 2 else 400
 out.mkdir(exist_ok=True)
 
-goat = b.load(Path(__file__).parent / "meshes" / "goathead.obj")
+goat = csg.load(Path(__file__).parent / "meshes" / "goathead.obj")
 low, high = goat.bounds
 middle, reach = (low + high) / 2, float(np.linalg.norm(high - low))
 caster = bsp.RayCaster(goat)

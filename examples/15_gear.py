@@ -3,7 +3,7 @@
 import numpy as np
 from model import finish
 
-import bspcsg as b
+import bspcsg as csg
 
 module, teeth, pressure, thickness, bore = 2.0, 24, np.radians(20), 12, 12
 
@@ -25,12 +25,12 @@ tooth = np.concatenate([right, left])
 
 turns = 2 * np.pi * np.arange(teeth) / teeth
 outline = [tooth @ np.array([(np.cos(a), np.sin(a)), (-np.sin(a), np.cos(a))]) for a in turns]
-blank = b.Region(np.concatenate(outline))
+blank = csg.Region(np.concatenate(outline))
 
-keyway = b.Region.rectangle(4, bore / 2 + 1.8).translate(-2, 0)
-pockets = b.polar_pattern(b.Region.circle(3.2, 32).translate(13, 0), 6)
-gear = (blank - b.Region.circle(bore / 2) - keyway - pockets).extrude(thickness)
-hub = (b.Region.circle(10) - b.Region.circle(bore / 2) - keyway).extrude(thickness + 6)
+keyway = csg.Region.rectangle(4, bore / 2 + 1.8).translate(-2, 0)
+pockets = csg.polar_pattern(csg.Region.circle(3.2, 32).translate(13, 0), 6)
+gear = (blank - csg.Region.circle(bore / 2) - keyway - pockets).extrude(thickness)
+hub = (csg.Region.circle(10) - csg.Region.circle(bore / 2) - keyway).extrude(thickness + 6)
 
 part = gear | hub
 print(f"{teeth} teeth of module {module}: tips at {part.bounds[1, 0]:.3f} mm")

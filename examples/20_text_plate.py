@@ -2,16 +2,16 @@
 
 from model import finish
 
-import bspcsg as b
+import bspcsg as csg
 
-letters = b.text("exactly.", size=20, halign="center", valign="center")
+letters = csg.text("exactly.", size=20, halign="center", valign="center")
 low, high = letters.bounds
-plate = b.Region.rectangle(*(high - low + 22), center=True).translate(*(low + high) / 2)
+plate = csg.Region.rectangle(*(high - low + 22), center=True).translate(*(low + high) / 2)
 plate = plate.offset(-5).offset(5, segments=48)
 
-hole = b.Region.circle(2, 32)
+hole = csg.Region.circle(2, 32)
 middle, reach = (low + high) / 2, (high - low) / 2 + 6
-holes = b.grid(hole, (2, 2), 2 * reach, center=True).translate(*middle)
+holes = csg.grid(hole, (2, 2), 2 * reach, center=True).translate(*middle)
 
 base = (plate - holes).extrude(3)
 rim = (plate - plate.offset(-1.5)).extrude(4)

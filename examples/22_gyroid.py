@@ -3,11 +3,11 @@
 import numpy as np
 from model import finish
 
-import bspcsg as b
+import bspcsg as csg
 
 thick, skin, period, cell = 24.0, 2.0, 15.0, 1.5
 
-corner = b.Region([(0, 0), (60, 0), (60, 14), (30, 20), (20, 30), (14, 60), (0, 60)])
+corner = csg.Region([(0, 0), (60, 0), (60, 14), (30, 20), (20, 30), (14, 60), (0, 60)])
 outline = corner.offset(-4).offset(4)
 bracket = outline.extrude(thick)
 
@@ -18,11 +18,11 @@ def gyroid(points: np.ndarray) -> np.ndarray:
     return 0.45 - np.abs(np.sin(x) * np.cos(y) + np.sin(y) * np.cos(z) + np.sin(z) * np.cos(x))
 
 
-lattice = b.level_set(gyroid, [(0, 0, 0), (60, 60, thick)], cell)
+lattice = csg.level_set(gyroid, [(0, 0, 0), (60, 60, thick)], cell)
 wall = (outline - outline.offset(-skin)).extrude(thick)
-bores = [b.cylinder(3 * thick, d=8).translate(x, y, -thick) for x, y in ((48, 7), (7, 48))]
-sleeves = [b.cylinder(thick, d=12).translate(x, y, 0) for x, y in ((48, 7), (7, 48))]
-part = (bracket & (lattice | wall | b.union(sleeves))) - b.union(bores)
+bores = [csg.cylinder(3 * thick, d=8).translate(x, y, -thick) for x, y in ((48, 7), (7, 48))]
+sleeves = [csg.cylinder(thick, d=12).translate(x, y, 0) for x, y in ((48, 7), (7, 48))]
+part = (bracket & (lattice | wall | csg.union(sleeves))) - csg.union(bores)
 
 print(f"share of the full bracket: {part.volume / bracket.volume:.3f}, handles: {part.genus}")
 finish("gyroid", part, colours=["#8fb3a7"], crease=45)

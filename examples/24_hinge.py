@@ -2,29 +2,29 @@
 
 from model import finish
 
-import bspcsg as b
+import bspcsg as csg
 
 length, leaf, thick, r, gap, knuckles = 50.0, 24.0, 4.0, 5.0, 0.4, 5
 step = length / knuckles
 
 
-def along(h: float, radius: float, start: float) -> b.Solid:
+def along(h: float, radius: float, start: float) -> csg.Solid:
     """Return a cylinder along the y axis."""
-    return b.cylinder(h, radius, segments=64).rotate(-90, "x").translate(0, start, 0)
+    return csg.cylinder(h, radius, segments=64).rotate(-90, "x").translate(0, start, 0)
 
 
-def knuckle(k: int) -> b.Solid:
+def knuckle(k: int) -> csg.Solid:
     """Return one barrel, with the arm to a leaf at x > 0."""
     start = k * step + gap / 2
-    arm = b.box(r + 2 * gap, step - gap, thick).translate(0, start, -r)
+    arm = csg.box(r + 2 * gap, step - gap, thick).translate(0, start, -r)
     return along(step - gap, r, start) | arm
 
 
-def side(first: int) -> b.Solid:
+def side(first: int) -> csg.Solid:
     """Return a leaf at x > 0 with every other knuckle, its underside at z = -r."""
-    plate = b.box(leaf, length, thick).translate(r + gap, 0, -r)
-    screws = b.grid(b.cylinder(20, d=4, center=True), (1, 2), (1, 26), center=True)
-    own = b.union(knuckle(k) for k in range(first, knuckles, 2))
+    plate = csg.box(leaf, length, thick).translate(r + gap, 0, -r)
+    screws = csg.grid(csg.cylinder(20, d=4, center=True), (1, 2), (1, 26), center=True)
+    own = csg.union(knuckle(k) for k in range(first, knuckles, 2))
     return (plate | own) - screws.translate(r + leaf / 2, length / 2, 0)
 
 

@@ -2,28 +2,28 @@
 
 from model import finish
 
-import bspcsg as b
+import bspcsg as csg
 
 OAK, STEEL = 7.2e-7, 7.85e-6  # kg/mm³
 
-board = b.box(600, 400, 24, center=True).translate(0, 0, 412)
+board = csg.box(600, 400, 24, center=True).translate(0, 0, 412)
 board = board.fillet(board.edges().parallel("z"), 40)
 rim = board.edges().where(lambda e: e.ends[:, :, 2].min(axis=1) == 424)
 board = board.chamfer(rim, 3)
 
-bolt = b.cylinder(30, d=5).translate(0, 0, -30) | b.cylinder(3, r1=0, d2=12).translate(0, 0, -3)
+bolt = csg.cylinder(30, d=5).translate(0, 0, -30) | csg.cylinder(3, r1=0, d2=12).translate(0, 0, -3)
 bolt = bolt.translate(0, 0, 424)
-foot = b.cylinder(400, d1=26, d2=40, segments=48) - bolt
+foot = csg.cylinder(400, d1=26, d2=40, segments=48) - bolt
 
-screw = b.Assembly("screw", bolt, color=(0.72, 0.74, 0.77), density=STEEL)
-leg = b.Assembly("leg", foot, color=(0.55, 0.42, 0.27), density=OAK)
-stand = b.Assembly("leg and screw", [leg, screw])
+screw = csg.Assembly("screw", bolt, color=(0.72, 0.74, 0.77), density=STEEL)
+leg = csg.Assembly("leg", foot, color=(0.55, 0.42, 0.27), density=OAK)
+stand = csg.Assembly("leg and screw", [leg, screw])
 
 # Four placed stands share one leg and one screw.
 stands = [stand.translate(x, y, 0) for x in (-240, 240) for y in (-140, 140)]
-bores = b.union(bolt.translate(x, y, 0) for x in (-240, 240) for y in (-140, 140))
-top = b.Assembly("top", board - bores, color=(0.79, 0.64, 0.42), density=OAK)
-table = b.Assembly("table", [top, *stands])
+bores = csg.union(bolt.translate(x, y, 0) for x in (-240, 240) for y in (-140, 140))
+top = csg.Assembly("top", board - bores, color=(0.79, 0.64, 0.42), density=OAK)
+table = csg.Assembly("table", [top, *stands])
 
 print(table.bill())
 print(f"mass: {table.bill().mass:.3f} kg in {len(table)} parts")

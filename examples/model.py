@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-import bspcsg as b
+import bspcsg as csg
 from bspcsg import bsp
 
 OUT = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
@@ -16,7 +16,7 @@ OUT = Path(sys.argv[1] if len(sys.argv) > 1 else "out")
 
 def finish(
     name: str,
-    *parts: b.Solid,
+    *parts: csg.Solid,
     colours: Sequence[str] = ("#9db8d2",),
     view: Any = "iso",
     crease: float = 25,
@@ -42,6 +42,6 @@ def finish(
     picture.save(OUT / f"{name}.png")
 
 
-def _certificate(part: b.Solid, path: Path) -> Any:
+def _certificate(part: csg.Solid, path: Path) -> Any:
     part.save(path)
-    return b.load(path).to_mesh().certificate
+    return csg.load(path).to_mesh().certificate

@@ -257,7 +257,7 @@ _UNTOLD = (
     "__post_init__",
 )
 
-#: The words in docstrings of methods that are public for neighbours only.
+#: The words in docstrings of methods and parameters that are public for neighbours only.
 _INSIDE = "for the modules of this package"
 
 #: The pages and their titles, beside their index.
@@ -345,23 +345,47 @@ def _index(placed: dict[str, list[tuple[str, Any]]]) -> str:
 def _page_text(title: str, held: list[tuple[str, Any]]) -> str:
     blocks = [f"# {title}", "[All pages of the API](index.md)"]
     for path, entity in held:
-        blocks += _entity(entity, path, 2)
+        blocks += _entity(entity, path)
     return "\n\n".join(blocks) + "\n"
 
 
-def _entity(entity: Any, path: str, level: int) -> Iterator[str]:
-    yield f"{'#' * level} `{path}`"
-    if entity.is_function or entity.is_class:
-        yield f"```text\n{_signature(entity, path)}\n```"
-    elif entity.value is not None and len(str(entity.value)) < 200:
-        yield f"```text\n{path.rpartition('.')[2]} = {entity.value}\n```"
+def _entity(entity: Any, path: str, member: bool = False) -> Iterator[str]:
+    """Yield what describes an object to Sphinx, with its members inside of it."""
+    fence = ":::" if member else "::::"
+    module, _, name = path.rpartition(".")
+    if not member:
+        yield f"{fence}{{py:currentmodule}} {module}\n{fence}"
+    head = f"{fence}{{py:{_role(entity, member)}}} {_signature(entity, name)}"
+    yield "\n".join([head, *_options(entity)])
     if entity.docstring is not None:
         # Apart from its owner, so that types stay the words they are.
         text = griffe.Docstring(entity.docstring.value)
         yield from _sections(text.parse("numpy", warnings=False))
     if entity.is_class:
-        for member in _members(entity):
-            yield from _entity(member, member.name, level + 1)
+        for one in _members(entity):
+            yield from _entity(one, one.name, member=True)
+    yield fence
+
+
+def _role(entity: Any, member: bool) -> str:
+    """Return what Sphinx calls such an object."""
+    if entity.is_class:
+        return "exception" if entity.name.endswith(("Error", "Warning")) else "class"
+    if entity.is_function:
+        return "method" if member else "function"
+    if "property" in entity.labels:
+        return "property"
+    return "attribute" if member else "data"
+
+
+def _options(entity: Any) -> Iterator[str]:
+    """Yield what is said of an object beside its signature."""
+    yield from (f":{label}:" for label in ("classmethod", "staticmethod") if label in entity.labels)
+    if entity.is_attribute:
+        if entity.annotation is not None:
+            yield f":type: {entity.annotation}"
+        if entity.value is not None and len(str(entity.value)) < 200:
+            yield f":value: {entity.value}"
 
 
 def _members(cls: Any) -> list[Any]:
@@ -378,20 +402,22 @@ def _members(cls: Any) -> list[Any]:
     return sorted(found, key=lambda member: (member.name.startswith("__"), member.name))
 
 
-def _signature(entity: Any, path: str) -> str:
-    name = path.rpartition(".")[2]
-    if entity.is_class:
-        return f"class {name}({', '.join(_parameters(entity.parameters))})"
-    text = f"{name}({', '.join(_parameters(entity.parameters))})"
-    return f"{text} -> {entity.returns}" if entity.returns is not None else text
+def _signature(entity: Any, name: str) -> str:
+    if entity.is_attribute:
+        return name
+    told = f"{name}({', '.join(_parameters(entity))})"
+    if entity.is_class or entity.returns is None:
+        return told
+    return f"{told} -> {entity.returns}"
 
 
-def _parameters(parameters: Any) -> Iterator[str]:
+def _parameters(entity: Any) -> Iterator[str]:
     """Yield the parameters as they are declared, without the first of methods."""
     starred = False
-    for parameter in parameters:
+    untold = {"self", "cls", *_parameters_inside(entity)}
+    for parameter in entity.parameters:
         kind = parameter.kind.value
-        if parameter.name in ("self", "cls"):
+        if parameter.name in untold:
             continue
         if kind == "keyword-only" and not starred:
             yield "*"
@@ -401,6 +427,14 @@ def _parameters(parameters: Any) -> Iterator[str]:
         shown = parameter.default is not None and not prefix
         default = f" = {parameter.default}" if shown else ""
         yield f"{prefix}{parameter.name}{annotation}{default}"
+
+
+def _parameters_inside(entity: Any) -> Iterator[str]:
+    """Yield the parameters that are there for neighbours only."""
+    if entity.docstring is not None:
+        for section in griffe.Docstring(entity.docstring.value).parse("numpy", warnings=False):
+            if section.kind.value == "parameters":
+                yield from (one.name for one in section.value if _INSIDE in one.description)
 
 
 def _sections(sections: Iterable[Any]) -> Iterator[str]:
@@ -416,7 +450,8 @@ def _sections(sections: Iterable[Any]) -> Iterator[str]:
             yield section.value.description
         else:
             yield f"**{kind.capitalize()}**"
-            yield "\n".join(_item(entry) for entry in section.value)
+            told = (entry for entry in section.value if _INSIDE not in entry.description)
+            yield "\n".join(map(_item, told))
 
 
 def _item(entry: Any) -> str:
@@ -424,7 +459,9 @@ def _item(entry: Any) -> str:
     annotation = str(entry.annotation) if entry.annotation is not None else ""
     head = f"`{name}`" if name else ""
     if annotation:
-        head = f"{head} ({annotation})" if head else f"`{annotation}`"
+        # Names of classes become links; the other words of a type are prose.
+        typed = re.sub(r"(?<![\w`.])(?!None\b)[A-Z][a-z]\w+", r"`\g<0>`", annotation)
+        head = f"{head} ({typed})" if head else typed
     said = entry.description.strip().replace("\n\n", "\n\n  ")
     lines = "\n".join(f"  {line}".rstrip() for line in said.splitlines()).strip()
     return f"- {head}: {lines}" if lines else f"- {head}"

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 SCRIPT = """
@@ -54,11 +55,13 @@ def flat() -> Iterator[str]:
     region = bsp.Region.rectangle(40, 20) - bsp.Region.circle(5, 32).translate(10, 10)
     wider = region.offset(1)
     assert wider.area > region.area
-    wider.to_dxf("outline.dxf")
     wider.to_svg("outline.svg")
-    for again in (bsp.Region.from_dxf("outline.dxf"), bsp.Region.from_svg("outline.svg")):
-        assert math.isclose(again.area, wider.area, rel_tol=1e-6)
-    yield from ("outline.dxf", "outline.svg")
+    assert math.isclose(bsp.Region.from_svg("outline.svg").area, wider.area, rel_tol=1e-6)
+    yield "outline.svg"
+    if find_spec("ezdxf"):
+        wider.to_dxf("outline.dxf")
+        assert math.isclose(bsp.Region.from_dxf("outline.dxf").area, wider.area, rel_tol=1e-6)
+        yield "outline.dxf"
 
 
 def pictures() -> Iterator[str]:
@@ -66,8 +69,11 @@ def pictures() -> Iterator[str]:
     for name in ("part.png", "part.svg"):
         command("render", "part.stl", "-o", name, "--size", "200x150")
         yield name
-    command("slice", "part.stl", "--z", "1", "-o", "section.dxf")
-    yield "section.dxf"
+    command("slice", "part.stl", "--z", "1", "-o", "section.svg")
+    yield "section.svg"
+    # DXF is an extra; without it the command says so.
+    code = 0 if find_spec("ezdxf") else 6
+    command("slice", "part.stl", "--z", "1", "-o", "section.dxf", code=code)
     command("view", "part.stl", "-o", "page.html", "--no-open")
     yield "page.html"
 

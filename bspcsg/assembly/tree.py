@@ -87,9 +87,9 @@ class Assembly(Movable):
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> wheel = b.Assembly("wheel", b.cylinder(h=2, r=5, segments=4), color=(0.2, 0.2, 0.2))
-    >>> car = b.Assembly("car", [wheel, wheel.translate(20, 0, 0)], density=0.5)
+    >>> import bspcsg as csg
+    >>> wheel = csg.Assembly("wheel", csg.cylinder(h=2, r=5, segments=4), color=(0.2, 0.2, 0.2))
+    >>> car = csg.Assembly("car", [wheel, wheel.translate(20, 0, 0)], density=0.5)
     >>> [part.path for part in car]
     ['car/wheel', 'car/wheel (2)']
     >>> car.bill().mass

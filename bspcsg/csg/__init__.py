@@ -6,8 +6,8 @@ it; `load` and `loads` do both. `to_json` and `from_json` hold the same tree as 
 
 Examples
 --------
->>> from bspcsg import csg
->>> csg.loads("difference() { cube(size = 2); sphere(r = 1, $fn = 8); }").volume > 7
+>>> from bspcsg import csg as scripts
+>>> scripts.loads("difference() { cube(size = 2); sphere(r = 1, $fn = 8); }").volume > 7
 True
 """
 

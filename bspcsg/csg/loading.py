@@ -96,8 +96,8 @@ def loads(
 
     Examples
     --------
-    >>> from bspcsg import csg
-    >>> csg.loads("difference() { cube(size = 2); cube(size = 1); }").volume
+    >>> from bspcsg import csg as scripts
+    >>> scripts.loads("difference() { cube(size = 2); cube(size = 1); }").volume
     7.0
     """
     read = {"csg": parse, "json": from_json}[word(("csg", "json"), form, "form")]
@@ -176,12 +176,12 @@ def dumps(model: Solid | CsgTree, *, flat: bool = False) -> str:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> from bspcsg import csg
-    >>> part = b.cube(3) - b.cube(1)
-    >>> csg.parse(csg.dumps(part)).nodes[0].name
+    >>> import bspcsg as csg
+    >>> from bspcsg import csg as scripts
+    >>> part = csg.cube(3) - csg.cube(1)
+    >>> scripts.parse(scripts.dumps(part)).nodes[0].name
     'difference'
-    >>> csg.loads(csg.dumps(part)).equals(part)
+    >>> scripts.loads(scripts.dumps(part)).equals(part)
     True
     """
     return written(_tree(model, flat))

@@ -1,11 +1,11 @@
 """Boxes around parts of a mesh, and those that lie in others."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
 from .._types import FloatArray, IndexArray
+from .box_tree import BoxTree, Nearness
 
 #: Boxes that are asked for at once: of a thousand nested ones, 2 MB.
 _BATCH = 256
@@ -47,18 +47,20 @@ def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
     if not len(inner) or not len(outer):
         yield from (np.zeros(0, dtype=np.int64) for _ in inner)
         return
-    index = box_index(outer)
+    tree = BoxTree.over(outer)
     for at in range(0, len(inner), _BATCH):
-        batch = inner[at : at + _BATCH]
-        found, counts = index.intersection_v(batch[:, 0], batch[:, 0])
-        near = np.split(found.astype(np.int64), counts.astype(np.int64).cumsum()[:-1])
-        for box, numbers in zip(batch, near, strict=True):
-            yield np.sort(numbers[(outer[numbers, 1] >= box[1]).all(axis=1)])
+        yield from _around(inner[at : at + _BATCH], outer, tree)
 
 
-def box_index(boxes: FloatArray) -> Any:
-    """Return an index of rtree over boxes, (n, 2, 3)."""
-    from rtree.index import Index, Property  # late: most calls need none
-
-    numbers = np.arange(len(boxes))
-    return Index((numbers, boxes[:, 0], boxes[:, 1]), properties=Property(dimension=3))
+def _around(inner: FloatArray, outer: FloatArray, tree: BoxTree) -> list[IndexArray]:
+    """Return for each box the numbers of those that hold it; the tree is over these."""
+    found = [np.zeros((0, 2), dtype=np.int64)]
+    for pairs in Nearness(BoxTree.of_points(inner[:, 0]), tree, 0.0).leaves():
+        numbers, rows = tree.members(pairs[:, 1])
+        owners = pairs[rows, 0]
+        begins = (outer[numbers, 0] <= inner[owners, 0]).all(axis=1)
+        holds = begins & (outer[numbers, 1] >= inner[owners, 1]).all(axis=1)
+        found.append(np.column_stack([owners[holds], numbers[holds]]))
+    owners, numbers = np.concatenate(found).T
+    ends = np.bincount(owners, minlength=len(inner)).cumsum()
+    return np.split(numbers[np.lexsort((numbers, owners))], ends[:-1])

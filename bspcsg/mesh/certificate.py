@@ -36,8 +36,8 @@ class Certificate:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> proof = (b.cube(2) - b.cube(1)).to_mesh().certificate
+    >>> import bspcsg as csg
+    >>> proof = (csg.cube(2) - csg.cube(1)).to_mesh().certificate
     >>> proof.ok, proof.triangles, proof.crossings
     (True, 24, ())
     """

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..errors import InvalidMeshError, invalid_parameter
+from ..errors import InvalidMeshError, MissingPartError, invalid_parameter
 from ..geometry.arrays import doubles_or_none, is_masked
 from ..geometry.polygon import triangulate_face
 from .mesh import Mesh
@@ -266,15 +266,14 @@ def optional(name: str, package: str) -> Any:
 
     Raises
     ------
-    InvalidMeshError
+    MissingPartError
         If it is not installed; code ``"missing_package"``.
     """
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise InvalidMeshError(
-            f"This needs the package {name}: pip install {package}.", "missing_package"
-        ) from error
+        message = f"This needs the package {name.partition('.')[0]}: pip install {package}."
+        raise MissingPartError(message, "missing_package") from error
 
 
 def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":

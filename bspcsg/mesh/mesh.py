@@ -38,12 +38,12 @@ class Mesh:
         The origin of each face: the number of the input mesh, counted from 0 in the order of
         the expression, and the index of the face in that mesh.
     carried : Later, optional
-        Its attributes, which are looked up when they are asked for.
+        Its attributes, looked up when they are asked for; for the modules of this package.
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> mesh = b.cube(2).to_mesh()
+    >>> import bspcsg as csg
+    >>> mesh = csg.cube(2).to_mesh()
     >>> mesh
     Mesh(8 vertices, 12 faces)
     >>> mesh.volume, mesh.area, mesh.euler_number
@@ -100,7 +100,7 @@ class Mesh:
         return MappingProxyType(self.attributes.materials)
 
     def carrying(self, carried: Later) -> "Mesh":
-        """Return this mesh with attributes."""
+        """Return this mesh with attributes; for the modules of this package."""
         return replace(self, carried=carried)
 
     @cached_property

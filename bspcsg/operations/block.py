@@ -2,9 +2,9 @@
 
 ``with difference() as d:`` takes, as OpenSCAD's block does, the first solid less all others::
 
-    with b.difference() as d:
-        b.cube([20, 20, 10])
-        b.cylinder(h=10, r=3).translate(10, 10, 0)
+    with csg.difference() as d:
+        csg.cube([20, 20, 10])
+        csg.cylinder(h=10, r=3).translate(10, 10, 0)
     d.solid.save("plate.3mf")
 
 What counts is each solid that was made in the block and not used up there:

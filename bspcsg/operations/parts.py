@@ -56,8 +56,8 @@ def sides_of_plane(solid: Solid, normal: str | Vector, offset: Scalar) -> tuple[
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> below, above = sides_of_plane(b.cube(2), (0, 0, 1), 0.5)
+    >>> import bspcsg as csg
+    >>> below, above = sides_of_plane(csg.cube(2), (0, 0, 1), 0.5)
     >>> below.volume, above.volume
     (2.0, 6.0)
     """

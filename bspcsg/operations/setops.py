@@ -38,10 +38,10 @@ def union(*sets: Any) -> Any:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.union(b.cube(1).translate(i, 0, 0) for i in range(3)).volume
+    >>> import bspcsg as csg
+    >>> csg.union(csg.cube(1).translate(i, 0, 0) for i in range(3)).volume
     3.0
-    >>> b.union(b.Region.rectangle(3, 1), b.Region.rectangle(1, 2)).area
+    >>> csg.union(csg.Region.rectangle(3, 1), csg.Region.rectangle(1, 2)).area
     4.0
     """
     return _applied("union", sets) if sets else Unfilled(_united)
@@ -64,8 +64,8 @@ def intersection(*sets: Any) -> Any:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.intersection(b.cube(2), b.cube(2).translate(1, 1, 1)).volume
+    >>> import bspcsg as csg
+    >>> csg.intersection(csg.cube(2), csg.cube(2).translate(1, 1, 1)).volume
     1.0
     """
     return _applied("intersection", sets) if sets else Unfilled(_intersected, full=True)
@@ -88,12 +88,12 @@ def difference(*sets: Any) -> Any:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.difference(b.cube(3), [b.cube(1), b.cube(1).translate(2, 0, 0)]).volume
+    >>> import bspcsg as csg
+    >>> csg.difference(csg.cube(3), [csg.cube(1), csg.cube(1).translate(2, 0, 0)]).volume
     25.0
-    >>> with b.difference() as plate:
-    ...     body = b.cube((20, 20, 10))
-    ...     hole = b.prism(4, h=10, r=3).translate(10, 10, 0)
+    >>> with csg.difference() as plate:
+    ...     body = csg.cube((20, 20, 10))
+    ...     hole = csg.prism(4, h=10, r=3).translate(10, 10, 0)
     >>> plate.solid.volume
     3820.0
     """
@@ -117,8 +117,8 @@ def xor(*sets: Any) -> Any:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.xor(b.cube(2), b.cube(2)).is_empty
+    >>> import bspcsg as csg
+    >>> csg.xor(csg.cube(2), csg.cube(2)).is_empty
     True
     """
     return _applied("xor", sets) if sets else Unfilled(_odd)
@@ -147,9 +147,9 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> a, c = b.cube(2).to_mesh(), b.cube(2).translate(1, 1, 1).to_mesh()
-    >>> vertices, faces = b.boolean(*a, *c, "intersection")
+    >>> import bspcsg as csg
+    >>> a, c = csg.cube(2).to_mesh(), csg.cube(2).translate(1, 1, 1).to_mesh()
+    >>> vertices, faces = csg.boolean(*a, *c, "intersection")
     >>> vertices.shape, faces.shape
     ((8, 3), (12, 3))
     """

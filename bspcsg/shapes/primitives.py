@@ -90,8 +90,8 @@ def box(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.box(1, 2, 3).volume, b.box((1, 2, 3)) == b.box(1, 2, 3)
+    >>> import bspcsg as csg
+    >>> csg.box(1, 2, 3).volume, csg.box((1, 2, 3)) == csg.box(1, 2, 3)
     (6.0, True)
     """
     if isinstance(y, (bool, np.bool_)):
@@ -128,8 +128,8 @@ def sphere(r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | Non
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.sphere(1, segments=4).to_mesh()
+    >>> import bspcsg as csg
+    >>> csg.sphere(1, segments=4).to_mesh()
     Mesh(6 vertices, 8 faces)
     """
     size, around = positive(radius(r, d, "A sphere"), "r"), sides_around(3, segments, "segments")
@@ -173,8 +173,8 @@ def cylinder(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.cylinder(h=3, r=1, segments=4).volume
+    >>> import bspcsg as csg
+    >>> csg.cylinder(h=3, r=1, segments=4).volume
     6.0
     """
     both = None if r is None and d is None else radius(r, d, "A cylinder")
@@ -228,8 +228,8 @@ def torus(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.torus(3, 1).genus
+    >>> import bspcsg as csg
+    >>> csg.torus(3, 1).genus
     1
     """
     major = positive(radius(r, d, "The ring of a torus"), "r")
@@ -267,8 +267,8 @@ def prism(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.prism(4, h=1, r=1).volume
+    >>> import bspcsg as csg
+    >>> csg.prism(4, h=1, r=1).volume
     2.0
     """
     around = sides_around(3, sides, "sides")
@@ -304,10 +304,10 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> (b.cube(2) & b.half_space((0, 0, 1), 0.5)).volume
+    >>> import bspcsg as csg
+    >>> (csg.cube(2) & csg.half_space((0, 0, 1), 0.5)).volume
     2.0
-    >>> b.half_space((1, 1, 1), 1).classify([(1, 0, 0), (0.5, 0.25, 0.25)]).tolist()
+    >>> csg.half_space((1, 1, 1), 1).classify([(1, 0, 0), (0.5, 0.25, 0.25)]).tolist()
     [0, 0]
     """
     try:

@@ -83,11 +83,11 @@ def extrude(
 
     Examples
     --------
-    >>> import bspcsg as b
+    >>> import bspcsg as csg
     >>> frame = [[(0, 0), (4, 0), (4, 4), (0, 4)], [(1, 1), (3, 1), (3, 3), (1, 3)]]
-    >>> b.extrude(frame, 2).volume
+    >>> csg.extrude(frame, 2).volume
     24.0
-    >>> b.extrude([(-1, -1), (1, -1), (1, 1), (-1, 1)], 3, scale=0).volume
+    >>> csg.extrude([(-1, -1), (1, -1), (1, 1), (-1, 1)], 3, scale=0).volume
     4.0
     """
     rise = _rise(positive(h, "h"), center, twist, scale, slices, taper)
@@ -142,8 +142,8 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> ring = b.revolve([(2, 0), (3, 0), (3, 1), (2, 1)], segments=64)
+    >>> import bspcsg as csg
+    >>> ring = csg.revolve([(2, 0), (3, 0), (3, 1), (2, 1)], segments=64)
     >>> ring.genus
     1
     """

@@ -135,8 +135,8 @@ class Convertible(Measured):
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
+        >>> import bspcsg as csg
+        >>> csg.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
         [[-4.0, -1.0], [4.0, 1.0]]
         """
         region: Region = above("shadow")(self)

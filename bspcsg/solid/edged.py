@@ -28,8 +28,8 @@ class Edged:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> len(b.box(1, 2, 3).edges().parallel("z"))
+        >>> import bspcsg as csg
+        >>> len(csg.box(1, 2, 3).edges().parallel("z"))
         4
         """
         edges: EdgeSelection = above("edges")(self)
@@ -60,8 +60,8 @@ class Edged:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> part = b.box(10, 10, 10)
+        >>> import bspcsg as csg
+        >>> part = csg.box(10, 10, 10)
         >>> part.chamfer(part.edges().parallel("z"), 1).volume
         980.0
         """
@@ -96,9 +96,9 @@ class Edged:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> part = b.box(4, 3, 2)
-        >>> part.fillet(part.edges(), 0.5) == b.rounded_box((4, 3, 2), 0.5)
+        >>> import bspcsg as csg
+        >>> part = csg.box(4, 3, 2)
+        >>> part.fillet(part.edges(), 0.5) == csg.rounded_box((4, 3, 2), 0.5)
         True
         """
         solid: Solid = above("fillet")(self, edges, radius, segments)

@@ -49,11 +49,11 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> below, above = b.cube(2).split((0, 0, 1), 0.5)
+        >>> import bspcsg as csg
+        >>> below, above = csg.cube(2).split((0, 0, 1), 0.5)
         >>> below.volume, above.volume
         (2.0, 6.0)
-        >>> inside, outside = b.cube(2).split(b.cube(1))
+        >>> inside, outside = csg.cube(2).split(csg.cube(1))
         >>> inside.volume, outside.volume
         (1.0, 7.0)
         """
@@ -77,8 +77,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.cube(2).trim((0, 0, 1), 0.5).bounds[0].tolist()
+        >>> import bspcsg as csg
+        >>> csg.cube(2).trim((0, 0, 1), 0.5).bounds[0].tolist()
         [0.0, 0.0, 0.5]
         """
         rest: Solid = above("trim")(self, normal, offset)
@@ -103,8 +103,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> pair = b.cube(1) | b.cube(2).translate(5, 0, 0)
+        >>> import bspcsg as csg
+        >>> pair = csg.cube(1) | csg.cube(2).translate(5, 0, 0)
         >>> [part.volume for part in pair.decompose()]
         [8.0, 1.0]
         """
@@ -122,7 +122,7 @@ class Modelled:
         Examples
         --------
         >>> import bspcsg as b
-        >>> hollow = b.cube(3) - b.cube(1).translate(1, 1, 1)
+        >>> hollow = csg.cube(3) - csg.cube(1).translate(1, 1, 1)
         >>> len(hollow.components), hollow.surface_count
         (1, 2)
         """
@@ -145,8 +145,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.cube(1).min_gap(b.cube(1).translate(4, 5, 0))
+        >>> import bspcsg as csg
+        >>> csg.cube(1).min_gap(csg.cube(1).translate(4, 5, 0))
         5.0
         """
         gap: float = above("min_gap")(self, other)
@@ -167,8 +167,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> p, q = b.cube(1).closest_points(b.cube(1).translate(2, 3, 4))
+        >>> import bspcsg as csg
+        >>> p, q = csg.cube(1).closest_points(csg.cube(1).translate(2, 3, 4))
         >>> p.tolist(), q.tolist()
         ([1.0, 1.0, 1.0], [2.0, 3.0, 4.0])
         """
@@ -187,9 +187,9 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> side = b.cube(1).translate(1, 0, 0)
-        >>> b.cube(1).intersects(side), b.cube(1).isdisjoint(side)
+        >>> import bspcsg as csg
+        >>> side = csg.cube(1).translate(1, 0, 0)
+        >>> csg.cube(1).intersects(side), csg.cube(1).isdisjoint(side)
         (True, True)
         """
         found: bool = above("intersects")(self, other)
@@ -219,9 +219,9 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> fine = b.cube(1).refine(4)
-        >>> len(fine.faces), fine == b.cube(1)
+        >>> import bspcsg as csg
+        >>> fine = csg.cube(1).refine(4)
+        >>> len(fine.faces), fine == csg.cube(1)
         (192, True)
         """
         finer: Solid = above("refine")(self, n, edge_length)
@@ -252,8 +252,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> wedge = b.cube(2).warp(lambda p: p * [1, 1, 0.5] + p[:, :1] * [0, 0, 0.25])
+        >>> import bspcsg as csg
+        >>> wedge = csg.cube(2).warp(lambda p: p * [1, 1, 0.5] + p[:, :1] * [0, 0, 0.25])
         >>> wedge.volume, len(wedge.faces)
         (4.0, 12)
         """
@@ -286,8 +286,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> can = b.cylinder(h=2, r=1, segments=8)
+        >>> import bspcsg as csg
+        >>> can = csg.cylinder(h=2, r=1, segments=8)
         >>> round(can.volume, 2), round(can.smooth(8).volume, 1)
         (5.66, 6.2)
         """
@@ -320,10 +320,10 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.cube(4).offset(-1) == b.cube(2).translate(1, 1, 1)
+        >>> import bspcsg as csg
+        >>> csg.cube(4).offset(-1) == csg.cube(2).translate(1, 1, 1)
         True
-        >>> b.cube(2).offset(1).bounds.tolist()
+        >>> csg.cube(2).offset(1).bounds.tolist()
         [[-1.0, -1.0, -1.0], [3.0, 3.0, 3.0]]
         """
         moved: Solid = above("offset")(self, r, segments)
@@ -343,9 +343,9 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> die = b.cube(10).rounded(1)
-        >>> die.bounds.tolist(), die < b.cube(10)
+        >>> import bspcsg as csg
+        >>> die = csg.cube(10).rounded(1)
+        >>> die.bounds.tolist(), die < csg.cube(10)
         ([[0.0, 0.0, 0.0], [10.0, 10.0, 10.0]], True)
         """
         smooth: Solid = above("rounded")(self, r, segments, inside)
@@ -377,10 +377,10 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.cube(2).align(x="center", y="center", z="min").bounds[0].tolist()
+        >>> import bspcsg as csg
+        >>> csg.cube(2).align(x="center", y="center", z="min").bounds[0].tolist()
         [-1.0, -1.0, 0.0]
-        >>> table, lamp = b.box((8, 8, 1)), b.cube(2)
+        >>> table, lamp = csg.box((8, 8, 1)), csg.cube(2)
         >>> lamp.align(x="center", z=("min", "max"), to=table).bounds[0].tolist()
         [3.0, 0.0, 1.0]
         """
@@ -408,8 +408,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.cube(1).normals().shape
+        >>> import bspcsg as csg
+        >>> csg.cube(1).normals().shape
         (12, 3, 3)
         """
         found: FloatArray = above("normals")(self, sharp_angle)
@@ -429,8 +429,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> gaussian, mean = b.sphere(2, segments=64).curvature()
+        >>> import bspcsg as csg
+        >>> gaussian, mean = csg.sphere(2, segments=64).curvature()
         >>> round(float(mean.mean()), 1)
         0.5
         """
@@ -467,8 +467,8 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
+        >>> import bspcsg as csg
+        >>> csg.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
         array([1., 3.])
         """
         return above("ray_cast")(self, origin, direction)

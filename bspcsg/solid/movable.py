@@ -42,7 +42,7 @@ class Movable(ABC):
         Examples
         --------
         >>> import bspcsg as b
-        >>> b.cube(1).translate(z=5) == b.cube(1).translate(0, 0, 5)
+        >>> csg.cube(1).translate(z=5) == csg.cube(1).translate(0, 0, 5)
         True
         """
         return self._moved((transform.translation(per_axis(offset, "offset", x=x, y=y, z=z)),))
@@ -74,8 +74,8 @@ class Movable(ABC):
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> b.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
+        >>> import bspcsg as csg
+        >>> csg.box((1, 2, 3)).rotate(z=90).bounds[0].tolist()
         [-2.0, 0.0, 0.0]
         """
         turns = number(x, "x"), number(y, "y"), number(z, "z")
@@ -110,7 +110,7 @@ class Movable(ABC):
         Examples
         --------
         >>> import bspcsg as b
-        >>> b.cube(1).scale(z=2).volume, b.cube(1).scale(2).volume
+        >>> csg.cube(1).scale(z=2).volume, csg.cube(1).scale(2).volume
         (2.0, 8.0)
         """
         given = () if factor is None else (factor, *others)
@@ -142,7 +142,7 @@ class Movable(ABC):
         Examples
         --------
         >>> import bspcsg as b
-        >>> b.cube(1).mirror("x") == b.cube(1).mirror(x=1) == b.cube(1).translate(x=-1)
+        >>> csg.cube(1).mirror("x") == csg.cube(1).mirror(x=1) == csg.cube(1).translate(x=-1)
         True
         """
         given = () if normal is None else (normal, *others)

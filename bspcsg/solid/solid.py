@@ -118,13 +118,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> part = b.cube(2) - b.cube(1)
+    >>> import bspcsg as csg
+    >>> part = csg.cube(2) - csg.cube(1)
     >>> part
     Solid(pending: 2 operands)
     >>> part.volume
     7.0
-    >>> (part | b.cube(1)).equals(b.cube(2))
+    >>> (part | csg.cube(1)).equals(csg.cube(2))
     True
     """
 
@@ -384,8 +384,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> part = b.cube(2).tagged(layer=1) - b.cube(1).tagged(layer=2)
+        >>> import bspcsg as csg
+        >>> part = csg.cube(2).tagged(layer=1) - csg.cube(1).tagged(layer=2)
         >>> sorted({*part.to_mesh().face_attributes["layer"].tolist()})
         [1, 2]
         """
@@ -434,8 +434,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
         Examples
         --------
-        >>> import bspcsg as b
-        >>> bump = b.cube(1) | b.cube(0.5).translate(0.5001, 0.25, 0.25)
+        >>> import bspcsg as csg
+        >>> bump = csg.cube(1) | csg.cube(0.5).translate(0.5001, 0.25, 0.25)
         >>> simple = bump.simplify(0.001)
         >>> len(bump.faces), len(simple.faces), simple.volume
         (28, 20, 1.0)

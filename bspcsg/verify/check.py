@@ -74,8 +74,8 @@ def validate(op: SetOp, *operands: Solid) -> CheckReport:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> report = b.validate("union", b.cube(1), b.cube(1).translate(1, 0, 0))
+    >>> import bspcsg as csg
+    >>> report = csg.validate("union", csg.cube(1), csg.cube(1).translate(1, 0, 0))
     >>> report.ok, report.ours.triangles
     (True, 12)
     """

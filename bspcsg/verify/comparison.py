@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from .._types import FloatArray
-from ..mesh.boxes import box_index
+from ..mesh.box_tree import BoxPairs, BoxTree, Nearness, squared_gaps
 from ..mesh.distance import distances_to_triangles
 from ..mesh.mesh import Mesh
 from ..solid.counting import uncounted
@@ -22,8 +22,9 @@ from .verdict import Facts
 #: Added to a distance, as a part of the largest coordinate: far more than its rounding.
 _SLACK = 1e-12
 
-#: The number of points that are measured at once; more need more memory.
-_BATCH = 1000
+#: The number of points that are measured at once, and of their pairs with triangles; more need
+#: more memory.
+_BATCH, _CHUNK = 1000, 1 << 16
 
 
 @dataclass(frozen=True)
@@ -75,8 +76,8 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> found = compare(b.cube(2), b.box((2, 2, 2.5)), samples=100)
+    >>> import bspcsg as csg
+    >>> found = compare(csg.cube(2), csg.box((2, 2, 2.5)), samples=100)
     >>> found.equal, found.difference.volume, round(found.hausdorff, 9)
     (False, 2.0, 0.5)
     """
@@ -138,16 +139,45 @@ def _farthest(mesh: Mesh, points: FloatArray) -> float:
 def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
     """Return the distance of each point from a mesh, (k,), in model units."""
     corners = mesh.vertices[mesh.faces]
-    boxes = box_index(np.stack([corners.min(axis=1), corners.max(axis=1)], axis=1))
     slack = _SLACK * max(np.abs(corners).max(), np.abs(points).max(initial=0.0))
-    found = np.zeros(len(points))
-    for at in range(0, len(points), _BATCH):
-        batch = points[at : at + _BATCH]
-        # How far any triangle is bounds the least distance; whatever is nearer has a box nearer.
-        known, _ = boxes.nearest_v(batch, batch, num_results=1, strict=True)
-        reach = (distances_to_triangles(batch, corners[known]) + slack)[:, None]
-        faces, counts = boxes.intersection_v(batch - reach, batch + reach)
-        counts = counts.astype(np.int64)
-        each = distances_to_triangles(np.repeat(batch, counts, axis=0), corners[faces])
-        found[at : at + _BATCH] = np.minimum.reduceat(each, counts.cumsum() - counts)
-    return found
+    surface = _Surface(corners, slack)
+    batches = (points[at : at + _BATCH] for at in range(0, len(points), _BATCH))
+    return np.concatenate([np.zeros(0), *map(surface.distances, batches)])
+
+
+class _Surface:
+    """Triangles, (m, 3, 3), in a tree; distances are sure to within a slack."""
+
+    def __init__(self, corners: FloatArray, slack: float) -> None:
+        self._corners, self._slack = corners, slack
+        self._tree = BoxTree.over(corners)
+        self._boxes = corners.min(axis=1), corners.max(axis=1)
+
+    def distances(self, points: FloatArray) -> FloatArray:
+        """Return the distance of each point from the nearest triangle."""
+        found = np.full(len(points), np.inf)
+        near = self._tree.near_leaves(points)
+        each = np.repeat(np.arange(len(points)), near.shape[1])
+        # What lies in leaves nearby bounds the search for the nearest.
+        self._lower(found, points, np.column_stack([each, near.ravel()]))
+        search = Nearness(BoxTree.of_points(points), self._tree, self._limit(found))
+        for pairs in search.leaves():
+            self._lower(found, points, pairs)
+            search.limit = self._limit(found)
+        return found
+
+    def _limit(self, found: FloatArray) -> FloatArray:
+        return (found + self._slack) ** 2
+
+    def _lower(self, found: FloatArray, points: FloatArray, pairs: BoxPairs) -> None:
+        """Lower what was found to the distances from the triangles of leaves."""
+        numbers, rows = self._tree.members(pairs[:, 1])
+        owners = pairs[rows, 0]
+        for at in range(0, len(owners), _CHUNK):
+            own, near = owners[at : at + _CHUNK], numbers[at : at + _CHUNK]
+            low, high = (side[near] for side in self._boxes)
+            gaps = squared_gaps(low, high, points[own], points[own])
+            kept = gaps <= self._limit(found)[own]
+            own, near = own[kept], near[kept]
+            each = distances_to_triangles(points[own], self._corners[near])
+            np.minimum.at(found, own, each)

@@ -14,6 +14,7 @@ page of results has no heading before something is searched for.
 """
 
 import shutil
+import sys
 from pathlib import Path
 
 from docutils import nodes
@@ -24,10 +25,11 @@ from sphinx.transforms import SphinxTransform
 from bspcsg.report.lecture.page import lecture_page
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(Path(__file__).parent))
 
 project = "bspcsg"
 copyright = "bspcsg contributors"  # noqa: A001 (Sphinx calls it so)
-extensions = ["myst_parser", "sphinx_copybutton", "sphinx_design"]
+extensions = ["myst_parser", "sphinx_copybutton", "sphinx_design", "names"]
 root_doc = "docs/index"
 include_patterns = [
     "docs/**.md",
@@ -105,6 +107,9 @@ myst_html_meta = {
     "description": "Exact set operations on solids, from Python and from the command line."
 }
 smartquotes = False  # two hyphens begin an option
+# Signatures that are longer have a line for each parameter.
+python_maximum_signature_line_length = 88
+toc_object_entries_show_parents = "hide"
 
 html_theme = "furo"
 html_title = "bspcsg"

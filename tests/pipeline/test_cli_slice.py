@@ -70,4 +70,4 @@ def test_a_missing_part_is_code_6(
 ) -> None:
     monkeypatch.setitem(sys.modules, "ezdxf", None)
     code, _, err = ran(capsys, "slice", "a.off", "-o", "x.dxf", "--z", "1")
-    assert code == 6 and "pip install ezdxf" in err and not Path("x.dxf").exists()
+    assert code == 6 and 'pip install "bspcsg[dxf]"' in err and not Path("x.dxf").exists()

@@ -120,6 +120,62 @@ def test_few_divisions_do_the_work_of_a_whole_tree(browser: Browser) -> None:
     assert int(_tile(browser, "fig-adaptive", "divisions")) < 12 / 2
 
 
+# Found: it was said to adapt, and nowhere shown when that pays and when it does not.
+def test_the_tree_that_organises_itself_pays_where_rays_go_one_way(browser: Browser) -> None:
+    rows = browser.run(
+        "return [...document.querySelectorAll('#fig-adaptive tbody tr')]"
+        ".map(row => [...row.children].map(cell => cell.textContent))"
+    )
+    figures = {(row[0], row[1]): [float(text) for text in row[2:]] for row in rows}
+    assert len(figures) == 4
+    nodes, whole, _, _, last, still = figures["200", "one direction"]
+    assert nodes < whole / 3 and last < still
+    nodes, whole, first, ready, last, still = figures["200", "anywhere"]
+    assert nodes > 0.8 * whole and first > 2 * ready and last > 0.9 * still
+
+
+# Found: "Play" wore the sign of fast forward, "step" that of play.
+def test_icons_say_what_buttons_do(browser: Browser) -> None:
+    bar = "#fig-autopartition .stepper"
+    paths = browser.run(
+        f"return [...document.querySelectorAll('{bar} button')].map(e => [e.title,"
+        " [...e.querySelectorAll('path')].filter(p => p.checkVisibility()).map(p =>"
+        " [p.getAttribute('d').split('M').length - 1, p.getAttribute('d').endsWith('z')])])"
+    )
+    shapes = dict(paths)
+    assert shapes["Play"] == [[1, True]]
+    assert shapes["Step back"] == shapes["Step forward"] == [[1, False]]
+    assert shapes["First step"] == shapes["Last step"] == [[2, False]]
+    browser.click(f"{bar} .player")
+    still = f"document.querySelector('{bar} [data-when=still]').checkVisibility()"
+    assert not browser.run(f"return {still}")
+    browser.click(f"{bar} .player")
+    assert browser.run(f"return {still}")
+
+
+# Found: the last chapter was cut off at the usual width of a desktop.
+def test_all_chapters_are_in_sight_on_a_desktop(browser: Browser) -> None:
+    browser.device({"width": 1280, "height": 900, "deviceScaleFactor": 1, "mobile": False})
+    try:
+        for id_, _ in CHAPTERS:
+            browser.run(f"document.getElementById('{id_}').scrollIntoView({{behavior: 'instant'}})")
+            browser.wait(f"document.querySelector('nav a[aria-current]').hash === '#{id_}'")
+            bar = "document.querySelector('nav ol')"
+            assert browser.run(f"return {bar}.scrollWidth <= {bar}.clientWidth")
+    finally:
+        browser.device(None)
+
+
+def test_each_chapter_has_three_exercises_with_answers(browser: Browser) -> None:
+    for id_, _ in CHAPTERS:
+        assert len(browser.texts(f"#{id_} .exercises > ol > li > p")) == 3
+        answers = browser.run(
+            f"return [...document.querySelectorAll('#{id_} .exercises details p')]"
+            ".map(e => e.textContent)"
+        )
+        assert len(answers) == 3 and all(len(answer) > 50 for answer in answers)
+
+
 def test_the_page_is_small_and_asks_for_nothing(browser: Browser, page: Path) -> None:
     assert page.stat().st_size < _MOST_BYTES
     assert browser.requests() == [page.as_uri()] and browser.errors() == []

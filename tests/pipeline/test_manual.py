@@ -83,10 +83,43 @@ def test_every_verb_has_a_page_with_an_example() -> None:
         assert any(f"$ bspcsg {verb}" in block for block in consoles), verb
 
 
+def described(text: str) -> set[str]:
+    """Return the names of the objects, without members, that pages describe to Sphinx."""
+    form = r"^::::\{py:(\w+)\} ([\w.]+)"
+    names, module = set(), ""
+    for role, name in re.findall(form, text, re.MULTILINE):
+        if role == "currentmodule":
+            module = name
+        else:
+            names.add(f"{module}.{name}")
+    return names
+
+
+def test_methods_and_types_are_described() -> None:
+    page = api_pages()["solid"]
+    assert re.search(r"^:::\{py:method\} fillet\(.*\) -> Solid$", page, re.MULTILINE)
+    assert ":::{py:property} volume\n:type: float\n" in page
+    assert ":::{py:method} from_mesh(" in page and "\n:classmethod:\n" in page
+    # What only neighbours may say is no part of the API.
+    assert "carried" not in page and "Later" not in page
+
+
+# Found: the search knew "watertight" from one page, on the inside.
+@pytest.mark.parametrize(
+    "word", ["watertight", "non-manifold", "screw thread", "color", "STEP", "fillet", "boolean"]
+)
+def test_words_of_others_lead_somewhere(word: str) -> None:
+    text = (DOCS / "glossary.md").read_text("utf-8")
+    section = text.partition("## Words used elsewhere\n")[2].partition("\n## ")[0]
+    rows = [line.split(" | ") for line in section.splitlines() if line.startswith("| ")]
+    leading = [row for row in rows if word in row[0].strip("| ").split(", ")]
+    assert len(leading) == 1 and re.search(r"\[.+\]\(.+\.md\)", leading[0][2])
+
+
 # Found: `bsp.analysis` was in no page.
 def test_every_public_name_is_in_the_api() -> None:
     text = "".join(api_pages().values())
-    documented = set(re.findall(r"^## `([\w.]+)`$", text, re.MULTILINE))
+    documented = described(text)
     values = {"__version__", "EDGE", "INTERIOR", "MISS", "VERTEX"}
     top = import_module("bspcsg")
     for package in ("bspcsg", "bspcsg.bsp", "bspcsg.csg"):
@@ -101,6 +134,18 @@ def test_every_public_name_is_in_the_api() -> None:
     own = {name for name in own if getattr(analysis, name).__module__ == analysis.__name__}
     assert {"visit_bound", "growth_table"} < own
     assert {f"bspcsg.bsp.analysis.{name}" for name in own} <= documented
+
+
+# Found: the examples took the name `b`, which operands have in those of trimesh.
+def test_examples_have_one_name_for_the_package() -> None:
+    written = [ROOT / "README.md", *PAGES, *(ROOT / "examples").rglob("*.py")]
+    written += [*(ROOT / "examples").glob("*.md"), *(ROOT / "bspcsg").rglob("*.py")]
+    names = {
+        name
+        for path in written
+        for name in re.findall(r"\bimport bspcsg as (\w+)", path.read_text("utf-8"))
+    }
+    assert names == {"csg"}
 
 
 def modules() -> list[str]:

@@ -106,6 +106,55 @@ def test_the_report_opens_without_a_network_or_errors(browser: Browser, report: 
     assert all(address.startswith("data:") for address in asked[1:])
 
 
+_DESKTOP = {"width": 1280, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+
+_LONG = "a_mesh_with_a_rather_long_name_as_people_have_them_v12_final"
+
+
+def _clipped(browser: Browser, selector: str) -> list[str]:
+    """Return the texts of elements that a desktop does not show whole."""
+    found = browser.run(
+        "return [...document.querySelectorAll(arguments[0])].filter(e =>"
+        " e.scrollWidth > e.clientWidth + 1 || e.getBoundingClientRect().right > innerWidth)"
+        ".map(e => e.textContent)",
+        selector,
+    )
+    return list(found)
+
+
+# Found: the last columns lay beyond the edge of a desktop, and names ended in dots.
+def test_all_columns_and_names_are_in_sight(browser: Browser, tmp_path: Path) -> None:
+    found = records(tmp_path)
+    for one in found:
+        if one["type"] == "case":
+            one["case"] = f"0001-{_LONG}-{one['case']}"
+    results = merged([write_results(tmp_path / "r.jsonl", found)])
+    (tmp_path / "report.html").write_text(report_page(results), encoding="utf-8")
+    browser.device(_DESKTOP)
+    try:
+        browser.open(tmp_path / "report.html")
+        assert len(browser.texts("#cases th")) > 10
+        assert _clipped(browser, ".scroll, #cases th, #cases td") == []
+    finally:
+        browser.device(None)
+
+
+def test_names_of_compared_files_are_in_sight(browser: Browser, tmp_path: Path) -> None:
+    files = [str(tmp_path / f"{_LONG}_{height}.off") for height in (2, 3)]
+    for name, height in zip(files, (2, 3), strict=True):
+        put(name, cuboid((0, 0, 0), (2, 2, height)))
+    assert run(["compare", *files, "--html", str(tmp_path / "c.html"), "-q"]) == 1
+    browser.device(_DESKTOP)
+    try:
+        browser.open(tmp_path / "c.html")
+        browser.wait(_DRAWN)
+        assert browser.texts(".notes li")[0] == "The sets differ."
+        assert len(browser.texts(".layers button")) == 3
+        assert _clipped(browser, ".layers button, .notes li, h1") == []
+    finally:
+        browser.device(None)
+
+
 def test_the_table_is_sorted(browser: Browser, report: Path) -> None:
     browser.open(report)
     heads = browser.texts("#cases th")

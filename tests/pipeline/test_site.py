@@ -1,6 +1,7 @@
 """The site is built without a warning, hangs together, and asks nothing of a network."""
 
 import re
+import zlib
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -108,6 +109,42 @@ def test_pages_are_searched_without_a_server(site: Path, browser: Browser) -> No
     browser.wait("document.querySelectorAll('.search li').length > 2")
     assert any("Modelling" in text for text in browser.texts(".search li a"))
     assert browser.errors() == []
+
+
+# Found: words that people use elsewhere led to a page of the inside, or to none.
+@pytest.mark.parametrize(
+    ("word", "page"),
+    [
+        ("watertight", "docs/tasks/scans.html"),
+        ("non-manifold", "docs/tasks/scans.html"),
+        ("screw thread", "docs/tasks/making.html"),
+        ("color", "docs/tasks/assemblies.html"),
+        ("Solid.min_gap", "docs/api/solid.html#bspcsg.Solid.min_gap"),
+    ],
+)
+def test_the_search_leads_from_words_to_their_pages(
+    site: Path, browser: Browser, word: str, page: str
+) -> None:
+    browser.open(site / "search.html")
+    browser.type("input[name=q]", f"{word}\n")
+    browser.wait("document.querySelectorAll('.search li').length > 0")
+    browser.wait(f"document.querySelector('.search li a').getAttribute('href') === '{page}'")
+
+
+def test_names_of_python_are_in_the_inventory_and_are_links(site: Path) -> None:
+    data = (site / "objects.inv").read_bytes().split(b"\n", 4)[4]
+    names = {
+        line.split()[0] for line in zlib.decompress(data).decode().splitlines() if " py:" in line
+    }
+    assert {"bspcsg.Solid", "bspcsg.Solid.fillet", "bspcsg.bsp.RayCaster"} < names and len(
+        names
+    ) > 500
+    shapes = (site / "docs/api/shapes.html").read_text(encoding="utf-8")
+    assert shapes.count('href="solid.html#bspcsg.Solid"') > 5
+    index = (site / "docs/api/index.html").read_text(encoding="utf-8")
+    assert 'href="shapes.html#bspcsg.cylinder"' in index
+    tutorial = (site / "docs/tutorials/manifold3d.html").read_text(encoding="utf-8")
+    assert 'href="../api/operations.html#bspcsg.union"' in tutorial
 
 
 def test_pages_speak_to_screen_readers_and_keyboards(site: Path, browser: Browser) -> None:

@@ -21,7 +21,6 @@ HEAVY = [
     "numpy.ma",
     "pyclipper",
     "rich",
-    "rtree",
     "scipy",
     "tempfile",
     "trimesh",

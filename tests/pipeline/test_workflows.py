@@ -63,6 +63,14 @@ def test_every_kind_of_wheel_is_built_and_those_of_the_runners_are_tried() -> No
     assert jobs["publish"]["permissions"] == {"id-token": "write"}
 
 
+# Found: where no index has the package, a tag had no wheels to be taken either.
+def test_a_tag_gets_the_files_that_were_tried() -> None:
+    job = document(ROOT / ".github/workflows/release.yml")["jobs"]["release-files"]
+    assert set(job["needs"]) == {"source", "try", "try-musl"}
+    assert job["permissions"] == {"contents": "write"} and "refs/tags/v" in job["if"]
+    assert "gh release create" in job["steps"][-1]["run"]
+
+
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A repository with a solid in a folder whose name has a space, on whose path bspcsg is."""
@@ -88,10 +96,37 @@ def act(files: str = "", options: str = "") -> tuple[int, str]:
     subprocess.run(["git", "add", "-A"], check=True)
     action = document(ROOT / "action.yml")
     files = files or action["inputs"]["files"]["default"]
-    known = os.environ | {"FILES": files, "OPTIONS": options}
-    command = ["bash", "-e", "-o", "pipefail", "-c", action["runs"]["steps"][-1]["run"]]
-    done = subprocess.run(command, env=known, capture_output=True, encoding="utf-8", check=False)
+    return stepped(-1, {"FILES": files, "OPTIONS": options})
+
+
+def stepped(number: int, variables: dict[str, str]) -> tuple[int, str]:
+    """Run a step of the action, and return its code and what it prints."""
+    step = document(ROOT / "action.yml")["runs"]["steps"][number]
+    assert set(step["env"]) == set(variables)
+    done = subprocess.run(
+        ["bash", "-e", "-o", "pipefail", "-c", step["run"]],
+        env=os.environ | variables,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+    )
     return done.returncode, done.stdout + done.stderr
+
+
+# Found: the action asked an index for a package that is on none.
+def test_the_action_installs_what_lies_beside_it_or_what_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "python").write_text('#!/bin/sh\nfor last; do :; done; echo "installs $last"\n')
+    (programs / "python").chmod(0o755)
+    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{os.environ['PATH']}")
+    alone = {"PACKAGE": "", "BESIDE": str(tmp_path)}
+    code, said = stepped(1, alone)
+    assert code == 1 and "::error::" in said and "'package'" in said
+    assert stepped(1, alone | {"PACKAGE": "a b.whl"}) == (0, "installs a b.whl\n")
+    assert stepped(1, alone | {"BESIDE": str(ROOT)}) == (0, f"installs {ROOT}\n")
 
 
 def test_the_action_checks_all_meshes(repository: Path) -> None:

@@ -130,13 +130,32 @@ def test_svg_arcs_keep_their_area_where_they_are_skewed(transform: str, tmp_path
     assert drawn(tmp_path, circle).area == pytest.approx(25 * math.pi * factor, rel=2e-3)
 
 
+def test_dxf_names_the_extra_that_it_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in [name for name in sys.modules if name.partition(".")[0] == "ezdxf"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    (tmp_path / "a.dxf").write_text("0\nEOF\n")
+    (tmp_path / "a.csg").write_text('import(file = "a.dxf");')
+    for call in (
+        lambda: R.from_dxf(tmp_path / "a.dxf"),
+        lambda: R.rectangle(1).to_dxf(tmp_path / "b.dxf"),
+        lambda: b.csg.load(tmp_path / "a.csg", lenient=True),
+    ):
+        with pytest.raises(b.MissingPartError) as caught:
+            call()
+        assert caught.value.code == "missing_package"
+        words = 'This needs the package ezdxf: pip install "bspcsg[dxf]".'
+        assert words in str(caught.value)
+    assert not (tmp_path / "b.dxf").exists()
+
+
 def test_missing_files_and_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for load in (R.from_svg, R.from_dxf):
         with pytest.raises(b.FormatError):
             load(tmp_path / "nowhere")
     R.rectangle(1).to_svg(tmp_path / "a.svg")
-    monkeypatch.setitem(__import__("sys").modules, "svgelements", None)
-    with pytest.raises(b.BspcsgError, match=r"pip install svgelements"):
+    monkeypatch.setitem(sys.modules, "svgelements", None)
+    with pytest.raises(b.MissingPartError, match=r"pip install svgelements"):
         R.from_svg(tmp_path / "a.svg")
     with pytest.raises(b.InvalidMeshError):
         R.from_svg(tmp_path / "a.svg", tolerance=0)

@@ -28,7 +28,7 @@ def names(cell: str) -> list[str]:
 def is_ours(name: str) -> bool:
     """Say whether a name is one of the package's, of a class's, or of a submodule's."""
     owner = b
-    for part in name.removeprefix("b.").split("."):
+    for part in name.removeprefix("bspcsg.").split("."):
         if not hasattr(owner, part):
             return False
         owner = getattr(owner, part)

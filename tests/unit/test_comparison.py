@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg._types import FloatArray
 from bspcsg.mesh.distance import distances_to_triangles
 from bspcsg.verify import comparison
 from bspcsg.verify.comparison import compare
@@ -53,3 +54,19 @@ def test_the_farthest_of_many_points_is_that_of_all_pairs(shift: float) -> None:
         distances_to_triangles(np.tile(point, (len(corners), 1)), corners).min() for point in points
     ]
     assert comparison._farthest(mesh, points) == max(every)
+    assert comparison.distances(mesh, points).tolist() == every
+
+
+# Found: each point looked at all triangles in a cube around it, and a fine mesh filled the memory.
+def test_points_far_away_are_compared_with_few_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared = []
+
+    def counted(points: FloatArray, corners: FloatArray) -> FloatArray:
+        compared.append(len(points))
+        return distances_to_triangles(points, corners)
+
+    monkeypatch.setattr(comparison, "distances_to_triangles", counted)
+    mesh = b.sphere(1, segments=64).to_mesh()
+    points = np.random.default_rng(5).normal(size=(40, 3)) * 100
+    assert (comparison.distances(mesh, points) > 1).all()
+    assert sum(compared) < len(points) * len(mesh.faces) / 10

@@ -173,7 +173,7 @@ def test_what_is_not_the_scripts_fault_is_never_dropped(
 ) -> None:
     (tmp_path / "a.svg").write_text("<svg/>")
     monkeypatch.setitem(__import__("sys").modules, "svgelements", None)
-    with pytest.raises(b.BspcsgError, match=r"pip install svgelements"):
+    with pytest.raises(b.MissingPartError, match=r"pip install svgelements"):
         csg.loads('linear_extrude(1) import("a.svg");', folder=tmp_path, lenient=True)
     with pytest.raises(b.FormatError, match=r"part\.csg:1"):
         csg.loads("cube(", name="part.csg", lenient=True)

@@ -30,6 +30,34 @@ def test_packages_take_the_version_of_the_crate() -> None:
     assert stable == (not VERSION.startswith("0."))
 
 
+def requirements(*extras: str) -> set[str]:
+    """Return what some extras bring, or the package itself where none is named."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    listed = [project["optional-dependencies"][extra] for extra in extras]
+    return {each for names in listed or [project["dependencies"]] for each in names}
+
+
+def test_no_other_major_version_comes_unasked() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"][
+        "optional-dependencies"
+    ]
+    for each in requirements() | requirements(*(set(extras) - {"all"})):
+        assert re.match(r"[\w-]+>=[\d.]+,<[\d.]+(;|$)", each), each
+
+
+def test_the_tests_need_all_that_users_may_install() -> None:
+    (every,) = requirements("all")
+    extras = re.fullmatch(r"bspcsg\[([\w,]+)\]", every)
+    assert extras and requirements(*extras[1].split(",")) <= requirements("test")
+
+
+# Found: one format took a quarter of the room of an installation.
+def test_drawings_of_one_format_are_an_extra() -> None:
+    needed = {re.split(r"[<>=;]", each)[0] for each in requirements()}
+    assert {"numpy", "manifold3d"} < needed and needed.isdisjoint({"ezdxf", "fonttools", "rtree"})
+    assert {re.split(r"[<>=;]", each)[0] for each in requirements("dxf")} == {"ezdxf"}
+
+
 def test_the_changelog_begins_with_what_is_unreleased_then_the_version() -> None:
     headings = re.findall(r"^## (.*)$", CHANGELOG, re.MULTILINE)
     assert headings[0] == "[Unreleased]"

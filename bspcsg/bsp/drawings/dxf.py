@@ -14,12 +14,11 @@ from ..._types import FloatArray, Scalar, WindingRule
 from ...errors import FormatError, format_errors, invalid_parameter, words_of
 from ...formats.atomic import write_file
 from ...formats.source import limited_content
-from ...mesh.interop import optional
 from ...parameters import file_path, of_kind, positive, shown
 from ..sets.region import Region
 from .dxf_curves import chains_of
 from .dxf_layouts import drawn_layout
-from .dxf_markers import with_markers
+from .dxf_markers import module_of_ezdxf, with_markers
 from .left_out import LeftOut
 
 
@@ -125,7 +124,7 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
 
 def dxf_data(region: Region) -> bytes:
     """Return what `save_dxf` writes."""
-    ezdxf = optional("ezdxf", "ezdxf")
+    ezdxf = module_of_ezdxf()
     outlines = of_kind(Region, region, "region").to_polygons()
     text = io.StringIO()
     with _without_time(ezdxf.options):
@@ -167,7 +166,7 @@ _TEXT_OF_BINARY = (
 
 def read_document(path: str | os.PathLike[str]) -> Any:
     """Return the ezdxf document of a file; `FormatError` if it is none."""
-    ezdxf = optional("ezdxf", "ezdxf")
+    ezdxf = module_of_ezdxf()
     name = file_path(path)
     data = limited_content(name)
     if data.startswith(_BINARY):
@@ -184,7 +183,7 @@ def _decoded(data: bytes) -> str:
     text = data.decode("utf-8", errors="surrogateescape")
     if "$DWGCODEPAGE" not in text:
         return text
-    management = optional("ezdxf.filemanagement", "ezdxf")
+    management = module_of_ezdxf("ezdxf.filemanagement")
     # From R2007 on files are UTF-8 whatever page they name, which this knows.
     encoding = management.dxf_stream_info(io.StringIO(text)).encoding
     return data.decode(encoding, errors="surrogateescape")

@@ -31,10 +31,15 @@ _PLAIN = "AC1009"
 _FIRST_OF_OTHERS = 1000
 
 
+def module_of_ezdxf(name: str = "ezdxf") -> Any:
+    """Return a module of ezdxf, which comes with an extra of this package."""
+    return optional(name, '"bspcsg[dxf]"')
+
+
 def with_markers(stream: TextIO) -> Iterator[Any]:
     """Yield the tags of a file for ezdxf, with the markers that entities lack."""
-    types = optional("ezdxf.lldxf.types", "ezdxf")
-    lines = optional("ezdxf.lldxf.tagger", "ezdxf").ascii_tags_loader(stream)
+    types = module_of_ezdxf("ezdxf.lldxf.types")
+    lines = module_of_ezdxf("ezdxf.lldxf.tagger").ascii_tags_loader(stream)
     version, variable = _PLAIN, ""
     entity: list[Any] = []
     for tag in lines:

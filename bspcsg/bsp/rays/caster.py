@@ -214,9 +214,9 @@ class RayCaster:
 
     Examples
     --------
-    >>> import bspcsg as b
+    >>> import bspcsg as csg
     >>> from bspcsg import bsp
-    >>> caster = bsp.RayCaster(b.cube(2))
+    >>> caster = bsp.RayCaster(csg.cube(2))
     >>> hits = caster.first_hit([[0.5, 0.5, 5.0], [3.0, 3.0, 5.0]], [0, 0, -2])
     >>> hits.t
     array([1.5, inf])

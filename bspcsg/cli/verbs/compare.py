@@ -98,7 +98,8 @@ def _write_page(
 
     first, second = (path.name for path in files)
     names = (first, second if first != second else f"{second} (2)")
-    write_page(page, compared_page(solids, names, found, _differences(found, same)))
+    *figures, verdict = _differences(found, same)
+    write_page(page, compared_page(solids, names, found, [verdict, *figures]))
 
 
 def _within(found: "SetComparison", tolerance: float) -> bool:

@@ -23,20 +23,19 @@ Example:
 
 _REQUIRED = {
     "click": "the command line",
-    "ezdxf": "DXF files",
     "jinja2": "pages of report and view",
     "manifold3d": "checking results",
     "numpy": "everything",
     "pillow": "PNG pictures",
     "pyclipper": "offsets",
     "rich": "tables",
-    "rtree": "distances in compare and crosscheck",
     "svgelements": "reading SVG files",
     "uharfbuzz": "text",
 }
 
 #: Optional packages, what each is for, and the extra that brings it.
 _OPTIONAL = (
+    ("ezdxf", "DXF files", "dxf"),
     ("pymeshlab", "repair", "repair"),
     ("meshio", "VTK and VTU files", "vtk"),
     ("trimesh", "the trimesh engine, to_trimesh, meshes of bench", "trimesh"),

@@ -59,7 +59,7 @@ def section(file: Path, target: Path, **given: Any) -> int:
 
     It is seen from where the normal points: z gives the coordinates (x, y), x gives (y, z), y gives
     (z, x). A face in the plane counts as above it, so a box standing on z = 0 is empty there and
-    full at its top. DXF needs ezdxf; bspcsg doctor says whether it is there.
+    full at its top. DXF needs the extra bspcsg[dxf].
     """
     return _Section(file, target, _SUFFIXES, **given).run()
 

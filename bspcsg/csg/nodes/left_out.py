@@ -32,7 +32,7 @@ def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
     if error.code in _OPENSCADS:
         return True
     own_faults = (FormatError, InvalidMeshError, LimitError, UnboundedError)
-    return lenient and isinstance(error, own_faults) and error.code != "missing_package"
+    return lenient and isinstance(error, own_faults)
 
 
 def nothing_of(node: Node) -> Geometry:

@@ -43,8 +43,8 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
 
     Examples
     --------
-    >>> from bspcsg import csg
-    >>> csg.parse("sphere(r = 2);").nodes[0].name
+    >>> from bspcsg import csg as scripts
+    >>> scripts.parse("sphere(r = 2);").nodes[0].name
     'sphere'
     """
     place = Path() if folder is None else Path(file_path(folder, "folder"))

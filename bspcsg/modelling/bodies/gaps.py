@@ -8,10 +8,10 @@ import numpy as np
 from ..._types import FloatArray, IndexArray
 from ...errors import LimitError, invalid_parameter
 from ...geometry.hyperplane import exact_number
+from ...mesh.box_tree import BoxTree, Nearness, squared_gaps
 from ...parameters import of_kind
 from ...solid.counting import uncounted
 from ...solid.solid import Solid, surfaces_meet
-from .boxes import BoxTree, Nearness, squared_gaps
 from .triangles import least_gaps, nearest_points
 
 #: Relative error of distances in doubles, of the size of the coordinates: some dozens of roundings.

@@ -65,10 +65,10 @@ def hull(*solids_or_points: Any) -> Solid | Region:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.hull(b.cube(1), b.cube(1).translate(0, 0, 4)).volume
+    >>> import bspcsg as csg
+    >>> csg.hull(csg.cube(1), csg.cube(1).translate(0, 0, 4)).volume
     5.0
-    >>> b.hull([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 6)]).volume
+    >>> csg.hull([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 6)]).volume
     1.0
     """
     return _hull(list(_entries(solids_or_points)))

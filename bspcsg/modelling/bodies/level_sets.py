@@ -63,11 +63,12 @@ def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0
     Examples
     --------
     >>> import numpy as np
-    >>> import bspcsg as b
-    >>> ball = b.level_set(lambda p: 1 - np.linalg.norm(p, axis=1), [(-1, -1, -1), (1, 1, 1)], 0.1)
+    >>> import bspcsg as csg
+    >>> cube = [(-1, -1, -1), (1, 1, 1)]
+    >>> ball = csg.level_set(lambda p: 1 - np.linalg.norm(p, axis=1), cube, 0.1)
     >>> round(ball.volume, 1), ball.genus
     (4.2, 0)
-    >>> gyroid = b.level_set(
+    >>> gyroid = csg.level_set(
     ...     lambda p: (np.sin(p) * np.cos(np.roll(p, -1, axis=1))).sum(axis=1),
     ...     [(0, 0, 0), (2 * np.pi,) * 3],
     ...     0.5,

@@ -75,11 +75,11 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.minkowski(b.cube(2), b.cube(1)).volume
+    >>> import bspcsg as csg
+    >>> csg.minkowski(csg.cube(2), csg.cube(1)).volume
     27.0
-    >>> thin = ~b.minkowski(~b.cube(4), b.cube(2, center=True))
-    >>> thin == b.cube(2).translate(1, 1, 1)
+    >>> thin = ~csg.minkowski(~csg.cube(4), csg.cube(2, center=True))
+    >>> thin == csg.cube(2).translate(1, 1, 1)
     True
     """
     if isinstance(a, Region) and isinstance(b, Region):

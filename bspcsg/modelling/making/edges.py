@@ -24,8 +24,8 @@ class EdgeSelection:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> edges = b.box(1, 2, 3).edges()
+    >>> import bspcsg as csg
+    >>> edges = csg.box(1, 2, 3).edges()
     >>> len(edges), edges.parallel("z")
     (12, EdgeSelection(4 of 12, lengths 3 to 3))
     >>> edges.where(lambda e: e.length > 1.5)

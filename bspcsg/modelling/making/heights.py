@@ -75,8 +75,8 @@ def surface(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.surface([[1, 1, 1], [1, 4, 1], [1, 1, 1]]).volume
+    >>> import bspcsg as csg
+    >>> csg.surface([[1, 1, 1], [1, 4, 1], [1, 1, 1]]).volume
     7.0
     """
     if isinstance(heights, (str, os.PathLike)):

@@ -46,11 +46,11 @@ def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
 
     Examples
     --------
-    >>> import bspcsg as b
+    >>> import bspcsg as csg
     >>> square, point = [(-1, -1), (1, -1), (1, 1), (-1, 1)], [(0, 0, 3)]
-    >>> b.loft([(square, 0), point]).volume
+    >>> csg.loft([(square, 0), point]).volume
     4.0
-    >>> b.loft([(b.Region.rectangle(4, center=True), 0), (b.Region.circle(1), 5)]).genus
+    >>> csg.loft([(csg.Region.rectangle(4, center=True), 0), (csg.Region.circle(1), 5)]).genus
     0
     """
     try:

@@ -51,8 +51,8 @@ def helix(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.helix(10, 2, turns=3, segments=24).shape
+    >>> import bspcsg as csg
+    >>> csg.helix(10, 2, turns=3, segments=24).shape
     (73, 3)
     """
     if pitch is not None:
@@ -102,8 +102,8 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.spline([(0, 0, 0), (10, 0, 5), (20, 0, 0)], segments=8).shape
+    >>> import bspcsg as csg
+    >>> csg.spline([(0, 0, 0), (10, 0, 5), (20, 0, 0)], segments=8).shape
     (17, 3)
     """
     chords, is_ring = sides_around(1, segments, "segments"), truth_value(closed, "closed")

@@ -43,8 +43,8 @@ def linear_pattern(shape: _Shape, count: int, step: Vector) -> _Shape:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.linear_pattern(b.cube(1), 4, (2, 0, 0)).volume
+    >>> import bspcsg as csg
+    >>> csg.linear_pattern(csg.cube(1), 4, (2, 0, 0)).volume
     4.0
     """
     return _row(_of_shape(shape), _copies(count), step)
@@ -83,8 +83,8 @@ def polar_pattern(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.polar_pattern(b.cube(1).translate(2, 0, 0), 4).volume
+    >>> import bspcsg as csg
+    >>> csg.polar_pattern(csg.cube(1).translate(2, 0, 0), 4).volume
     4.0
     """
     _of_shape(shape)
@@ -120,8 +120,8 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.grid(b.cube(1), (3, 2), (2, 2)).volume
+    >>> import bspcsg as csg
+    >>> csg.grid(csg.cube(1), (3, 2), (2, 2)).volume
     6.0
     """
     axes = 2 if isinstance(_of_shape(shape), Region) else 3

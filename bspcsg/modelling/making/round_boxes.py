@@ -48,8 +48,8 @@ def rounded_box(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> round(b.rounded_box((4, 3, 2), 0.5, segments=4).volume, 4)
+    >>> import bspcsg as csg
+    >>> round(csg.rounded_box((4, 3, 2), 0.5, segments=4).volume, 4)
     20.1667
     >>> b.rounded_box(4, 3, 2, r=0.5) == b.rounded_box((4, 3, 2), 0.5)
     True

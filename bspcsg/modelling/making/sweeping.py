@@ -82,9 +82,9 @@ def sweep(
 
     Examples
     --------
-    >>> import bspcsg as b
+    >>> import bspcsg as csg
     >>> square = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
-    >>> b.sweep(square, [(0, 0, 0), (10, 0, 0), (10, 10, 0)]).volume
+    >>> csg.sweep(square, [(0, 0, 0), (10, 0, 0), (10, 10, 0)]).volume
     80.0
     """
     contours = contours_of(profile)
@@ -149,8 +149,8 @@ def pipe(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.pipe([(0, 0, 0), (0, 0, 5)], 2, inner=1, segments=4).volume
+    >>> import bspcsg as csg
+    >>> csg.pipe([(0, 0, 0), (0, 0, 5)], 2, inner=1, segments=4).volume
     30.0
     """
     outer = positive(radius(r, d, "A pipe"), "r")

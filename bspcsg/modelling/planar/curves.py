@@ -45,10 +45,10 @@ def arc(
 
     Examples
     --------
-    >>> import bspcsg as b
+    >>> import bspcsg as csg
     >>> import numpy as np
-    >>> slot = np.concatenate([b.arc((0, 0), 2, 90, 270), b.arc((9, 0), 2, -90, 90)])
-    >>> round(b.Region(slot).area)
+    >>> slot = np.concatenate([csg.arc((0, 0), 2, 90, 270), csg.arc((9, 0), 2, -90, 90)])
+    >>> round(csg.Region(slot).area)
     48
     """
     radius, chord = positive(r, "r"), positive(tolerance, "tolerance")
@@ -96,8 +96,8 @@ def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> b.bezier([(0, 0), (1, 2), (2, 0)], tolerance=0.3).tolist()
+    >>> import bspcsg as csg
+    >>> csg.bezier([(0, 0), (1, 2), (2, 0)], tolerance=0.3).tolist()
     [[0.0, 0.0], [1.0, 1.0], [2.0, 0.0]]
     """
     controls = _controls(points)

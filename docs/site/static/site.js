@@ -9,6 +9,18 @@ function scrollByKeyboard() {
   }
 }
 
+/** The lines of a signature, which are no terms with meanings, although they are written so. */
+function linesOf(list) {
+  const lines = document.createElement("div");
+  lines.className = "sig-lines";
+  for (const one of list.children) {
+    const line = document.createElement("div");
+    line.append(...one.childNodes);
+    lines.append(line);
+  }
+  return lines;
+}
+
 document.addEventListener("DOMContentLoaded", () => {
   document.querySelector(".sidebar-drawer")?.setAttribute("aria-label", "Pages");
   document.querySelector(".toc-drawer")?.setAttribute("aria-label", "On this page");
@@ -18,6 +30,7 @@ document.addEventListener("DOMContentLoaded", () => {
   for (const head of document.querySelectorAll("th")) {
     if (!head.textContent.trim()) head.setAttribute("role", "presentation");
   }
+  for (const list of document.querySelectorAll("dt.sig > dl")) list.replaceWith(linesOf(list));
   scrollByKeyboard();
   window.addEventListener("resize", scrollByKeyboard);
   document.addEventListener("click", () => setTimeout(scrollByKeyboard));

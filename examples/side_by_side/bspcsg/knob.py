@@ -1,4 +1,4 @@
-import bspcsg as b
+import bspcsg as csg
 
-part = b.rounded_box((40, 30, 12), 3, center=True) - b.cylinder(h=20, d=8, center=True)
+part = csg.rounded_box((40, 30, 12), 3, center=True) - csg.cylinder(h=20, d=8, center=True)
 print(part.volume)

@@ -1,5 +1,5 @@
-import bspcsg as b
+import bspcsg as csg
 
-name = b.text("Workshop", size=8, halign="center", valign="center")
-part = b.box(60, 16, 2, center=True) | name.extrude(2)
+name = csg.text("Workshop", size=8, halign="center", valign="center")
+part = csg.box(60, 16, 2, center=True) | name.extrude(2)
 print(part.volume)

@@ -1,5 +1,5 @@
-import bspcsg as b
+import bspcsg as csg
 
-body = b.hull(b.sphere(6).translate(-20, 0, 0), b.sphere(10).translate(20, 0, 0))
-part = body - b.cylinder(h=30, r=4, center=True).translate(20, 0, 0)
+body = csg.hull(csg.sphere(6).translate(-20, 0, 0), csg.sphere(10).translate(20, 0, 0))
+part = body - csg.cylinder(h=30, r=4, center=True).translate(20, 0, 0)
 print(part.volume)

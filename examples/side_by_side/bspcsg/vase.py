@@ -1,4 +1,4 @@
-import bspcsg as b
+import bspcsg as csg
 
-part = b.Region.circle(20, 6).extrude(60, twist=90, slices=60)
+part = csg.Region.circle(20, 6).extrude(60, twist=90, slices=60)
 print(part.volume)

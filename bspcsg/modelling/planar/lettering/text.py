@@ -128,9 +128,9 @@ def text(
 
     Examples
     --------
-    >>> import bspcsg as b
-    >>> plate = b.text("Ok", 8).extrude(2)
-    >>> len(b.text("Ok").decompose())
+    >>> import bspcsg as csg
+    >>> plate = csg.text("Ok", 8).extrude(2)
+    >>> len(csg.text("Ok").decompose())
     2
     """
     line = _line(string)

@@ -37,11 +37,11 @@ function followChapters() {
   document.querySelectorAll("main > section").forEach((section) => watch.observe(section));
 }
 
-/** Let the keyboard scroll formulas that are wider than their place. */
+/** Let the keyboard scroll formulas and tables that are wider than their place. */
 function scrollByKeyboard() {
-  for (const formula of document.querySelectorAll("math[display=block]")) {
-    if (formula.scrollWidth > formula.clientWidth) formula.setAttribute("tabindex", "0");
-    else formula.removeAttribute("tabindex");
+  for (const wide of document.querySelectorAll("math[display=block], .table-scroll")) {
+    if (wide.scrollWidth > wide.clientWidth) wide.setAttribute("tabindex", "0");
+    else wide.removeAttribute("tabindex");
   }
 }
 
@@ -64,6 +64,7 @@ async function start() {
       say(figure, `This figure failed: ${error.message}`);
     }
   }
+  scrollByKeyboard();
   document.documentElement.dataset.ready = "yes";
 }
 

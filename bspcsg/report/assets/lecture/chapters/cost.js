@@ -153,12 +153,70 @@ function adaptiveFigure(figure) {
     show();
   });
   button(buttons, "forget all", restart);
+  const table = figure.querySelector("tbody");
   slider(buttons, "threshold", { min: 1, max: 40, value: state.threshold }, (threshold) => {
     state.threshold = threshold;
     restart();
+    compareRays(table, threshold);
   });
   restart();
+  compareRays(table, state.threshold);
   fan(40, 0.3);
+}
+
+/** Rays of a comparison, and how many at its beginning and at its end are counted. */
+const COMPARED = 600;
+const COUNTED = 150;
+
+/** The scenes of each comparison, whose mean is shown: one alone is good or bad luck. */
+const SEEDS = [41, 43, 47];
+
+/** Where the tree that organises itself pays, and where it does not. */
+function compareRays(table, threshold) {
+  const sizes = [[12, { longest: 120 }], [200, { shortest: 6, longest: 16, edge: 5 }]];
+  const rays = [["one direction", raysAlong], ["anywhere", raysAnywhere]];
+  table.replaceChildren(...sizes.flatMap(([count, looks]) => {
+    const scenes = SEEDS.map((seed) => randomSegments(count, ...ROOM, seed, looks));
+    return rays.map(([words, made]) => comparedRow(count, words, scenes.map((scene) => workOf(scene, made(), threshold))));
+  }));
+}
+
+/** A row of the comparison, in which the smaller of two figures is marked. */
+function comparedRow(count, words, works) {
+  const cells = ["nodes", "first", "last"].flatMap((key) => {
+    const [mine, other] = [0, 1].map((tree) => works.reduce((sum, work) => sum + work[tree][key], 0) / works.length);
+    const digits = key === "nodes" ? 0 : 1;
+    return [[mine, mine < other], [other, other < mine]].map(([value, best]) => element("td", { class: best ? "best" : "" }, rounded(value, digits)));
+  });
+  return element("tr", {}, element("td", {}, String(count)), element("td", {}, words), ...cells);
+}
+
+function raysAlong() {
+  const random = randomOf(91);
+  const angles = Array.from({ length: COMPARED }, () => (random() + random() - 1) * 0.1);
+  return angles.map((angle) => [[4, ROOM[1] / 2], [Math.cos(angle), Math.sin(angle)]]);
+}
+
+function raysAnywhere() {
+  const random = randomOf(92);
+  const place = () => [random() * ROOM[0], random() * ROOM[1]];
+  return Array.from({ length: COMPARED }, () => [place(), place()]).map(([from, to]) => [from, [to[0] - from[0], to[1] - from[1]]]);
+}
+
+/** The nodes of the tree that grows and of the static one, and the work of a ray at the beginning and at the end. */
+function workOf(scene, rays, threshold) {
+  const flat = new Float64Array(scene.flat(2));
+  const room = new Float64Array(WHOLE.flat());
+  const ranks = shuffled(scene.map((_, i) => i + 1), randomOf(3));
+  const trees = [[threshold, new Uint32Array(scene.length)], [0, new Uint32Array(ranks)]];
+  const mean = (costs) => costs.reduce((sum, cost) => sum + cost, 0) / costs.length;
+  return trees.map(([limit, hits]) => using(new wasm_bindgen.SelfOrganising(flat, room, limit, hits), (tree) => {
+    const costs = rays.map(([from, way]) => {
+      const shot = JSON.parse(tree.shoot(...from, ...way));
+      return shot.nodes + shot.tests;
+    });
+    return { nodes: JSON.parse(tree.view()).length, first: mean(costs.slice(0, COUNTED)), last: mean(costs.slice(-COUNTED)) };
+  }));
 }
 
 /** Nodes visited and segments tested per ray as it goes: the tree that grows, and the one that does not. */

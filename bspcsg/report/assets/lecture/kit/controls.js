@@ -50,7 +50,10 @@ function choice(host, label, options, act) {
   return group;
 }
 
-const icon = (shape) => drawn("svg", { viewBox: "0 0 20 20", class: "icon", "aria-hidden": "true" }, drawn("path", { d: shape }));
+const icon = (shape, looks = {}) => drawn("svg", { viewBox: "0 0 20 20", class: "icon", "aria-hidden": "true", ...looks }, drawn("path", { d: shape }));
+
+/** An icon of strokes: what moves by steps, apart from what plays. */
+const strokes = (shape, looks = {}) => icon(shape, { class: "icon lines", ...looks });
 
 /** Milliseconds between two steps that play by themselves. */
 const PACE = 1100;
@@ -64,12 +67,13 @@ class Stepper {
     this.count = 0;
     this.timer = null;
     const bar = element("div", { class: "stepper", role: "group", "aria-label": "Steps" });
-    const press = (name, shape, act, looks = {}) => button(bar, icon(shape), act, { "aria-label": name, title: name, ...looks });
-    press("First step", "M5 4v12M15 4 7 10l8 6z", () => this.go(0));
-    press("Step back", "M13 4 5 10l8 6z", () => this.go(this.at - 1), { class: "back" });
-    this.player = press("Play", "M4 4l7 6-7 6zM10 4l7 6-7 6z", () => this.play(), { "aria-pressed": false });
-    press("Step forward", "M7 4l8 6-8 6z", () => this.go(this.at + 1), { class: "forward" });
-    press("Last step", "M15 4v12M5 4l8 6-8 6z", () => this.go(this.count));
+    const press = (name, drawing, act, looks = {}) => button(bar, drawing, act, { "aria-label": name, title: name, ...looks });
+    press("First step", strokes("M5 4v12M15 4l-6 6 6 6"), () => this.go(0));
+    press("Step back", strokes("M13 4l-6 6 6 6"), () => this.go(this.at - 1), { class: "back" });
+    this.player = press("Play", icon("M6 3.5 16 10 6 16.5z", { "data-when": "still" }), () => this.play(), { "aria-pressed": false, class: "player" });
+    this.player.append(strokes("M6.5 4v12M13.5 4v12", { "data-when": "playing" }));
+    press("Step forward", strokes("M7 4l6 6-6 6"), () => this.go(this.at + 1), { class: "forward" });
+    press("Last step", strokes("M15 4v12M5 4l6 6-6 6"), () => this.go(this.count));
     this.range = element("input", { type: "range", min: 0, max: 0, value: 0, "aria-label": "Step" });
     this.range.addEventListener("input", () => this.go(Number(this.range.value)));
     this.place = element("output", { class: "place" });
