@@ -121,7 +121,7 @@ class Modelled:
 
         Examples
         --------
-        >>> import bspcsg as b
+        >>> import bspcsg as csg
         >>> hollow = csg.cube(3) - csg.cube(1).translate(1, 1, 1)
         >>> len(hollow.components), hollow.surface_count
         (1, 2)

@@ -41,7 +41,7 @@ class Movable(ABC):
 
         Examples
         --------
-        >>> import bspcsg as b
+        >>> import bspcsg as csg
         >>> csg.cube(1).translate(z=5) == csg.cube(1).translate(0, 0, 5)
         True
         """
@@ -109,7 +109,7 @@ class Movable(ABC):
 
         Examples
         --------
-        >>> import bspcsg as b
+        >>> import bspcsg as csg
         >>> csg.cube(1).scale(z=2).volume, csg.cube(1).scale(2).volume
         (2.0, 8.0)
         """
@@ -141,7 +141,7 @@ class Movable(ABC):
 
         Examples
         --------
-        >>> import bspcsg as b
+        >>> import bspcsg as csg
         >>> csg.cube(1).mirror("x") == csg.cube(1).mirror(x=1) == csg.cube(1).translate(x=-1)
         True
         """

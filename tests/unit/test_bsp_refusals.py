@@ -6,7 +6,7 @@ stay good. A new one that is missing here fails the test of completeness.
 
 import inspect
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +41,15 @@ class Visitor:
 
     def leaf(self, leaf: Any) -> None:
         """Take a leaf."""
+
+
+def _with(method: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a method of any number of sets, to be called with one by name."""
+
+    def called(others: Any) -> Any:
+        return method(others)
+
+    return called
 
 
 #: A name, what is called, and arguments that it takes.
@@ -84,6 +93,11 @@ ROWS: dict[str, Row] = {
     "Intervals.isdisjoint": (LINE.isdisjoint, {"other": LINE}),
     "Intervals.project": (LINE.project, {"points": [0.5]}),
     "Intervals.scale": (LINE.scale, {"factor": 2}),
+    "Intervals.difference": (_with(LINE.difference), {"others": LINE}),
+    "Intervals.intersection": (_with(LINE.intersection), {"others": LINE}),
+    "Intervals.symmetric_difference": (_with(LINE.symmetric_difference), {"others": LINE}),
+    "Intervals.union": (_with(LINE.union), {"others": LINE}),
+    "Intervals.nearest": (LINE.nearest, {"points": [0.5]}),
     "Intervals.split": (LINE.split, {"normal": [1], "offset": 0.5}),
     "Intervals.translate": (LINE.translate, {"offset": 2}),
     "ObjectTree": (
@@ -105,8 +119,13 @@ ROWS: dict[str, Row] = {
         {"normal": (1, 0), "offset": 0.5, "pitch": -9},
     ),
     "ObjectTree.isdisjoint": (FIRST.isdisjoint, {"other": SECOND}),
+    "ObjectTree.nearest": (FIRST.nearest, {"points": [(0.1, 0.1)]}),
     "ObjectTree.partitioned": (FIRST.partitioned, {"normal": (1, 0), "offset": 0.5}),
     "ObjectTree.project": (FIRST.project, {"points": [(0.1, 0.1)]}),
+    "ObjectTree.difference": (_with(FIRST.difference), {"others": SECOND}),
+    "ObjectTree.intersection": (_with(FIRST.intersection), {"others": SECOND}),
+    "ObjectTree.symmetric_difference": (_with(FIRST.symmetric_difference), {"others": SECOND}),
+    "ObjectTree.union": (_with(FIRST.union), {"others": SECOND}),
     "ObjectTree.split": (FIRST.split, {"normal": (1, 0), "offset": 0.5}),
     "ObjectTree.split_case": (FIRST.split_case, {"normal": (1, 0), "offset": 0.5}),
     "ObjectTree.trace_merge": (FIRST.trace_merge, {"other": SECOND, "op": "union"}),
@@ -214,6 +233,7 @@ ROWS: dict[str, Row] = {
     ),
     "SubHyperplane.of_boundary": (bsp.SubHyperplane.of_boundary, {"points": R}),
     "SubHyperplane.project": (CUT.project, {"points": [(1, 2)]}),
+    "SubHyperplane.nearest": (CUT.nearest, {"points": [(0.1, 0.1)]}),
     "SubHyperplane.split": (CUT.split, {"normal": (0, 1), "offset": 0.5}),
     "SubHyperplane.transform": (CUT.transform, {"matrix": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}),
     "Picture.save": (bsp.picture(S, size=(64, 64)).save, {"path": "x.png"}),

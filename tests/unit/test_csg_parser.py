@@ -348,7 +348,7 @@ def test_scad_takes_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     path.write_text("cube(w);")
     stand_in(tmp_path, 'echo "cube(3);" > "$3"', monkeypatch)
     assert csg.read_scad(str(path), timeout=None) == csg.parse("cube(3);")
-    with pytest.raises(FormatError, match="(?i)no such file"):
+    with pytest.raises(FormatError, match=r"(?i)no such file"):
         csg.read_scad("a" * 300)
     wrong: list[dict[str, Any]] = [
         {"timeout": "5"}, {"defines": "w=4"}, {"defines": {"w": [1, 2]}}, {"defines": {1: 2}}
