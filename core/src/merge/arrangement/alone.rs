@@ -7,7 +7,7 @@ use super::kept::Kept;
 use super::near::{Pairs, View};
 use super::scene::Scene;
 use super::segments::{contacts_among, Contacts};
-use super::shells::{is_outward, shells, Shell};
+use super::shells::{distinct, is_outward, shells, Shell};
 use super::star::is_star_shaped;
 use super::surfaces::Surfaces;
 use super::POOL;
@@ -65,10 +65,17 @@ pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
         irregular: &irregular,
     };
     let shells = shells(operand.mesh);
-    if shells.len() == 1 || rule == Rule::EvenOdd {
+    let count = shells.len();
+    if count == 1 || rule == Rule::EvenOdd {
         return alone.united(alone.view.pairs(&alone.scene.near[0]));
     }
-    match alone.view.pairs_unless_overlapping(&alone.scene.near[0]) {
+    let shells = distinct(operand.mesh, shells);
+    let found = if shells.len() < count {
+        Pairs::Many
+    } else {
+        alone.view.pairs_unless_overlapping(&alone.scene.near[0])
+    };
+    match found {
         Pairs::Many if alone.are_simple(&shells) => {
             let branches = shells.into_iter().map(|shell| shell.branch(source));
             Some(United::Shells(branches.collect()))

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
 use crate::arith::{Int, Sign};
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::sixfold_flux;
+use crate::geometry::plane::Lattice;
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
@@ -65,6 +66,16 @@ pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
     shells
 }
 
+/// The shells without those that repeat an earlier one: its faces, in their order.
+pub(super) fn distinct(mesh: &TriangleMesh, shells: Vec<Shell>) -> Vec<Shell> {
+    let mut seen: HashSet<Vec<[Lattice; 3]>> = HashSet::default();
+    let mut is_first = |shell: &Shell| {
+        poll();
+        seen.insert(shell.faces.iter().map(|f| mesh.corners(*f)).collect())
+    };
+    shells.into_iter().filter(|s| is_first(s)).collect()
+}
+
 /// The root of a class; each second one on the way becomes a child of its parent's parent.
 fn root(parents: &mut [usize], mut at: usize) -> usize {
     while parents[at] != at {
@@ -81,4 +92,26 @@ pub(super) fn is_outward(mesh: &TriangleMesh, faces: &[FaceId]) -> bool {
         volume += sixfold_flux(&mesh.corners(*face));
     }
     volume.sign() == Sign::Positive
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::cuboids;
+    use crate::mesh::handle::Slot;
+
+    #[test]
+    fn shells_hang_together_and_copies_go() {
+        let boxes = [[[0; 3], [4; 3]], [[2; 3], [9; 3]], [[0; 3], [4; 3]]];
+        let solid = cuboids(boxes);
+        let source = solid.sources().get(Slot(0));
+        let mesh = source.mesh().expect("a mesh");
+        let shells = shells(mesh);
+        assert!(shells.len() == 3 && shells.iter().all(|s| is_outward(mesh, &s.faces)));
+        let firsts: Vec<u32> = distinct(mesh, shells)
+            .iter()
+            .map(|s| s.faces[0].0)
+            .collect();
+        assert_eq!(firsts, [0, 12]);
+    }
 }
