@@ -9,7 +9,7 @@ use bspcsg::merge::rule::Rule;
 use bspcsg::tree::node::Branch;
 use bspcsg::tree::solid::Solid;
 
-use super::support::{assert_same_set, manifold_mesh, volume, Numbers, Shape};
+use super::support::{assert_same_set, manifold_mesh, normalized, volume, Numbers, Shape};
 
 const REACH: i64 = 60;
 
@@ -130,4 +130,17 @@ fn a_face_with_many_segments_is_divided_as_by_the_descent() {
         [plate.clone(), all.unchecked()]
     });
     assert!(taken > 8, "{taken}");
+}
+
+/// Found: a number was counted where a corner touches the middle of a face.
+#[test]
+fn numbers_are_not_counted_where_surfaces_touch() {
+    let below = [[1, 3, -6], [4, 3, -6], [2, 7, -6], [2, 4, 0]];
+    let below = Shape::tetrahedron(below).expect("a tetrahedron");
+    let alone = below.solid();
+    let both = Shape::cuboid([0; 3], [6; 3]).with(below).unchecked();
+    let united = normalized(&both, Rule::Positive);
+    assert!(both.is_reduced());
+    let cube = Shape::cuboid([0; 3], [6; 3]).solid();
+    assert_eq!(volume(&united), volume(&cube).plus(&volume(&alone)));
 }

@@ -108,9 +108,12 @@ impl<'a> Arrangement<'a> {
         self.cells[self.triangulation.cell_at(corner) as usize].in_front
     }
 
-    /// A point inside a cell, at which numbers can be counted.
-    pub(super) fn probe(&mut self) -> Option<(usize, Probe)> {
-        probe(&mut self.triangulation, self.face.plane)
+    /// A cell, and the number that is counted at a point inside it.
+    pub(super) fn counted(
+        &mut self,
+        count: impl FnMut(&Probe) -> Option<i32>,
+    ) -> Option<(usize, i32)> {
+        counted(&mut self.triangulation, self.face.plane, count)
     }
 
     /// The corners of a cell.
@@ -264,21 +267,40 @@ impl<'a> Arrangement<'a> {
     }
 }
 
-/// A point inside a face; `None` if it is too thin.
-pub(super) fn probe_of_face(corners: &[Lattice; 3], plane: &Arc<Plane>) -> Option<Probe> {
+/// The number that is counted at a point inside a face; `None` if it is too thin.
+pub(super) fn counted_in_face(
+    corners: &[Lattice; 3],
+    plane: &Arc<Plane>,
+    count: impl FnMut(&Probe) -> Option<i32>,
+) -> Option<i32> {
     let corners = corners.map(|c| Arc::new(Vertex::lattice(c)));
     let mut face = Triangulation::new(corners, axes(plane));
-    probe(&mut face, plane).map(|(_, probe)| probe)
+    counted(&mut face, plane, count).map(|(_, number)| number)
 }
 
-/// A point inside a cell, the widest first.
-fn probe(cells: &mut Triangulation, plane: &Arc<Plane>) -> Option<(usize, Probe)> {
+/// A cell and the number that is counted at a point inside it; the widest cells are tried first, and
+/// several points of each: another surface may touch the cell in one of them.
+fn counted(
+    cells: &mut Triangulation,
+    plane: &Arc<Plane>,
+    mut count: impl FnMut(&Probe) -> Option<i32>,
+) -> Option<(usize, i32)> {
+    const WEIGHTS: [[f64; 3]; 4] = [
+        [1.0, 1.0, 1.0],
+        [5.0, 3.0, 2.0],
+        [2.0, 5.0, 3.0],
+        [3.0, 2.0, 5.0],
+    ];
     let mut order: Vec<u32> = (0..as_number(cells.cells().len())).collect();
     order.sort_by(|a, b| cells.size(*b).total_cmp(&cells.size(*a)));
-    order.into_iter().find_map(|cell| {
-        let probe = Probe::above(cells.middle(cell), plane)?;
+    let points = order
+        .into_iter()
+        .flat_map(|cell| WEIGHTS.map(|w| (cell, w)));
+    points.into_iter().find_map(|(cell, weights)| {
+        let probe = Probe::above(cells.mean(cell, weights), plane)?;
         let is_inside = cells.holds(cell, Arc::clone(&probe.point));
-        is_inside.then_some((cell as usize, probe))
+        let number = if is_inside { count(&probe) } else { None };
+        Some((cell as usize, number?))
     })
 }
 

@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
 use super::candidates::Operand;
-use super::faces::{probe_of_face, Arrangement};
-use super::windings::Windings;
+use super::faces::{counted_in_face, Arrangement};
+use super::windings::{Probe, Windings};
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Triangle;
@@ -128,8 +128,10 @@ impl<'a> Labels<'a> {
 
     /// The number in front of the first cell of a face, counted along a ray.
     fn counted(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
-        let (cell, probe) = face.probe().ok_or(Declined::Thin)?;
-        Ok(self.windings.in_front(face.face.plane, &probe) - face.cells[cell].in_front)
+        let plane = face.face.plane;
+        let count = |probe: &Probe| self.windings.in_front(plane, probe);
+        let (cell, number) = face.counted(count).ok_or(Declined::Thin)?;
+        Ok(number - face.cells[cell].in_front)
     }
 
     /// The number at the corners of a face that nothing divides; `None` if all lie on other faces.
@@ -230,8 +232,8 @@ impl<'a> Labels<'a> {
     /// The number in front of a face that nothing divides, counted along a ray.
     fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Declined> {
         let plane = self.of.source.plane(face);
-        let probe = probe_of_face(&self.of.mesh.corners(face), &plane).ok_or(Declined::Thin)?;
-        Ok(self.windings.in_front(&plane, &probe))
+        let count = |probe: &Probe| self.windings.in_front(&plane, probe);
+        counted_in_face(&self.of.mesh.corners(face), &plane, count).ok_or(Declined::Thin)
     }
 }
 

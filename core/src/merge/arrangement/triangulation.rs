@@ -128,11 +128,15 @@ impl Triangulation {
         ux * vy - uy * vx
     }
 
-    /// The half step of the lattice next to the middle of a triangle, doubled, in the order of the axes.
-    pub(super) fn middle(&self, cell: u32) -> [i64; 2] {
+    /// The half step of the lattice next to the weighted mean of a triangle's corners, doubled, in the order
+    /// of the axes.
+    pub(super) fn mean(&self, cell: u32, weights: [f64; 3]) -> [i64; 2] {
         let corners = self.cells[cell as usize].corners;
-        let at = |i: usize| corners.map(|c| self.places[c as usize].at[i]);
-        let [u, v] = [0, 1].map(|i| as_whole((at(i).iter().sum::<f64>() * 2.0 / 3.0).round()));
+        let at = |i: usize| {
+            let terms = (0..3).map(|k| weights[k] * self.places[corners[k] as usize].at[i]);
+            terms.sum::<f64>() / weights.iter().sum::<f64>()
+        };
+        let [u, v] = [0, 1].map(|i| as_whole((2.0 * at(i)).round()));
         if (self.axes[0] + 1) % 3 == self.axes[1] {
             [u, v]
         } else {

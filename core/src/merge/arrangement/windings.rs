@@ -74,8 +74,9 @@ impl<'a> Windings<'a> {
         -change
     }
 
-    /// The winding number in front of a plane at a point of it that lies on no face in another plane.
-    pub(super) fn in_front(&mut self, plane: &Plane, probe: &Probe) -> i32 {
+    /// The winding number in front of a plane at a point of it; `None` if a face in another plane touches
+    /// the plane there.
+    pub(super) fn in_front(&mut self, plane: &Plane, probe: &Probe) -> Option<i32> {
         let Probe { point, doubled } = probe;
         let Operand { mesh, bounds, .. } = self.operand;
         let axis = plane.main_axis();
@@ -90,7 +91,7 @@ impl<'a> Windings<'a> {
         let reach = |i: usize, low: f64, end: i64| if i == axis { as_double(end) } else { low };
         let low = each_axis(|i| reach(i, low[i], bounds[0][i]));
         let high = each_axis(|i| reach(i, high[i], bounds[1][i]));
-        let mut number = 0;
+        let (mut number, mut touches) = (0, false);
         faces.tree.each_meeting(&Bounds::between(&low, &high), |i| {
             let corners = mesh.corners(faces.faces[i]);
             let change = triangle_change(&corners, &way);
@@ -103,13 +104,16 @@ impl<'a> Windings<'a> {
             };
             // Upwards the number grows where the way leads from in front of the face to behind it.
             let is_above = match point.side_of(&other) {
-                Side::On => return,
+                Side::On => {
+                    touches |= other.coincides(plane).is_none();
+                    return;
+                }
                 side => (side == Side::Plus) == (change > 0),
             };
             if is_above == is_up {
                 number += if is_up { -change } else { change };
             }
         });
-        number
+        (!touches).then_some(number)
     }
 }
