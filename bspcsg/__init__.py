@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from .modelling.bodies.level_sets import level_set
     from .modelling.bodies.sums import minkowski
     from .modelling.making.edges import EdgeSelection
+    from .modelling.making.faces import FaceSelection
     from .modelling.making.heights import surface
     from .modelling.making.lofting import loft
     from .modelling.making.paths import helix, spline
@@ -82,6 +83,7 @@ __all__ = [
     "BspcsgError",
     "CheckReport",
     "EdgeSelection",
+    "FaceSelection",
     "Finding",
     "FormatError",
     "InternalError",
@@ -145,6 +147,7 @@ _MODULES = {
     "_core": "__version__",
     "bsp.sets.region": "Region",
     "modelling.making.edges": "EdgeSelection",
+    "modelling.making.faces": "FaceSelection",
     "modelling.making.heights": "surface",
     "modelling.making.lofting": "loft",
     "modelling.making.paths": "helix spline",

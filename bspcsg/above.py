@@ -16,6 +16,7 @@ Convenience: TypeAlias = Literal[
     "decompose",
     "chamfer",
     "edges",
+    "faces",
     "fillet",
     "dumps",
     "hull_of_region",

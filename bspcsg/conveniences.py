@@ -14,6 +14,7 @@ _HOMES: dict[Convenience, str] = {
     "align": "modelling.bodies.placing:align",
     "chamfer": "modelling.making.blends:chamfer",
     "edges": "modelling.making.edges:edges_of",
+    "faces": "modelling.making.faces:faces_of",
     "fillet": "modelling.making.blends:fillet",
     "closest_points": "modelling.bodies.gaps:closest_points",
     "curvature": "modelling.bodies.shading:curvature",

@@ -12,26 +12,39 @@ if TYPE_CHECKING:
 
 
 class Edged:
-    """A solid with edges between plane faces."""
+    """A solid with edges between its faces."""
 
     __slots__ = ()
 
     @uncounted
-    def edges(self) -> "EdgeSelection":
-        """Return the edges between plane faces, to choose some of them (see `EdgeSelection`).
+    def edges(self, *, all: bool = False, angle: Scalar = 30.0) -> "EdgeSelection":  # noqa: A002
+        """Return the edges at which faces bend, to choose some of them (see `EdgeSelection`).
+
+        The lines between the facets of a round surface are none. The rim of a bore is one: it comes
+        as the edges of its facets.
+
+        Parameters
+        ----------
+        all : bool
+            True for the edges between all plane faces, facets among them.
+        angle : float
+            Degrees; faces bend by more than this at an edge.
 
         Raises
         ------
+        InvalidParameterError
+            If the angle is not from 0 to below 180.
         UnboundedError
             If the solid reaches to infinity.
 
         Examples
         --------
         >>> import bspcsg as b
-        >>> len(b.box(1, 2, 3).edges().parallel("z"))
-        4
+        >>> part = b.box(30, 20, 10) - b.cylinder(10, d=8).translate(15, 10, 0)
+        >>> len(part.edges().parallel("z")), len(part.edges(all=True).parallel("z"))
+        (4, 36)
         """
-        edges: EdgeSelection = above("edges")(self)
+        edges: EdgeSelection = above("edges")(self, all=all, angle=angle)
         return edges
 
     @counted

@@ -1,6 +1,7 @@
 """Edges of solids, chamfers and fillets."""
 
 import math
+import pickle
 from typing import Any, cast
 
 import numpy as np
@@ -35,7 +36,7 @@ def test_edges_of_a_box() -> None:
     top = edges.where(lambda e: e.middle[:, 2] == 2)
     assert len(top) == 4 and (top.ends[:, :, 2] == 2).all()
     assert np.allclose(np.abs((top.normals * top.direction[:, None]).sum(axis=2)), 0)
-    assert repr(top) == "EdgeSelection(4 of 12, lengths 3 to 4)"
+    assert repr(top) == "EdgeSelection(4 of 12, length 3 to 4)"
     assert repr(edges.where(np.zeros(12, bool))) == "EdgeSelection(0 of 12)"
 
 
@@ -70,6 +71,121 @@ def test_selections_say_what_is_wrong_with_conditions() -> None:
         edges | b.cube(1).edges()
     with pytest.raises(b.UnboundedError):
         b.half_space((0, 0, 1)).edges()
+
+
+BORED = b.box(30, 20, 10) - b.cylinder(10, d=8).translate(15, 10, 0)
+
+
+# Found: a fillet of the upright edges of a box with a bore took the facets of the bore, too.
+@pytest.mark.parametrize("turn", TURNS)
+def test_facets_of_a_bore_have_no_edges_between_them(turn: Any) -> None:
+    part = BORED.rotate(turn)
+    edges = part.edges()
+    assert len(edges) == 12 + 64 and len(part.edges(all=True)) == 12 + 64 + 32
+    upright = edges.filter(lambda e: np.isclose(e.length, 10))
+    assert len(upright) == 4
+    soft = part.fillet(upright, 3)
+    assert part.volume - soft.volume == pytest.approx(4 * 9 * 10 * segment(8), rel=1e-6)
+    assert (
+        len(soft.faces()) == 7 + 4
+        and len(BORED.fillet(BORED.edges().parallel("z"), 3).faces) == 272
+    )
+
+
+def test_edges_bend_by_more_than_the_angle() -> None:
+    """Sides of a circle of twelve bend by 30 degrees, however the body is turned."""
+    for turn in TURNS:
+        assert len(b.cylinder(5, r=1, segments=12).rotate(turn).edges()) == 24
+        assert len(b.cylinder(5, r=1, segments=11).rotate(turn).edges()) == 33
+    assert len(b.cylinder(5, r=1, segments=12).edges(angle=29.9)) == 36
+    assert len(b.box(1, 2, 3).edges(angle=91)) == 0
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_faces_are_flat_ones_and_round_ones(turn: Any) -> None:
+    part = BORED.rotate(turn)
+    faces = part.faces()
+    assert len(faces) == 7 and len(part.faces(all=True)) == 6 + 32
+    assert faces.area.sum() == pytest.approx(part.area)
+    (bore,) = faces.filter(~faces.is_flat)
+    assert bore.area[0] == pytest.approx(32 * 8 * math.sin(math.pi / 32) * 10)
+    assert not bore.normal.any() and np.allclose(np.linalg.norm(faces.normal, axis=1).sum(), 6)
+    assert len(part.edges().on(bore)) == 64 and len(faces.on(part.edges().on(bore))) == 3
+    assert len(part.edges(all=True).on(bore)) == 96
+    assert np.allclose(bore.middle, b.Solid(part.vertices, part.faces).centroid)
+
+
+def test_faces_of_round_bodies() -> None:
+    assert [len(body.faces()) for body in (b.sphere(5), b.torus(5, 1), b.cylinder(3, 1))] == [
+        1,
+        1,
+        3,
+    ]
+    # A plane face and the round edge beside it bend as little as facets do, but are not as wide.
+    body = b.cube(20)
+    soft = body.fillet(body.edges(), 2).faces()
+    flat = soft.filter(soft.is_flat)
+    assert len(soft) == 26 and len(flat) == 6 and np.allclose(flat.area, 16**2)
+    assert len(b.Solid.empty().faces()) == 0 == len(b.Solid.empty().faces().group_by("z"))
+
+
+def test_selections_are_sorted_and_grouped() -> None:
+    for things in (BORED.edges(), BORED.faces()):
+        heights = [float(one.middle[0, 2]) for one in things.sort_by("z")]
+        assert heights == sorted(heights) and len(heights) == len(things)
+        groups = things.group_by("z")
+        assert sum(map(len, groups)) == len(things) and len(groups) == 3
+        assert np.allclose(groups[-1].middle[:, 2], 10)
+        by_function = things.group_by(lambda some: some.middle[:, 2])
+        assert [len(group) for group in by_function] == [len(group) for group in groups]
+        assert len(things.sort_by((0, 0, -2))[:3]) == 3
+    assert [len(group) for group in BORED.edges().group_by("length")] == [64, 4, 4, 4]
+    assert BORED.faces().sort_by("area")[-1].normal.tolist() in ([[0, 0, 1]], [[0, 0, -1]])
+    assert sorted(BORED.edges().group_by("angle")[0].angle.round(9)) == [90.0] * 76
+
+
+def test_selections_lie_in_planes_and_are_combined() -> None:
+    edges, faces = BORED.edges(), BORED.faces()
+    assert len(edges.on("z", 10)) == 4 + 32 and len(edges.on((0, 0, -2), -20)) == 4 + 32
+    assert len(faces.on("x", 30)) == 1 and len(faces.on("x", 29)) == 0
+    assert len(faces.parallel("z")) == 2 and len(faces.parallel((1, 1, 0))) == 0
+    top = edges.on(faces.sort_by("z")[-1])
+    assert len(top) == 36 and len(top & edges.parallel("x")) == 2 and len(edges - top) == 40
+    assert len(faces.parallel("x") | faces.parallel("y")) == 4
+    with pytest.raises(TypeError):
+        edges | faces
+
+
+def test_triangles_know_their_solid_until_something_is_made_of_them() -> None:
+    triangles = BORED.faces
+    assert (triangles == BORED.to_mesh().faces).all() and not triangles.flags.writeable
+    made: list[Any] = [triangles[:4], triangles + 1, pickle.loads(pickle.dumps(triangles))]
+    for array in made:
+        with pytest.raises(b.InvalidParameterError, match="no solid's any more"):
+            array()
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: BOX.edges(angle=180), "angle"),
+        (lambda: BOX.edges(all=cast("Any", 7)), "all"),
+        (lambda: BOX.faces(angle=-1), "angle"),
+        (lambda: BOX.edges().sort_by("size"), "There is no key 'size'; there are x, y, z, length"),
+        (lambda: BOX.faces().group_by("length"), "there are x, y, z, area"),
+        (lambda: BOX.edges().sort_by(lambda e: e.ends), "one finite number for each of the 12"),
+        (lambda: BOX.edges().group_by(lambda e: e.length * math.inf), "finite"),
+        (lambda: BOX.edges().on("z"), "offset"),
+        (lambda: BOX.edges().on(BOX.faces(), 3), "offset belongs to a plane"),
+        (lambda: BOX.edges().on(STEP.faces()), "different solids"),
+        (lambda: BOX.edges() & STEP.edges(), "different solids"),
+    ],
+)
+def test_selections_refuse_what_makes_no_sense(call: Any, word: str) -> None:
+    with pytest.raises(b.InvalidParameterError, match=word):
+        call()
+    with pytest.raises(b.UnboundedError):
+        b.half_space((0, 0, 1)).normalized().edges()
 
 
 # Chamfers
@@ -269,7 +385,7 @@ def test_a_boss_of_many_sides_and_its_plate_are_round_in_one_call(sides: int) ->
     part = b.box(20, 20, 3) | boss
     smooth = part.fillet(part.edges(), 0.25, segments=16)
     assert 2 < part.volume - smooth.volume < 3
-    left = smooth.edges()
+    left = smooth.edges(all=True)
     bend = np.abs(np.asarray(left.angle)[np.asarray(left.length) > 1e-3] - 180)
     assert bend.max() < 30
     assert smooth.genus == 0 and smooth.to_mesh().certificate.ok
@@ -360,7 +476,7 @@ def test_a_hole_near_an_edge_leaves_no_room() -> None:
 def test_many_edges_are_refused() -> None:
     ball = b.sphere(10, segments=160)
     with pytest.raises(b.LimitError, match="edges are chosen"):
-        ball.chamfer(ball.edges(), 1e-4)
+        ball.chamfer(ball.edges(all=True), 1e-4)
 
 
 # Found: blends of bodies that end near the end of the lattice were refused: their cutters reach

@@ -194,6 +194,19 @@ ROWS: dict[str, Row] = {
     "Region.warp": (R.warp, {"function": lambda p: p * 2}),
     "EdgeSelection.parallel": (EDGES.parallel, {"axis": "z"}),
     "EdgeSelection.where": (EDGES.where, {"condition": lambda e: e.length > 1}),
+    **{
+        f"{kind}.{name}": (getattr(things, name), arguments)
+        for kind, things in (("EdgeSelection", EDGES), ("FaceSelection", S.faces()))
+        for name, arguments in (
+            ("filter", {"condition": np.ones(len(things), bool)}),
+            ("on", {"place": "z", "offset": 2}),
+            ("sort_by", {"key": "z"}),
+            ("group_by", {"key": (0, 0, 1)}),
+        )
+    },
+    "FaceSelection.parallel": (S.faces().parallel, {"axis": "z"}),
+    "FaceSelection.where": (S.faces().where, {"condition": lambda f: f.area > 1}),
+    "Solid.edges": (S.edges, {"all": True, "angle": 30}),
     "Assembly": (b.Assembly, {"name": "x", "content": S, "color": (1, 0, 0), "density": 2}),
     "Assembly.clashes": (A.clashes, {"clearance": 0.1}),
     "Assembly.load": (b.Assembly.load, {"path": SCRIPT}),
@@ -236,7 +249,7 @@ def test_good_arguments_are_taken_and_bad_ones_refused_at_once(name: str) -> Non
 def test_no_public_function_is_missing() -> None:
     functions = {name for name in b.__all__ if inspect.isfunction(getattr(b, name))}
     assert len(functions) > 35
-    methods = methods_of(Solid, Region, b.EdgeSelection, b.Assembly)
+    methods = methods_of(Solid, Region, b.EdgeSelection, b.FaceSelection, b.Assembly)
     assert len(methods) > 60
     told = {name.split()[0] for name in ROWS}
     assert functions | methods <= told | ELSEWHERE
