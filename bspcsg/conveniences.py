@@ -13,6 +13,11 @@ from .above import Convenience, answer
 _HOMES: dict[Convenience, str] = {
     "align": "modelling.bodies.placing:align",
     "chamfer": "modelling.making.blends:chamfer",
+    "counterbore": "modelling.making.drilling:counterbore",
+    "countersink": "modelling.making.drilling:countersink",
+    "hole": "modelling.making.drilling:hole",
+    "chamfer_region": "modelling.planar.corners:chamfer_region",
+    "fillet_region": "modelling.planar.corners:fillet_region",
     "edges": "modelling.making.edges:edges_of",
     "faces": "modelling.making.faces:faces_of",
     "fillet": "modelling.making.blends:fillet",

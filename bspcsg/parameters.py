@@ -28,6 +28,9 @@ MOST_THREADS = 1024
 #: sides move no corner of a body of radius one by two steps of the lattice that it gets.
 MOST_SEGMENTS = 1 << 16
 
+#: Sides of a full circle, unless the caller says otherwise.
+SEGMENTS = 32
+
 #: Corners of one body. While its solid is made each takes some 600 bytes, all of them 2.4 GB.
 MOST_CORNERS = 4_000_000
 
@@ -154,6 +157,30 @@ def truth_value(value: Any, name: str) -> bool:
     if isinstance(value, int) and value in (0, 1):
         return bool(value)
     raise invalid_parameter(f"{name} must be True or False, not {shown(value)}.")
+
+
+def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
+    """Return a radius, still unchecked, or half of a diameter.
+
+    Parameters
+    ----------
+    r, d : float or None
+        One of them, or none if there is a default.
+    owner : str
+        What has the radius, for errors: ``"A sphere"``.
+    default : float, optional
+
+    Raises
+    ------
+    InvalidParameterError
+        If both are given, or none and there is no default.
+    """
+    if r is not None and d is not None:
+        raise invalid_parameter("Give a radius or a diameter, not both.")
+    found = default if r is None and d is None else r if d is None else not_negative(d, "d") / 2
+    if found is None:
+        raise invalid_parameter(f"{owner} needs r, or d.")
+    return found
 
 
 def pair(value: Any, name: str) -> tuple[Any, Any]:

@@ -1,18 +1,20 @@
-"""The edges of a solid, and what replaces them, as methods."""
+"""The edges of a solid, what replaces them, and the holes in its faces, as methods."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .._types import Scalar
 from ..above import above
+from ..parameters import SEGMENTS
 from .counting import counted, uncounted
 
 if TYPE_CHECKING:
     from ..modelling.making.edges import EdgeSelection
+    from ..modelling.making.faces import FaceSelection
     from .solid import Solid
 
 
 class Edged:
-    """A solid with edges between its faces."""
+    """A solid with edges and faces."""
 
     __slots__ = ()
 
@@ -114,4 +116,163 @@ class Edged:
         True
         """
         solid: Solid = above("fillet")(self, edges, radius, segments)
+        return solid
+
+    @counted
+    def hole(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with round holes, square to a face.
+
+        Parameters
+        ----------
+        face : FaceSelection
+            One flat face. It may be that of the solid before it got other holes.
+        at : (3,) or (n, 3) float, optional
+            Where the holes begin: a point on the face, or several. By default its middle.
+        d, r : float
+            Diameter, or radius instead.
+        depth : float, optional
+            By default they go through the whole solid.
+        segments : int
+            Sides around, at least 3.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the selection is not one flat face, the solid has no such face at a point, or a
+            number is out of its range; the message says which.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> plate = b.box(30, 20, 5)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> plate.hole(top, [(5, 5, 5), (25, 5, 5)], d=4).genus
+        2
+        >>> plate.hole(top, r=4, depth=2, segments=4).volume
+        2936.0
+        """
+        solid: Solid = above("hole")(self, face, at, d=d, r=r, depth=depth, segments=segments)
+        return solid
+
+    @counted
+    def counterbore(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        head_d: Scalar | None = None,
+        head_r: Scalar | None = None,
+        head_depth: Scalar,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with holes that are wider at a face, for cylindrical heads of screws.
+
+        Parameters
+        ----------
+        face : FaceSelection
+        at : (3,) or (n, 3) float, optional
+        d, r : float
+        depth : float, optional
+        segments : int
+            As for `hole`; the depth is that of the whole hole.
+        head_d, head_r : float
+            Diameter of the wide part, or radius instead.
+        head_depth : float
+            Depth of the wide part.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `hole`, or if the wide part is not wider, or not less deep.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> plate = b.box(30, 20, 8)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> screwed = plate.counterbore(top, d=4.5, head_d=8, head_depth=4.4)
+        >>> screwed.genus, len(screwed.faces())
+        (1, 9)
+        """
+        solid: Solid = above("counterbore")(
+            self,
+            face,
+            at,
+            d=d,
+            r=r,
+            head_d=head_d,
+            head_r=head_r,
+            head_depth=head_depth,
+            depth=depth,
+            segments=segments,
+        )
+        return solid
+
+    @counted
+    def countersink(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        head_d: Scalar | None = None,
+        head_r: Scalar | None = None,
+        angle: Scalar = 90.0,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with holes that open as a cone at a face, for flat heads of screws.
+
+        Parameters
+        ----------
+        face : FaceSelection
+        at : (3,) or (n, 3) float, optional
+        d, r : float
+        depth : float, optional
+        segments : int
+            As for `hole`; the depth is that of the whole hole.
+        head_d, head_r : float
+            Diameter of the cone in the face, or radius instead.
+        angle : float
+            Degrees from side to side of the cone: 90 for metric screws, 82 for those in inches.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `hole`, or if the cone is not wider, or deeper than the hole.
+
+        Examples
+        --------
+        >>> import bspcsg as b
+        >>> plate = b.box(30, 20, 5)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> screwed = plate.countersink(top, [(5, 10, 5), (25, 10, 5)], d=4.5, head_d=9)
+        >>> screwed.genus, len(screwed.faces())
+        (2, 10)
+        """
+        solid: Solid = above("countersink")(
+            self,
+            face,
+            at,
+            d=d,
+            r=r,
+            head_d=head_d,
+            head_r=head_r,
+            angle=angle,
+            depth=depth,
+            segments=segments,
+        )
         return solid

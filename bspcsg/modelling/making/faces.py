@@ -120,8 +120,8 @@ def faces_of(solid: Solid, *, all: bool, angle: Scalar) -> FaceSelection:  # noq
     return FaceSelection(skeleton, np.arange(int(surface.max(initial=-1)) + 1), surface)
 
 
-def flat_face(faces: FaceSelection) -> tuple[Skeleton, int]:
-    """Return the skeleton of a selection of one flat face, and the number that the face has there.
+def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
+    """Return the normal of a selection of one flat face, and the product of its points with it.
 
     Raises
     ------
@@ -134,7 +134,8 @@ def flat_face(faces: FaceSelection) -> tuple[Skeleton, int]:
         raise invalid_parameter(f"One face is needed, and {len(faces)} are selected.")
     if not faces.is_flat[0]:
         raise invalid_parameter("The face is round, and a flat one is needed.")
-    return faces._skeleton, int(faces._flat_faces()[0][0])
+    normal: FloatArray = faces.normal[0]
+    return normal, float(faces.middle[0] @ normal)
 
 
 def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
