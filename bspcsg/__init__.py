@@ -174,7 +174,7 @@ _MODULES = {
     "solid.solid": "Solid",
 }
 #: Parts of the package that need no import of their own.
-_PARTS = frozenset({"bsp", "csg", "errors", "io", "trimesh_engine"})
+_PARTS = frozenset({"bsp", "csg", "errors", "io", "parts", "trimesh_engine"})
 _HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 
