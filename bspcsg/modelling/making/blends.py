@@ -21,6 +21,7 @@ from ...parameters import positive, refuse_many_corners, sides_around
 from ...shapes.primitives import half_space
 from ...solid.leaf import TreeLeaf
 from ...solid.solid import Solid, from_leaf
+from .chains import ChainTools, closed_chains
 from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
 from .planes import Planes
@@ -82,6 +83,7 @@ class _Blend:
         self.pitch = pitch
         self.planes = Planes(skeleton, pitch)
         self._prisms: dict[int, Solid] = {}
+        self._sections: dict[int, FloatArray] = {}
 
     @cached_property
     def widths(self) -> FloatArray:
@@ -267,17 +269,31 @@ class _Blend:
     def _station(self, edge: int, place: int) -> FloatArray:
         """Return the new surface across one end of an edge, from the left face to the right one."""
         vertex = int(self.skeleton.ends[edge, place])
-        point, sign = self.skeleton.vertices[vertex], self.sign(edge)
+        if self.is_round_corner(vertex):
+            return self._ball(vertex) + self._arc(edge)
+        return np.asarray(self.skeleton.vertices[vertex] + self.section(edge))
+
+    def section(self, edge: int) -> FloatArray:
+        """Return the new surface across an edge, from the left face to the right one.
+
+        It is seen from a point of the edge.
+        """
+        if edge not in self._sections:
+            self._sections[edge] = self._section(edge)
+        return self._sections[edge]
+
+    def _section(self, edge: int) -> FloatArray:
         inward = self.skeleton.inward[edge]
         if not self.profile.is_round:
-            return np.asarray(point + self.profile.size * inward)
-        normals = sign * self.skeleton.normals[self.skeleton.sides[edge]]
-        if self.is_round_corner(vertex):
-            middle = self._ball(vertex)
-        else:
-            middle = point + self.widths[edge] * inward[0] - self.profile.size * normals[0]
-        directions = arc_directions(normals[0], normals[1], self.profile.steps)
-        return np.asarray(middle + self.profile.size * directions)
+            return np.asarray(self.profile.size * inward)
+        normal = self.sign(edge) * self.skeleton.normals[self.skeleton.sides[edge, 0]]
+        middle = self.widths[edge] * inward[0] - self.profile.size * normal
+        return np.asarray(middle + self._arc(edge))
+
+    def _arc(self, edge: int) -> FloatArray:
+        """Return the round surface across an edge, as seen from its axis."""
+        normals = self.sign(edge) * self.skeleton.normals[self.skeleton.sides[edge]]
+        return self.profile.size * arc_directions(normals[0], normals[1], self.profile.steps)
 
     def _ring(self, edge: int, arc: FloatArray) -> FloatArray:
         """Return the prism's section, whose first and last chord run on past the faces."""
@@ -414,7 +430,15 @@ def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
 def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
     """Return what is taken off, and what is filled in."""
     cutters: tuple[list[Solid], list[Solid]] = ([], [])
-    for edge in sorted(blend.chosen):
+    near = _SYMMETRICAL * blend.profile.size
+    tools = ChainTools(blend.skeleton, blend.section, near, blend.pitch)
+    done: set[int] = set()
+    for chain in closed_chains(blend.skeleton, blend.chosen):
+        tool = tools.tool(chain)
+        if tool is not None:
+            cutters[blend.sign(chain[0][0]) < 0].append(tool)
+            done.update(edge for edge, _ in chain)
+    for edge in sorted(blend.chosen - done):
         cutters[blend.sign(edge) < 0].append(blend.cutter(edge))
     for vertex in blend.corners():
         sign = blend.sign(blend.skeleton.edges_at(vertex)[0])
