@@ -26,6 +26,7 @@ Convenience: TypeAlias = Literal[
     "dumps",
     "hull_of_region",
     "intersects",
+    "leaning",
     "load",
     "load_assembly",
     "load_dxf",

@@ -27,6 +27,7 @@ _HOMES: dict[Convenience, str] = {
     "dumps": "csg:dumps",
     "hull_of_region": "modelling.planar.hulls:hull_of_region",
     "intersects": "modelling.bodies.gaps:intersects",
+    "leaning": "modelling.making.leaning:leaning",
     "load": "io:load",
     "load_assembly": "assembly.files:load",
     "load_dxf": "bsp:load_dxf",
