@@ -55,7 +55,9 @@ class Edged:
 
         Material is taken off along convex edges and filled in along concave ones. At corners the
         new surfaces run into each other. Where a concave edge ends between two convex ones, or the
-        other way around, it comes first, and the two run on along the end of its new surface.
+        other way around, it comes first, and the two run on along the end of its new surface. Where
+        all edges of a face are chosen whose walls are square to it, such as those of a text, short
+        ones may vanish.
 
         Parameters
         ----------
@@ -88,7 +90,8 @@ class Edged:
 
         Material is taken off along convex edges and filled in along concave ones, to a cylinder
         that touches both faces. Where three such edges meet and all are chosen, the corner is part
-        of a ball. Convex and concave edges that meet are taken in turn, as by `chamfer`.
+        of a ball. Convex and concave edges that meet are taken in turn, and short edges of a face
+        may vanish, as by `chamfer`.
 
         Parameters
         ----------

@@ -485,6 +485,56 @@ def test_chains_whose_corners_are_no_mirror_images_are_taken_edge_by_edge() -> N
     assert chamfered == pytest.approx(wedges.sum(), rel=0.05)
 
 
+# Faces on which edges vanish
+
+HOUSE = b.Region([(0, 0), (4, 0), (4, 3), (3.8, 4), (0, 4)])
+
+
+# Found: `chamfer` of the outline of a text by 0.3 had no room, for its curves have short edges.
+@pytest.mark.parametrize("turn", TURNS)
+def test_edges_may_vanish_where_all_of_a_face_are_blended(turn: Any) -> None:
+    for figure in (HOUSE, b.text("e", size=10), HOUSE - HOUSE.scale(0.3).translate(0.8, 0.8)):
+        body = figure.extrude(2)
+        top = body.edges(all=True).on("z", 2)
+        flat = body.chamfer(top, 0.3)
+        for z in (1.71, 1.8, 1.99):
+            assert flat.slice(z).area == pytest.approx(
+                figure.offset(1.7 - z, "miter").area, abs=1e-3
+            )
+        turned = body.rotate(turn)
+        faces = turned.faces()
+        rim = turned.edges(all=True).on(faces.filter(np.isclose(faces.area, figure.area))[-1])
+        assert len(rim) == len(top)
+        made = turned.chamfer(rim, 0.3)
+        assert made.volume == pytest.approx(flat.volume, abs=1e-6)
+        assert made.to_mesh().certificate.ok and made.components == body.components
+        assert made.genus == body.genus
+
+
+def test_fillets_where_edges_vanish_have_the_profile_of_their_arc() -> None:
+    body = HOUSE.extrude(2)
+    made = body.fillet(body.edges().on("z", 2), 1.2, 16)
+    assert made.genus == 0 and made.to_mesh().certificate.ok and not made.findings
+    for angle in (22.5, 45, 67.5):
+        inside = 1.2 * (1 - math.cos(math.radians(angle)))
+        height = 2 - 1.2 + 1.2 * math.sin(math.radians(angle))
+        section = made.slice(height)
+        assert section.area == pytest.approx(HOUSE.offset(-inside, "miter").area, abs=1e-6)
+    # In the floor of a pocket, the other way round.
+    block = b.box(6, 6, 4).translate(-1, -1, -1)
+    pocket = block - body.translate(0, 0, 1)
+    floor = pocket.edges().on("z", 1)
+    filled = pocket.fillet(floor, 1.2, 16)
+    mirrored = made.scale((1, 1, -1)).translate(0, 0, 3)
+    assert filled.volume == pytest.approx((block - mirrored).volume, abs=1e-6)
+
+
+def test_blends_leave_something_of_each_part_of_a_face() -> None:
+    bars = (b.box(9, 1, 2) | b.box(1, 9, 2)).edges().on("z", 2)
+    with pytest.raises(b.InvalidParameterError, match="no room at"):
+        (b.box(9, 1, 2) | b.box(1, 9, 2)).chamfer(bars, 0.6)
+
+
 # Refusals
 
 

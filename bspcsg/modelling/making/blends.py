@@ -15,18 +15,19 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import LimitError, invalid_parameter
 from ...geometry.polygon import triangulate_face
-from ...geometry.transform import LATTICE_REACH
+from ...geometry.transform import LATTICE_REACH, cos_sin
 from ...operations.setops import intersection, union
 from ...parameters import positive, refuse_many_corners, sides_around
 from ...shapes.primitives import half_space
 from ...solid.leaf import TreeLeaf
 from ...solid.solid import Solid, from_leaf
+from .caps import cap_tool, is_cap
 from .chains import ChainTools, closed_chains
 from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
 from .planes import Planes
 from .rings import walls
-from .rooms import no_room, refuse_no_room
+from .rooms import has_room, no_room, refuse_no_room
 from .skeleton import Skeleton, flatness, skeleton_of
 from .stages import carried, ready, refused
 
@@ -96,6 +97,24 @@ class _Blend:
             cosine = np.einsum("ij,ij->i", inward[:, 0], inward[:, 1])
             widths[own] *= np.sqrt((1 + cosine) / np.maximum(1 - cosine, _FOLDED))
         return widths
+
+    @cached_property
+    def caps(self) -> list[int]:
+        """The faces all of whose edges are chosen, and have no room side by side."""
+        faces = np.unique(self.skeleton.sides[sorted(self.chosen)]).tolist()
+        return [
+            face
+            for face in faces
+            if is_cap(self.skeleton, face, self.chosen)
+            and not has_room(self.skeleton, face, self.widths)
+        ]
+
+    def cap_tool(self, face: int, sign: int) -> Solid:
+        """Return what is taken off all along the outline of a face."""
+        angles = np.arange(self.profile.steps + 1) / self.profile.steps
+        cosines, sines = np.array([cos_sin(90 * angle) for angle in angles]).T
+        profile = self.profile.size * np.column_stack([1 - cosines, sines])
+        return cap_tool(self.skeleton, face, sign, profile, self.pitch)
 
     def sign(self, edge: int) -> int:
         """Return 1 for a convex edge, -1 for one that is convex in the complement."""
@@ -399,7 +418,7 @@ def _pitch_for(skeleton: Skeleton, pitch: int) -> int:
 def _once(solid: Solid, blend: _Blend) -> Solid:
     """Return the solid after all edges of one stage are blended."""
     blend.refuse_corners()
-    refuse_no_room(blend.skeleton, blend.widths)
+    refuse_no_room(blend.skeleton, blend.widths, blend.caps)
     cutters, fillers = _parts(blend)
     return (solid | union(fillers)) - union(cutters) if fillers else solid - union(cutters)
 
@@ -433,7 +452,12 @@ def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
     near = _SYMMETRICAL * blend.profile.size
     tools = ChainTools(blend.skeleton, blend.section, near, blend.pitch)
     done: set[int] = set()
-    for chain in closed_chains(blend.skeleton, blend.chosen):
+    for face in blend.caps:
+        own = np.flatnonzero((blend.skeleton.sides == face).any(axis=1)).tolist()
+        sign = blend.sign(own[0])
+        cutters[sign < 0].append(blend.cap_tool(face, sign))
+        done.update(own)
+    for chain in closed_chains(blend.skeleton, blend.chosen - done):
         tool = tools.tool(chain)
         if tool is not None:
             cutters[blend.sign(chain[0][0]) < 0].append(tool)
