@@ -529,6 +529,22 @@ def test_fillets_where_edges_vanish_have_the_profile_of_their_arc() -> None:
     assert filled.volume == pytest.approx((block - mirrored).volume, abs=1e-6)
 
 
+@pytest.mark.parametrize("turn", TURNS[1:])
+def test_turned_faces_on_which_edges_vanish_leave_no_skins(turn: Any) -> None:
+    outline = [(-5.088, 0.456), (3.177, -0.55), (-1.566, 5.359), (-1.739, 4.877), (-2.357, 4.58)]
+    body = b.Region([outline]).extrude(3)
+    part = body.rotate(turn)
+    faces = part.faces()
+    area = body.faces().on("z", 3).area
+    rim = part.edges(all=True).on(faces.filter(np.isclose(faces.area, area))[-1])
+    made = part.fillet(rim, 0.75, 21)
+    assert made.genus == 0 and made.components == 1 and made.to_mesh().certificate.ok
+    left = made.edges(all=True)
+    assert np.abs(left.angle - 180)[left.length > 1e-2].max() < 179
+    straight = body.fillet(body.edges(all=True).on("z", 3), 0.75, 21)
+    assert made.volume == pytest.approx(straight.volume, abs=1e-6)
+
+
 def test_blends_leave_something_of_each_part_of_a_face() -> None:
     bars = (b.box(9, 1, 2) | b.box(1, 9, 2)).edges().on("z", 2)
     with pytest.raises(b.InvalidParameterError, match="no room at"):

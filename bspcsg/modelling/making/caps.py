@@ -11,6 +11,7 @@ import numpy as np
 
 from ..._types import FloatArray
 from ...bsp import Region
+from ...errors import LimitError
 from ...operations.setops import union
 from ...solid.solid import Solid
 from ..planar.offsetting import offset_region
@@ -54,30 +55,48 @@ def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitc
     Raises
     ------
     InvalidParameterError
-        If nothing would be left of a part of the face.
+        If nothing would be left of a part of the face, or it has more than a thousand corners.
     """
     frame = _frame(skeleton.normals[face] * sign)
     loops = [points @ frame.T for points in face_loops(skeleton, face)]
     level = float(np.concatenate(loops)[:, 2].mean())
     figure = Region([points[:: int(sign), :2] for points in loops], pitch=pitch)
     beyond, size = _BEYOND * 10.0**pitch, float(profile[-1, 1])
-    roofs = [roof(part) for part in figure.components]
-    for part, above in zip(figure.components, roofs, strict=True):
-        if above.vertices[:, 2].max() < (1 - _SAME) * profile[-1, 0]:
+    roofs = []
+    for part in figure.components:
+        above = _roof_or_none(part)
+        if above is None or above.vertices[:, 2].max() < (1 - _SAME) * profile[-1, 0]:
             place = np.append(part.to_polygons()[0][0], level) @ frame
             raise no_room(skeleton, place, [face])
-    whole, grown = union(roofs), offset_region(figure, beyond, "miter")
+        roofs.append(above)
+    # Evaluated, so that it is moved as one; on feet, so that its floor is not that of the blocks.
+    whole = union([*roofs, figure.extrude(size).translate(0, 0, -size)]).normalized()
+    grown = offset_region(figure, beyond, "miter")
     tools = []
     for (inner, low), (outer, high) in pairwise(profile.tolist()):
         # The profile is that of a convex body, below each of its lines.
         steep = (high - low) / (outer - inner)
         base = low - steep * inner
         block = grown.extrude(size + beyond - base)
-        tools.append((block - whole.scale((1, 1, steep))).translate(0, 0, base))
-    placed = np.eye(4)
-    placed[:3, :3] = frame.T
-    placed[:3, 3] = frame[2] * (level - size)
-    return union(tools).transform(placed)
+        placed = [_placed(frame, level - size + base, slope) for slope in (1.0, steep)]
+        tools.append(block.transform(placed[0]) - whole.transform(placed[1]))
+    return union(tools)
+
+
+def _placed(frame: FloatArray, height: float, steep: float) -> FloatArray:
+    """Return the map that puts what stands on a plane on another one, higher or lower by a part."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = frame.T * (1, 1, steep)
+    matrix[:3, 3] = frame[2] * height
+    return matrix
+
+
+def _roof_or_none(figure: Region) -> Solid | None:
+    """Return the roof over a figure, or None if it has too many corners or unclear ones."""
+    try:
+        return roof(figure)
+    except LimitError:
+        return None
 
 
 def _frame(normal: FloatArray) -> FloatArray:
