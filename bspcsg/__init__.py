@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from .modelling.bodies.level_sets import level_set
     from .modelling.bodies.sums import minkowski
     from .modelling.making.edges import EdgeSelection
+    from .modelling.making.faces import FaceSelection
     from .modelling.making.heights import surface
     from .modelling.making.lofting import loft
     from .modelling.making.paths import helix, spline
@@ -85,6 +86,7 @@ __all__ = [
     "BspcsgError",
     "CheckReport",
     "EdgeSelection",
+    "FaceSelection",
     "Finding",
     "FormatError",
     "InternalError",
@@ -148,6 +150,7 @@ _MODULES = {
     "_core": "__version__",
     "bsp.sets.region": "Region",
     "modelling.making.edges": "EdgeSelection",
+    "modelling.making.faces": "FaceSelection",
     "modelling.making.heights": "surface",
     "modelling.making.lofting": "loft",
     "modelling.making.paths": "helix spline",
@@ -174,7 +177,7 @@ _MODULES = {
     "solid.solid": "Solid",
 }
 #: Parts of the package that need no import of their own.
-_PARTS = frozenset({"bsp", "csg", "errors", "io", "trimesh_engine"})
+_PARTS = frozenset({"bsp", "csg", "errors", "io", "parts", "trimesh_engine"})
 _HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 

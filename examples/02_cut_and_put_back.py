@@ -12,5 +12,7 @@ for k in range(1, 21):
     solid = (solid - tool) | (solid & tool)
     if k % 5 == 0:
         mesh = solid.to_mesh()
-        print(f"after {k:2d} rounds: {len(mesh.faces)} triangles, {mesh.surface_count} part,", end=" ")
+        print(
+            f"after {k:2d} rounds: {len(mesh.faces)} triangles, {mesh.surface_count} part,", end=" "
+        )
         print("equal to the start:", solid.equals(start))

@@ -67,15 +67,16 @@ def extrude(
         Parts of the height with straight walls, at least 1. By default one for each 32nd of a turn
         of `twist`. What does not change on the way up needs no more than one.
     taper : float
-        Degrees that the walls lean inwards, outwards if it is negative; between -90 and 90.
+        Degrees that the walls lean inwards, outwards if it is negative; between -90 and 90. Walls
+        that meet end there, as in a roof, which may be lower than `h`.
 
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range, or a leaning wall loses its lower or upper edge; the
-        message says where.
+        If a number is out of its range, or a leaning wall that turns or shrinks, too, loses its
+        upper edge; the message says where.
     LimitError
-        If the solid would have too many corners.
+        If the solid would have too many corners, or walls that vanish are more than a thousand.
 
     Notes
     -----

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..errors import invalid_parameter
+from ..above import above
+from ..errors import InvalidParameterError, invalid_parameter
 from ..geometry.polygon import directed_edges, runs_clockwise, triangulate
 from ..geometry.transform import cos_sin
 from ..mesh.weld import welded
@@ -48,7 +50,12 @@ class Rise:
     @property
     def is_upright(self) -> bool:
         """True if nothing changes."""
-        return self.twist == 0 and self.scale == (1.0, 1.0) and self.inset == 0
+        return self.only_leans and self.inset == 0
+
+    @property
+    def only_leans(self) -> bool:
+        """True if walls lean, and do not turn or shrink."""
+        return self.twist == 0 and self.scale == (1.0, 1.0)
 
     def section(self, points: FloatArray, lean: FloatArray, level: int) -> FloatArray:
         """Return the points of a level, 0 being the lower end.
@@ -77,11 +84,16 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     Raises
     ------
     InvalidParameterError
-        If a wall leans so far inwards that its edge vanishes.
+        If a wall that turns or shrinks, too, leans so far that its edge vanishes.
     """
+    lean, lost = _lean(contours, rise.inset)
+    if lost is not None and rise.only_leans:
+        solid: Solid = above("leaning")(contours, rise.height, rise.inset)
+        return solid.translate(0, 0, rise.base)
+    if lost is not None:
+        raise _no_room(*lost, "the edge that begins there vanishes")
     points = np.concatenate(contours)
     holes = np.concatenate([np.full(len(c), runs_clockwise(c)) for c in contours])
-    lean = _lean(contours, rise.inset)
     levels = [rise.section(points, lean, k) for k in range(rise.slices + 1)]
     edges = directed_edges(contours)
     bands = [
@@ -93,32 +105,41 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     return _closed(np.concatenate(levels), faces)
 
 
-def _lean(contours: Sequence[FloatArray], inset: float) -> FloatArray:
-    """Return how far each corner moves when all walls move inwards."""
+#: A contour, and the number of one of its corners.
+_Place: TypeAlias = tuple[FloatArray, int]
+
+
+def _lean(contours: Sequence[FloatArray], inset: float) -> tuple[FloatArray, _Place | None]:
+    """Return how far each corner moves when all walls move inwards, and where an edge vanishes."""
     if inset == 0:
-        return np.zeros((sum(map(len, contours)), 2))
-    return np.concatenate([_corner_moves(contour, inset) for contour in contours])
+        return np.zeros((sum(map(len, contours)), 2)), None
+    found = [_corner_moves(contour, inset) for contour in contours]
+    lost = (
+        (contour, int(gone[0]))
+        for contour, (_, gone) in zip(contours, found, strict=True)
+        if len(gone)
+    )
+    return np.concatenate([moves for moves, _ in found]), next(lost, None)
 
 
-def _corner_moves(contour: FloatArray, inset: float) -> FloatArray:
+def _corner_moves(contour: FloatArray, inset: float) -> tuple[FloatArray, IndexArray]:
+    """Return how far the corners of a contour move, and which edges vanish."""
     along = np.roll(contour, -1, axis=0) - contour
     inward = np.column_stack([-along[:, 1], along[:, 0]])
     inward /= np.linalg.norm(inward, axis=1)[:, None]
     before = np.roll(inward, 1, axis=0)
     opening = 1 + (inward * before).sum(axis=1)
-    _refuse_where(opening < _SHARPEST, contour, "there the outline turns back on itself")
+    for corner in np.flatnonzero(opening < _SHARPEST).tolist():
+        raise _no_room(contour, corner, "there the outline turns back on itself")
     moves = inset * (inward + before) / opening[:, None]
     shrunk = along + np.roll(moves, -1, axis=0) - moves
-    _refuse_where((shrunk * along).sum(axis=1) <= 0, contour, "the edge that begins there vanishes")
-    return np.asarray(moves)
+    return moves, np.flatnonzero((shrunk * along).sum(axis=1) <= 0)
 
 
-def _refuse_where(wrong: np.ndarray, contour: FloatArray, reason: str) -> None:
-    if wrong.any():
-        place = int(np.flatnonzero(wrong)[0])
-        x, y = contour[place].tolist()
-        message = f"The taper has no room at ({x:g}, {y:g}): {reason}. Choose a smaller one."
-        raise invalid_parameter(message, [place])
+def _no_room(contour: FloatArray, corner: int, reason: str) -> InvalidParameterError:
+    x, y = contour[corner].tolist()
+    message = f"The taper has no room at ({x:g}, {y:g}): {reason}. Choose a smaller one."
+    return invalid_parameter(message, [corner])
 
 
 def _band(

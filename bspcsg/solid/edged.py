@@ -1,6 +1,6 @@
-"""The edges of a solid, and what replaces them, as methods."""
+"""The edges of a solid, what replaces them, and the holes in its faces, as methods."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from .._types import Scalar
 from ..above import above
@@ -9,30 +9,44 @@ from .counting import counted, uncounted
 
 if TYPE_CHECKING:
     from ..modelling.making.edges import EdgeSelection
+    from ..modelling.making.faces import FaceSelection
     from .solid import Solid
 
 
 class Edged:
-    """A solid with edges between plane faces."""
+    """A solid with edges and faces."""
 
     __slots__ = ()
 
     @uncounted
-    def edges(self) -> "EdgeSelection":
-        """Return the edges between plane faces, to choose some of them (see `EdgeSelection`).
+    def edges(self, *, all: bool = False, angle: Scalar = 30.0) -> "EdgeSelection":  # noqa: A002
+        """Return the edges at which faces bend, to choose some of them (see `EdgeSelection`).
+
+        The lines between the facets of a round surface are none. The rim of a bore is one: it comes
+        as the edges of its facets.
+
+        Parameters
+        ----------
+        all : bool
+            True for the edges between all plane faces, facets among them.
+        angle : float
+            Degrees; faces bend by more than this at an edge.
 
         Raises
         ------
+        InvalidParameterError
+            If the angle is not from 0 to below 180.
         UnboundedError
             If the solid reaches to infinity.
 
         Examples
         --------
         >>> import bspcsg as csg
-        >>> len(csg.box(1, 2, 3).edges().parallel("z"))
-        4
+        >>> part = csg.box(30, 20, 10) - csg.cylinder(10, d=8).translate(15, 10, 0)
+        >>> len(part.edges().parallel("z")), len(part.edges(all=True).parallel("z"))
+        (4, 36)
         """
-        edges: EdgeSelection = above("edges")(self)
+        edges: EdgeSelection = above("edges")(self, all=all, angle=angle)
         return edges
 
     @counted
@@ -41,7 +55,9 @@ class Edged:
 
         Material is taken off along convex edges and filled in along concave ones. At corners the
         new surfaces run into each other. Where a concave edge ends between two convex ones, or the
-        other way around, it comes first, and the two run on along the end of its new surface.
+        other way around, it comes first, and the two run on along the end of its new surface. Where
+        all edges of a face are chosen whose walls are square to it, such as those of a text, short
+        ones may vanish.
 
         Parameters
         ----------
@@ -74,7 +90,8 @@ class Edged:
 
         Material is taken off along convex edges and filled in along concave ones, to a cylinder
         that touches both faces. Where three such edges meet and all are chosen, the corner is part
-        of a ball. Convex and concave edges that meet are taken in turn, as by `chamfer`.
+        of a ball. Convex and concave edges that meet are taken in turn, and short edges of a face
+        may vanish, as by `chamfer`.
 
         Parameters
         ----------
@@ -102,4 +119,163 @@ class Edged:
         True
         """
         solid: Solid = above("fillet")(self, edges, radius, segments)
+        return solid
+
+    @counted
+    def hole(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with round holes, square to a face.
+
+        Parameters
+        ----------
+        face : FaceSelection
+            One flat face. It may be that of the solid before it got other holes.
+        at : (3,) or (n, 3) float, optional
+            Where the holes begin: a point on the face, or several. By default its middle.
+        d, r : float
+            Diameter, or radius instead.
+        depth : float, optional
+            By default they go through the whole solid.
+        segments : int
+            Sides around, at least 3.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the selection is not one flat face, the solid has no such face at a point, or a
+            number is out of its range; the message says which.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> plate = csg.box(30, 20, 5)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> plate.hole(top, [(5, 5, 5), (25, 5, 5)], d=4).genus
+        2
+        >>> plate.hole(top, r=4, depth=2, segments=4).volume
+        2936.0
+        """
+        solid: Solid = above("hole")(self, face, at, d=d, r=r, depth=depth, segments=segments)
+        return solid
+
+    @counted
+    def counterbore(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        head_d: Scalar | None = None,
+        head_r: Scalar | None = None,
+        head_depth: Scalar,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with holes that are wider at a face, for cylindrical heads of screws.
+
+        Parameters
+        ----------
+        face : FaceSelection
+        at : (3,) or (n, 3) float, optional
+        d, r : float
+        depth : float, optional
+        segments : int
+            As for `hole`; the depth is that of the whole hole.
+        head_d, head_r : float
+            Diameter of the wide part, or radius instead.
+        head_depth : float
+            Depth of the wide part.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `hole`, or if the wide part is not wider, or not less deep.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> plate = csg.box(30, 20, 8)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> screwed = plate.counterbore(top, d=4.5, head_d=8, head_depth=4.4)
+        >>> screwed.genus, len(screwed.faces())
+        (1, 9)
+        """
+        solid: Solid = above("counterbore")(
+            self,
+            face,
+            at,
+            d=d,
+            r=r,
+            head_d=head_d,
+            head_r=head_r,
+            head_depth=head_depth,
+            depth=depth,
+            segments=segments,
+        )
+        return solid
+
+    @counted
+    def countersink(
+        self,
+        face: "FaceSelection",
+        at: Any = None,
+        *,
+        d: Scalar | None = None,
+        r: Scalar | None = None,
+        head_d: Scalar | None = None,
+        head_r: Scalar | None = None,
+        angle: Scalar = 90.0,
+        depth: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> "Solid":
+        """Return the solid with holes that open as a cone at a face, for flat heads of screws.
+
+        Parameters
+        ----------
+        face : FaceSelection
+        at : (3,) or (n, 3) float, optional
+        d, r : float
+        depth : float, optional
+        segments : int
+            As for `hole`; the depth is that of the whole hole.
+        head_d, head_r : float
+            Diameter of the cone in the face, or radius instead.
+        angle : float
+            Degrees from side to side of the cone: 90 for metric screws, 82 for those in inches.
+
+        Raises
+        ------
+        InvalidParameterError
+            As for `hole`, or if the cone is not wider, or deeper than the hole.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> plate = csg.box(30, 20, 5)
+        >>> top = plate.faces().sort_by("z")[-1]
+        >>> screwed = plate.countersink(top, [(5, 10, 5), (25, 10, 5)], d=4.5, head_d=9)
+        >>> screwed.genus, len(screwed.faces())
+        (2, 10)
+        """
+        solid: Solid = above("countersink")(
+            self,
+            face,
+            at,
+            d=d,
+            r=r,
+            head_d=head_d,
+            head_r=head_r,
+            angle=angle,
+            depth=depth,
+            segments=segments,
+        )
         return solid

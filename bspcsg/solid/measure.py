@@ -8,13 +8,14 @@ from typing import Any, Self
 import numpy as np
 
 from .._core import Tree
-from .._types import FloatArray, IndexArray, SideArray
+from .._types import FloatArray, SideArray
 from ..errors import Finding, core_errors, deprecated
 from ..mesh import interop
 from ..mesh.boxes import boxes_of
 from ..mesh.mesh import Mesh, surfaces_of
 from ..parameters import at_least
 from .sides import sides_of
+from .triangles import Triangles, triangles_of
 
 #: The moduli of `volume_residues`.
 _PRIMES = (2**61 - 1, 2**61 - 31)
@@ -68,9 +69,24 @@ class Measured(ABC):
         return self.to_mesh().vertices
 
     @property
-    def faces(self) -> IndexArray:
-        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only."""
-        return self.to_mesh().faces
+    def faces(self) -> Triangles:
+        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only.
+
+        Called, they give the faces that they make up, to choose some of them: flat ones, and round
+        ones such as the wall of a bore (see `FaceSelection`). Facets of one round surface are those
+        that bend by 30 degrees at most, or another ``angle``, and of which neither is more than
+        twice as wide as the other; ``all=True`` gives them one by one.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.cylinder(10, d=8)
+        >>> part.faces.shape, len(part.faces()), len(part.faces(all=True))
+        ((124, 3), 3, 34)
+        >>> part.faces().sort_by("z")[-1].normal.tolist()
+        [[0.0, 0.0, 1.0]]
+        """
+        return triangles_of(self, self.to_mesh().faces)
 
     @property
     def sources(self) -> tuple[int, ...]:

@@ -62,6 +62,7 @@ def failure(kind: type[b.BspcsgError]) -> Callable[[], b.BspcsgError]:
 EXAMPLES: dict[type, Callable[[], Any]] = {
     b.CheckReport: (b.cube(2) - b.cube(1)).validate,
     b.EdgeSelection: lambda: b.box(1, 2, 3).edges().parallel("z"),
+    b.FaceSelection: lambda: b.box(1, 2, 3).faces().parallel("z"),
     b.Finding: lambda: b.Finding("code", "note", "A sentence.", (1, 2), 5),
     b.Assembly: lambda: b.Assembly("a", [b.cube(1)], color=(1, 0, 0)),
     b.Material: lambda: b.Material((1, 0.5, 0)),
@@ -164,6 +165,8 @@ def assert_same(a: Any, c: Any) -> None:
         assert [(p.path, p.color, p.solid) for p in a] == [(p.path, p.color, p.solid) for p in c]
     elif isinstance(a, b.EdgeSelection):
         assert_same([a.ends, a.normals, a.angle], [c.ends, c.normals, c.angle])
+    elif isinstance(a, b.FaceSelection):
+        assert_same([a.middle, a.normal, a.area], [c.middle, c.normal, c.area])
     elif isinstance(a, bsp.StabTree):
         assert (a.stats(), a.pitch, a.dimension) == (c.stats(), c.pitch, c.dimension)
     elif isinstance(a, bsp.RayCaster):

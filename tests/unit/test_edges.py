@@ -1,12 +1,14 @@
 """Edges of solids, chamfers and fillets."""
 
 import math
+import pickle
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
 import bspcsg as b
+from bspcsg.modelling.making import blends
 
 BOX = b.box(4, 3, 2)
 STEP = b.box(4, 4, 2) - b.box(2, 2, 2).translate(2, 2, 0)
@@ -35,7 +37,7 @@ def test_edges_of_a_box() -> None:
     top = edges.where(lambda e: e.middle[:, 2] == 2)
     assert len(top) == 4 and (top.ends[:, :, 2] == 2).all()
     assert np.allclose(np.abs((top.normals * top.direction[:, None]).sum(axis=2)), 0)
-    assert repr(top) == "EdgeSelection(4 of 12, lengths 3 to 4)"
+    assert repr(top) == "EdgeSelection(4 of 12, length 3 to 4)"
     assert repr(edges.where(np.zeros(12, bool))) == "EdgeSelection(0 of 12)"
 
 
@@ -70,6 +72,121 @@ def test_selections_say_what_is_wrong_with_conditions() -> None:
         edges | b.cube(1).edges()
     with pytest.raises(b.UnboundedError):
         b.half_space((0, 0, 1)).edges()
+
+
+BORED = b.box(30, 20, 10) - b.cylinder(10, d=8).translate(15, 10, 0)
+
+
+# Found: a fillet of the upright edges of a box with a bore took the facets of the bore, too.
+@pytest.mark.parametrize("turn", TURNS)
+def test_facets_of_a_bore_have_no_edges_between_them(turn: Any) -> None:
+    part = BORED.rotate(turn)
+    edges = part.edges()
+    assert len(edges) == 12 + 64 and len(part.edges(all=True)) == 12 + 64 + 32
+    upright = edges.filter(lambda e: np.isclose(e.length, 10))
+    assert len(upright) == 4
+    soft = part.fillet(upright, 3)
+    assert part.volume - soft.volume == pytest.approx(4 * 9 * 10 * segment(8), rel=1e-6)
+    assert (
+        len(soft.faces()) == 7 + 4
+        and len(BORED.fillet(BORED.edges().parallel("z"), 3).faces) == 272
+    )
+
+
+def test_edges_bend_by_more_than_the_angle() -> None:
+    """Sides of a circle of twelve bend by 30 degrees, however the body is turned."""
+    for turn in TURNS:
+        assert len(b.cylinder(5, r=1, segments=12).rotate(turn).edges()) == 24
+        assert len(b.cylinder(5, r=1, segments=11).rotate(turn).edges()) == 33
+    assert len(b.cylinder(5, r=1, segments=12).edges(angle=29.9)) == 36
+    assert len(b.box(1, 2, 3).edges(angle=91)) == 0
+
+
+@pytest.mark.parametrize("turn", TURNS)
+def test_faces_are_flat_ones_and_round_ones(turn: Any) -> None:
+    part = BORED.rotate(turn)
+    faces = part.faces()
+    assert len(faces) == 7 and len(part.faces(all=True)) == 6 + 32
+    assert faces.area.sum() == pytest.approx(part.area)
+    (bore,) = faces.filter(~faces.is_flat)
+    assert bore.area[0] == pytest.approx(32 * 8 * math.sin(math.pi / 32) * 10)
+    assert not bore.normal.any() and np.allclose(np.linalg.norm(faces.normal, axis=1).sum(), 6)
+    assert len(part.edges().on(bore)) == 64 and len(faces.on(part.edges().on(bore))) == 3
+    assert len(part.edges(all=True).on(bore)) == 96
+    assert np.allclose(bore.middle, b.Solid(part.vertices, part.faces).centroid)
+
+
+def test_faces_of_round_bodies() -> None:
+    assert [len(body.faces()) for body in (b.sphere(5), b.torus(5, 1), b.cylinder(3, 1))] == [
+        1,
+        1,
+        3,
+    ]
+    # A plane face and the round edge beside it bend as little as facets do, but are not as wide.
+    body = b.cube(20)
+    soft = body.fillet(body.edges(), 2).faces()
+    flat = soft.filter(soft.is_flat)
+    assert len(soft) == 26 and len(flat) == 6 and np.allclose(flat.area, 16**2)
+    assert len(b.Solid.empty().faces()) == 0 == len(b.Solid.empty().faces().group_by("z"))
+
+
+def test_selections_are_sorted_and_grouped() -> None:
+    for things in (BORED.edges(), BORED.faces()):
+        heights = [float(one.middle[0, 2]) for one in things.sort_by("z")]
+        assert heights == sorted(heights) and len(heights) == len(things)
+        groups = things.group_by("z")
+        assert sum(map(len, groups)) == len(things) and len(groups) == 3
+        assert np.allclose(groups[-1].middle[:, 2], 10)
+        by_function = things.group_by(lambda some: some.middle[:, 2])
+        assert [len(group) for group in by_function] == [len(group) for group in groups]
+        assert len(things.sort_by((0, 0, -2))[:3]) == 3
+    assert [len(group) for group in BORED.edges().group_by("length")] == [64, 4, 4, 4]
+    assert BORED.faces().sort_by("area")[-1].normal.tolist() in ([[0, 0, 1]], [[0, 0, -1]])
+    assert sorted(BORED.edges().group_by("angle")[0].angle.round(9)) == [90.0] * 76
+
+
+def test_selections_lie_in_planes_and_are_combined() -> None:
+    edges, faces = BORED.edges(), BORED.faces()
+    assert len(edges.on("z", 10)) == 4 + 32 and len(edges.on((0, 0, -2), -20)) == 4 + 32
+    assert len(faces.on("x", 30)) == 1 and len(faces.on("x", 29)) == 0
+    assert len(faces.parallel("z")) == 2 and len(faces.parallel((1, 1, 0))) == 0
+    top = edges.on(faces.sort_by("z")[-1])
+    assert len(top) == 36 and len(top & edges.parallel("x")) == 2 and len(edges - top) == 40
+    assert len(faces.parallel("x") | faces.parallel("y")) == 4
+    with pytest.raises(TypeError):
+        edges | faces
+
+
+def test_triangles_know_their_solid_until_something_is_made_of_them() -> None:
+    triangles = BORED.faces
+    assert (triangles == BORED.to_mesh().faces).all() and not triangles.flags.writeable
+    made: list[Any] = [triangles[:4], triangles + 1, pickle.loads(pickle.dumps(triangles))]
+    for array in made:
+        with pytest.raises(b.InvalidParameterError, match="no solid's any more"):
+            array()
+
+
+@pytest.mark.parametrize(
+    ("call", "word"),
+    [
+        (lambda: BOX.edges(angle=180), "angle"),
+        (lambda: BOX.edges(all=cast("Any", 7)), "all"),
+        (lambda: BOX.faces(angle=-1), "angle"),
+        (lambda: BOX.edges().sort_by("size"), "There is no key 'size'; there are x, y, z, length"),
+        (lambda: BOX.faces().group_by("length"), "there are x, y, z, area"),
+        (lambda: BOX.edges().sort_by(lambda e: e.ends), "one finite number for each of the 12"),
+        (lambda: BOX.edges().group_by(lambda e: e.length * math.inf), "finite"),
+        (lambda: BOX.edges().on("z"), "offset"),
+        (lambda: BOX.edges().on(BOX.faces(), 3), "offset belongs to a plane"),
+        (lambda: BOX.edges().on(STEP.faces()), "different solids"),
+        (lambda: BOX.edges() & STEP.edges(), "different solids"),
+    ],
+)
+def test_selections_refuse_what_makes_no_sense(call: Any, word: str) -> None:
+    with pytest.raises(b.InvalidParameterError, match=word):
+        call()
+    with pytest.raises(b.UnboundedError):
+        b.half_space((0, 0, 1)).normalized().edges()
 
 
 # Chamfers
@@ -269,7 +386,7 @@ def test_a_boss_of_many_sides_and_its_plate_are_round_in_one_call(sides: int) ->
     part = b.box(20, 20, 3) | boss
     smooth = part.fillet(part.edges(), 0.25, segments=16)
     assert 2 < part.volume - smooth.volume < 3
-    left = smooth.edges()
+    left = smooth.edges(all=True)
     bend = np.abs(np.asarray(left.angle)[np.asarray(left.length) > 1e-3] - 180)
     assert bend.max() < 30
     assert smooth.genus == 0 and smooth.to_mesh().certificate.ok
@@ -320,6 +437,120 @@ def test_blends_count_once_in_a_block() -> None:
     assert u.solid.volume < 8
 
 
+# Closed chains
+
+
+def rims(part: b.Solid) -> b.EdgeSelection:
+    """Return the short edges, those around bores and bosses."""
+    return part.edges().filter(lambda e: e.length < 2.9)
+
+
+# Found: each of 132 edges around four bosses was evaluated twice, which took ten times as long.
+@pytest.mark.parametrize("verb", ["fillet", "chamfer"])
+@pytest.mark.parametrize("turn", [TURNS[0], TURNS[2]])
+@pytest.mark.parametrize(
+    "body",
+    [
+        b.box(20, 20, 3) - b.cylinder(9, 4, segments=24).translate(10, 10, -3),
+        b.box(20, 20, 3) | b.cylinder(9, 4, segments=24).translate(10, 10, 0),
+        b.box(20, 20, 3) - b.cylinder(9, r1=5, r2=3, segments=17).translate(10, 10, -3),
+        b.box(20, 20, 3) - b.cylinder(9, 4, segments=12).translate(10, 10, 1),
+    ],
+    ids=["bore", "boss", "cone", "pocket"],
+)
+def test_closed_chains_are_one_tool(
+    body: b.Solid, turn: Any, verb: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    part = body.rotate(turn)
+    each = getattr(part, verb)(rims(part), 0.4)
+    with monkeypatch.context() as patch:
+        patch.setattr(blends, "closed_chains", lambda *_: [])
+        apart = getattr(part, verb)(rims(part), 0.4)
+    assert each.volume == pytest.approx(apart.volume, abs=1e-6)
+    assert (each.genus, each.components) == (apart.genus, apart.components)
+    assert each.to_mesh().certificate.ok and len(each.faces) <= 1.1 * len(apart.faces)
+    monkeypatch.delattr(blends._Blend, "cutter")
+    assert getattr(part, verb)(rims(part), 0.4).volume == each.volume
+
+
+def test_chains_whose_corners_are_no_mirror_images_are_taken_edge_by_edge() -> None:
+    """The rim of a bore that leans: its angle changes from edge to edge."""
+    bore = b.cylinder(40, 3, segments=9, center=True).rotate(20, "x")
+    plate = b.box(20, 20, 4, center=True) - bore
+    part = plate.chamfer(rims(plate), 0.2)
+    assert part.genus == 1 and part.to_mesh().certificate.ok
+    chamfered = plate.volume - part.volume
+    around = rims(plate)
+    wedges = 0.2**2 / 2 * np.sin(np.radians(around.angle)) * around.length
+    assert chamfered == pytest.approx(wedges.sum(), rel=0.05)
+
+
+# Faces on which edges vanish
+
+HOUSE = b.Region([(0, 0), (4, 0), (4, 3), (3.8, 4), (0, 4)])
+
+
+# Found: `chamfer` of the outline of a text by 0.3 had no room, for its curves have short edges.
+@pytest.mark.parametrize("turn", TURNS)
+def test_edges_may_vanish_where_all_of_a_face_are_blended(turn: Any) -> None:
+    for figure in (HOUSE, b.text("e", size=10), HOUSE - HOUSE.scale(0.3).translate(0.8, 0.8)):
+        body = figure.extrude(2)
+        top = body.edges(all=True).on("z", 2)
+        flat = body.chamfer(top, 0.3)
+        for z in (1.71, 1.8, 1.99):
+            assert flat.slice(z).area == pytest.approx(
+                figure.offset(1.7 - z, "miter").area, abs=1e-3
+            )
+        turned = body.rotate(turn)
+        faces = turned.faces()
+        rim = turned.edges(all=True).on(faces.filter(np.isclose(faces.area, figure.area))[-1])
+        assert len(rim) == len(top)
+        made = turned.chamfer(rim, 0.3)
+        assert made.volume == pytest.approx(flat.volume, abs=1e-6)
+        assert made.to_mesh().certificate.ok and made.components == body.components
+        assert made.genus == body.genus
+
+
+def test_fillets_where_edges_vanish_have_the_profile_of_their_arc() -> None:
+    body = HOUSE.extrude(2)
+    made = body.fillet(body.edges().on("z", 2), 1.2, 16)
+    assert made.genus == 0 and made.to_mesh().certificate.ok and not made.findings
+    for angle in (22.5, 45, 67.5):
+        inside = 1.2 * (1 - math.cos(math.radians(angle)))
+        height = 2 - 1.2 + 1.2 * math.sin(math.radians(angle))
+        section = made.slice(height)
+        assert section.area == pytest.approx(HOUSE.offset(-inside, "miter").area, abs=1e-6)
+    # In the floor of a pocket, the other way round.
+    block = b.box(6, 6, 4).translate(-1, -1, -1)
+    pocket = block - body.translate(0, 0, 1)
+    floor = pocket.edges().on("z", 1)
+    filled = pocket.fillet(floor, 1.2, 16)
+    mirrored = made.scale((1, 1, -1)).translate(0, 0, 3)
+    assert filled.volume == pytest.approx((block - mirrored).volume, abs=1e-6)
+
+
+@pytest.mark.parametrize("turn", TURNS[1:])
+def test_turned_faces_on_which_edges_vanish_leave_no_skins(turn: Any) -> None:
+    outline = [(-5.088, 0.456), (3.177, -0.55), (-1.566, 5.359), (-1.739, 4.877), (-2.357, 4.58)]
+    body = b.Region([outline]).extrude(3)
+    part = body.rotate(turn)
+    faces = part.faces()
+    area = body.faces().on("z", 3).area
+    rim = part.edges(all=True).on(faces.filter(np.isclose(faces.area, area))[-1])
+    made = part.fillet(rim, 0.75, 21)
+    assert made.genus == 0 and made.surface_count == 1 and made.to_mesh().certificate.ok
+    left = made.edges(all=True)
+    assert np.abs(left.angle - 180)[left.length > 1e-2].max() < 179
+    straight = body.fillet(body.edges(all=True).on("z", 3), 0.75, 21)
+    assert made.volume == pytest.approx(straight.volume, abs=1e-6)
+
+
+def test_blends_leave_something_of_each_part_of_a_face() -> None:
+    bars = (b.box(9, 1, 2) | b.box(1, 9, 2)).edges().on("z", 2)
+    with pytest.raises(b.InvalidParameterError, match="no room at"):
+        (b.box(9, 1, 2) | b.box(1, 9, 2)).chamfer(bars, 0.6)
+
+
 # Refusals
 
 
@@ -360,7 +591,7 @@ def test_a_hole_near_an_edge_leaves_no_room() -> None:
 def test_many_edges_are_refused() -> None:
     ball = b.sphere(10, segments=160)
     with pytest.raises(b.LimitError, match="edges are chosen"):
-        ball.chamfer(ball.edges(), 1e-4)
+        ball.chamfer(ball.edges(all=True), 1e-4)
 
 
 # Found: blends of bodies that end near the end of the lattice were refused: their cutters reach

@@ -90,11 +90,42 @@ def test_walls_that_meet_on_the_way_up_are_united() -> None:
     assert solid.to_manifold().volume() == pytest.approx(solid.volume)
 
 
+# Found: `extrude(taper=45)` was refused where an edge vanishes.
+def test_walls_that_vanish_end_in_a_roof() -> None:
+    pyramid = b.Region.rectangle(2, 2).extrude(3, taper=45)
+    assert pyramid.volume == pytest.approx(4 / 3) and pyramid.to_mesh().certificate.ok
+    assert pyramid.vertices[:, 2].max() == pytest.approx(1)
+    assert b.Region.rectangle(2, 2).extrude(3, taper=45, center=True).vertices[:, 2].min() == -1.5
+    hip = b.Region.rectangle(4, 2).extrude(2, taper=30)
+    slope = math.tan(math.radians(30))
+    assert hip.volume == pytest.approx((2 * 4 - 4 / 3) / 2 / slope)
+    # A short edge vanishes half way up, and the others go on.
+    house = b.Region([(0, 0), (4, 0), (4, 3), (3.8, 4), (0, 4)])
+    for z in (0.25, 0.75, 1.25):
+        section = house.extrude(1.5, taper=45).slice(z)
+        assert section.area == pytest.approx(house.offset(-z, "miter").area, abs=1e-6)
+
+
+@pytest.mark.parametrize("taper", [-60, -45, -20])
+def test_gaps_that_close_outwards(taper: float) -> None:
+    for figure in (SLOTTED, SLOTTED.rotate(20)):
+        solid = figure.extrude(3, taper=taper)
+        assert solid.to_mesh().certificate.ok
+        for z in (0.01, 1.4, 2.9):
+            grown = figure.offset(z * math.tan(math.radians(-taper)), "miter")
+            assert solid.slice(z).area == pytest.approx(grown.area, abs=1e-6)
+    letter = b.text("e", size=10)
+    solid = letter.extrude(3, taper=taper)
+    assert solid.to_mesh().certificate.ok and (letter.extrude(3) - solid).volume < 1e-6
+    grown = letter.offset(0.1 * math.tan(math.radians(-taper)), "miter")
+    assert solid.slice(0.1).area == pytest.approx(grown.area, abs=1e-6)
+
+
 @pytest.mark.parametrize(
     ("figure", "options", "words"),
     [
-        (SQUARE, {"taper": 45}, "no room at"),
-        (SLOTTED, {"taper": -60}, "no room at"),
+        (SQUARE, {"taper": 45, "twist": 10}, "no room at"),
+        (SLOTTED, {"taper": -60, "scale": 2}, "no room at"),
         (SQUARE, {"taper": 90}, "taper must be"),
         (SQUARE, {"scale": -1}, "scale must not be below 0"),
         (SQUARE, {"scale": (1, 2, 3)}, "scale must be one number or two"),

@@ -22,6 +22,8 @@ UNIT = b.cube(1).to_mesh()
 S, OTHER = b.box(1, 2, 3), b.cube(1).translate(5, 0, 0)
 R = Region.rectangle(2, 3)
 EDGES = S.edges()
+TOP = S.faces().sort_by("z")[-1]
+DRILLED = {"face": TOP, "at": (0.5, 1, 3), "d": 0.4, "r": None, "depth": 1, "segments": 8}
 A = b.Assembly("all", [b.Assembly("one", b.cube(1)), b.Assembly("two", OTHER)])
 SCRIPT = Path(__file__).parents[1] / "corpus" / "csg" / "pyramid.csg"
 
@@ -221,6 +223,49 @@ ROWS: dict[str, Row] = {
     "Region.warp": (R.warp, {"function": lambda p: p * 2}),
     "EdgeSelection.parallel": (EDGES.parallel, {"axis": "z"}),
     "EdgeSelection.where": (EDGES.where, {"condition": lambda e: e.length > 1}),
+    **{
+        f"{kind}.{name}": (getattr(things, name), arguments)
+        for kind, things in (("EdgeSelection", EDGES), ("FaceSelection", S.faces()))
+        for name, arguments in (
+            ("filter", {"condition": np.ones(len(things), bool)}),
+            ("on", {"place": "z", "offset": 2}),
+            ("sort_by", {"key": "z"}),
+            ("group_by", {"key": (0, 0, 1)}),
+        )
+    },
+    "FaceSelection.parallel": (S.faces().parallel, {"axis": "z"}),
+    "FaceSelection.where": (S.faces().where, {"condition": lambda f: f.area > 1}),
+    "Solid.hole": (
+        S.hole,
+        {**DRILLED, "d": None, "r": 0.2},
+    ),
+    "Solid.counterbore": (
+        S.counterbore,
+        {
+            **DRILLED,
+            "head_d": None,
+            "head_r": 0.3,
+            "head_depth": 0.1,
+        },
+    ),
+    "Solid.countersink": (
+        S.countersink,
+        {
+            **DRILLED,
+            "head_d": 0.8,
+            "head_r": None,
+            "angle": 90,
+        },
+    ),
+    "Region.fillet": (
+        R.fillet,
+        {"r": 0.1, "corners": lambda p: p[:, 0] > 0, "segments": 8},
+    ),
+    "Region.chamfer": (R.chamfer, {"size": 0.1, "corners": lambda p: p[:, 0] > 0}),
+    "Region.regular_polygon": (Region.regular_polygon, {"sides": 6, "r": 1, "d": None}),
+    "Region.regular_polygon by flats": (Region.regular_polygon, {"sides": 6, "flats": 1}),
+    "Region.slot": (Region.slot, {"length": 5, "r": 1, "d": None, "segments": 8}),
+    "Solid.edges": (S.edges, {"all": True, "angle": 30}),
     "Assembly": (b.Assembly, {"name": "x", "content": S, "color": (1, 0, 0), "density": 2}),
     "Assembly.clashes": (A.clashes, {"clearance": 0.1}),
     "Assembly.load": (b.Assembly.load, {"path": SCRIPT}),
@@ -266,7 +311,7 @@ def test_good_arguments_are_taken_and_bad_ones_refused_at_once(name: str) -> Non
 def test_no_public_function_is_missing() -> None:
     functions = {name for name in b.__all__ if inspect.isfunction(getattr(b, name))}
     assert len(functions) > 35
-    methods = methods_of(Solid, Region, b.EdgeSelection, b.Assembly)
+    methods = methods_of(Solid, Region, b.EdgeSelection, b.FaceSelection, b.Assembly)
     assert len(methods) > 60
     told = {name.split()[0] for name in ROWS}
     assert functions | methods <= told | ELSEWHERE

@@ -157,6 +157,79 @@ class Region(PlaneQueries):
         return cls(unit_circle(sides_around(3, segments, "segments")) * size)
 
     @classmethod
+    def regular_polygon(
+        cls,
+        sides: int,
+        r: Scalar | None = None,
+        *,
+        d: Scalar | None = None,
+        flats: Scalar | None = None,
+    ) -> Self:
+        """Return a regular polygon about the origin.
+
+        Parameters
+        ----------
+        sides : int
+            At least 3.
+        r, d : float
+            Radius, or diameter, of the circle that its corners are on; the first is on the x axis.
+        flats : float
+            Diameter of the circle that its sides touch, instead: with an even number of sides the
+            width across flats, as of a nut. Then the first side is upright.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.regular_polygon(6, flats=13).bounds[:, 0].tolist()
+        [-6.5, 6.5]
+        """
+        around = sides_around(3, sides, "sides")
+        if flats is None:
+            return cls(unit_circle(around) * positive(radius(r, d, "A regular polygon"), "r"))
+        if r is not None or d is not None:
+            raise invalid_parameter("Give r, d or flats, and only one of them.")
+        # Every other point of twice as many, so that sides lie where they should bit by bit.
+        middle = positive(flats, "flats") / 2
+        return cls(unit_circle(2 * around)[1::2] * (middle / unit_circle(2 * around)[1, 0]))
+
+    @classmethod
+    def slot(
+        cls,
+        length: Scalar,
+        r: Scalar | None = None,
+        *,
+        d: Scalar | None = None,
+        segments: int = SEGMENTS,
+    ) -> Self:
+        """Return a straight slot with round ends about the origin, along x.
+
+        Parameters
+        ----------
+        length : float
+            From end to end, at least twice the radius.
+        r, d : float
+            Radius of the ends, or the slot's width instead.
+        segments : int
+            Sides of a full circle, at least 4; an odd number counts as the next one.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.slot(10, d=4).bounds.tolist()
+        [[-5.0, -2.0], [5.0, 2.0]]
+        """
+        size, whole = positive(radius(r, d, "A slot"), "r"), positive(length, "length")
+        if whole < 2 * size:
+            raise invalid_parameter(
+                f"A slot is at least as long as wide: {whole:g} is below {2 * size:g}."
+            )
+        steps = -(-sides_around(4, segments, "segments") // 2)
+        turned = unit_circle(2 * steps)[: steps + 1]
+        # From the lowest to the highest point of the right end.
+        end = np.column_stack([turned[:, 1], -turned[:, 0]]) * size + (whole / 2 - size, 0)
+        return cls(np.concatenate([end, -end]))
+
+    @classmethod
     def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
         """Return what one outline surrounds, whichever way round it runs ("nonzero")."""
         return cls([points], winding="nonzero", pitch=pitch)
@@ -389,6 +462,72 @@ class Region(PlaneQueries):
         region: Region = above("offset_region")(
             self, delta, join, segments=segments, miter_limit=miter_limit
         )
+        return region
+
+    def fillet(
+        self,
+        r: Scalar,
+        corners: "Callable[[FloatArray], Any] | None" = None,
+        *,
+        segments: int = SEGMENTS,
+    ) -> "Region":
+        """Return the region with round corners.
+
+        Parameters
+        ----------
+        r : float
+            Radius of the arcs, in model units.
+        corners : function, optional
+            Is given points, (n, 2), and returns a truth value for each. By default all corners
+            where the outline bends by more than 30 degrees; others are never rounded.
+        segments : int
+            Sides of a full circle, at least 4.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the edges leave no room, or new corners cross another outline; the message says
+            where.
+        UnboundedError
+            If the region and its complement both reach to infinity.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> plate = Region.rectangle(6, 4)
+        >>> len(plate.fillet(1, segments=8).outlines[0].points)
+        12
+        >>> plate.fillet(2, lambda p: p[:, 0] > 0, segments=4).area
+        20.0
+        """
+        region: Region = above("fillet_region")(self, r, corners, segments)
+        return region
+
+    def chamfer(
+        self, size: Scalar, corners: "Callable[[FloatArray], Any] | None" = None
+    ) -> "Region":
+        """Return the region with its corners cut off.
+
+        Parameters
+        ----------
+        size : float
+            From the corner to where the cut begins, on both edges, in model units.
+        corners : function, optional
+            As for `fillet`.
+
+        Raises
+        ------
+        InvalidParameterError
+        UnboundedError
+            As for `fillet`.
+
+        Examples
+        --------
+        >>> from bspcsg import Region
+        >>> Region.rectangle(6, 4).chamfer(1).area
+        22.0
+        """
+        region: Region = above("chamfer_region")(self, size, corners)
         return region
 
     def hull(self) -> "Region":

@@ -15,17 +15,19 @@ import numpy as np
 from ..._types import FloatArray, IndexArray, Scalar
 from ...errors import LimitError, invalid_parameter
 from ...geometry.polygon import triangulate_face
-from ...geometry.transform import LATTICE_REACH
+from ...geometry.transform import LATTICE_REACH, cos_sin
 from ...operations.setops import intersection, union
 from ...parameters import positive, refuse_many_corners, sides_around
 from ...shapes.primitives import half_space
 from ...solid.leaf import TreeLeaf
 from ...solid.solid import Solid, from_leaf
+from .caps import cap_tool, is_cap
+from .chains import ChainTools, closed_chains
 from .edges import EdgeSelection, selection
 from .patches import arc_directions, patch_directions, patch_faces
 from .planes import Planes
 from .rings import walls
-from .rooms import no_room, refuse_no_room
+from .rooms import has_room, no_room, refuse_no_room
 from .skeleton import Skeleton, flatness, skeleton_of
 from .stages import carried, ready, refused
 
@@ -82,6 +84,7 @@ class _Blend:
         self.pitch = pitch
         self.planes = Planes(skeleton, pitch)
         self._prisms: dict[int, Solid] = {}
+        self._sections: dict[int, FloatArray] = {}
 
     @cached_property
     def widths(self) -> FloatArray:
@@ -94,6 +97,24 @@ class _Blend:
             cosine = np.einsum("ij,ij->i", inward[:, 0], inward[:, 1])
             widths[own] *= np.sqrt((1 + cosine) / np.maximum(1 - cosine, _FOLDED))
         return widths
+
+    @cached_property
+    def caps(self) -> list[int]:
+        """The faces all of whose edges are chosen, and have no room side by side."""
+        faces = np.unique(self.skeleton.sides[sorted(self.chosen)]).tolist()
+        return [
+            face
+            for face in faces
+            if is_cap(self.skeleton, face, self.chosen)
+            and not has_room(self.skeleton, face, self.widths)
+        ]
+
+    def cap_tool(self, face: int, sign: int) -> Solid:
+        """Return what is taken off all along the outline of a face."""
+        angles = np.arange(self.profile.steps + 1) / self.profile.steps
+        cosines, sines = np.array([cos_sin(90 * angle) for angle in angles]).T
+        profile = self.profile.size * np.column_stack([1 - cosines, sines])
+        return cap_tool(self.skeleton, face, sign, profile, self.pitch)
 
     def sign(self, edge: int) -> int:
         """Return 1 for a convex edge, -1 for one that is convex in the complement."""
@@ -267,17 +288,31 @@ class _Blend:
     def _station(self, edge: int, place: int) -> FloatArray:
         """Return the new surface across one end of an edge, from the left face to the right one."""
         vertex = int(self.skeleton.ends[edge, place])
-        point, sign = self.skeleton.vertices[vertex], self.sign(edge)
+        if self.is_round_corner(vertex):
+            return self._ball(vertex) + self._arc(edge)
+        return np.asarray(self.skeleton.vertices[vertex] + self.section(edge))
+
+    def section(self, edge: int) -> FloatArray:
+        """Return the new surface across an edge, from the left face to the right one.
+
+        It is seen from a point of the edge.
+        """
+        if edge not in self._sections:
+            self._sections[edge] = self._section(edge)
+        return self._sections[edge]
+
+    def _section(self, edge: int) -> FloatArray:
         inward = self.skeleton.inward[edge]
         if not self.profile.is_round:
-            return np.asarray(point + self.profile.size * inward)
-        normals = sign * self.skeleton.normals[self.skeleton.sides[edge]]
-        if self.is_round_corner(vertex):
-            middle = self._ball(vertex)
-        else:
-            middle = point + self.widths[edge] * inward[0] - self.profile.size * normals[0]
-        directions = arc_directions(normals[0], normals[1], self.profile.steps)
-        return np.asarray(middle + self.profile.size * directions)
+            return np.asarray(self.profile.size * inward)
+        normal = self.sign(edge) * self.skeleton.normals[self.skeleton.sides[edge, 0]]
+        middle = self.widths[edge] * inward[0] - self.profile.size * normal
+        return np.asarray(middle + self._arc(edge))
+
+    def _arc(self, edge: int) -> FloatArray:
+        """Return the round surface across an edge, as seen from its axis."""
+        normals = self.sign(edge) * self.skeleton.normals[self.skeleton.sides[edge]]
+        return self.profile.size * arc_directions(normals[0], normals[1], self.profile.steps)
 
     def _ring(self, edge: int, arc: FloatArray) -> FloatArray:
         """Return the prism's section, whose first and last chord run on past the faces."""
@@ -383,7 +418,7 @@ def _pitch_for(skeleton: Skeleton, pitch: int) -> int:
 def _once(solid: Solid, blend: _Blend) -> Solid:
     """Return the solid after all edges of one stage are blended."""
     blend.refuse_corners()
-    refuse_no_room(blend.skeleton, blend.widths)
+    refuse_no_room(blend.skeleton, blend.widths, blend.caps)
     cutters, fillers = _parts(blend)
     return (solid | union(fillers)) - union(cutters) if fillers else solid - union(cutters)
 
@@ -414,7 +449,20 @@ def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
 def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
     """Return what is taken off, and what is filled in."""
     cutters: tuple[list[Solid], list[Solid]] = ([], [])
-    for edge in sorted(blend.chosen):
+    near = _SYMMETRICAL * blend.profile.size
+    tools = ChainTools(blend.skeleton, blend.section, near, blend.pitch)
+    done: set[int] = set()
+    for face in blend.caps:
+        own = np.flatnonzero((blend.skeleton.sides == face).any(axis=1)).tolist()
+        sign = blend.sign(own[0])
+        cutters[sign < 0].append(blend.cap_tool(face, sign))
+        done.update(own)
+    for chain in closed_chains(blend.skeleton, blend.chosen - done):
+        tool = tools.tool(chain)
+        if tool is not None:
+            cutters[blend.sign(chain[0][0]) < 0].append(tool)
+            done.update(edge for edge, _ in chain)
+    for edge in sorted(blend.chosen - done):
         cutters[blend.sign(edge) < 0].append(blend.cutter(edge))
     for vertex in blend.corners():
         sign = blend.sign(blend.skeleton.edges_at(vertex)[0])

@@ -54,6 +54,11 @@ def is_convex(figure: Region) -> bool:
     return True
 
 
+def corner_speeds(figure: Region) -> FloatArray:
+    """Return how far the corners of a figure move while its sides move inwards by one, (n, 2)."""
+    return np.concatenate([_first_front([loop]).speeds() for loop in figure.to_polygons()])
+
+
 def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
     count = sum(map(len, loops))
     if count > _MOST_CORNERS:

@@ -16,7 +16,7 @@ _PARALLEL = 1e-7
 _SAME = 1e-6
 
 
-def refuse_no_room(skeleton: Skeleton, widths: FloatArray) -> None:
+def refuse_no_room(skeleton: Skeleton, widths: FloatArray, apart: Iterable[int] = ()) -> None:
     """Raise an error where strips along edges do not fit on their faces side by side.
 
     Parameters
@@ -24,19 +24,39 @@ def refuse_no_room(skeleton: Skeleton, widths: FloatArray) -> None:
     skeleton : Skeleton
     widths : (e,) float64
         Of the strips on both faces of each edge, 0 where there is none.
+    apart : iterable of int
+        Faces that need no room.
 
     Raises
     ------
     InvalidParameterError
         The message names a place, `where` the triangles of the face.
     """
-    for face in np.unique(skeleton.sides[widths > 0]).tolist():
-        loops = _loops(skeleton, face)
-        outer = [skeleton.vertices[_ends(skeleton, face, loop)[:, 0]] for loop in loops]
-        inner = [_inset(skeleton, face, loop, widths) for loop in loops]
-        for loop, corners in zip(loops, inner, strict=True):
-            _refuse_reversed(skeleton, face, loop, corners)
-        _refuse_overlapping(skeleton, face, outer, inner, widths)
+    for face in np.setdiff1d(skeleton.sides[widths > 0], list(apart)).tolist():
+        _refuse_no_room_on(skeleton, face, widths)
+
+
+def has_room(skeleton: Skeleton, face: int, widths: FloatArray) -> bool:
+    """Say whether the strips along its edges fit on a face."""
+    try:
+        _refuse_no_room_on(skeleton, face, widths)
+    except InvalidParameterError:
+        return False
+    return True
+
+
+def _refuse_no_room_on(skeleton: Skeleton, face: int, widths: FloatArray) -> None:
+    loops, outer = _loops(skeleton, face), face_loops(skeleton, face)
+    inner = [_inset(skeleton, face, loop, widths) for loop in loops]
+    for loop, corners in zip(loops, inner, strict=True):
+        _refuse_reversed(skeleton, face, loop, corners)
+    _refuse_overlapping(skeleton, face, outer, inner, widths)
+
+
+def face_loops(skeleton: Skeleton, face: int) -> list[FloatArray]:
+    """Return the corners around a face, (n, 3) each, the face on the left of them."""
+    loops = _loops(skeleton, face)
+    return [skeleton.vertices[_ends(skeleton, face, loop)[:, 0]] for loop in loops]
 
 
 def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:

@@ -54,6 +54,11 @@ class Skeleton:
         return directions
 
     @cached_property
+    def areas(self) -> FloatArray:
+        """The vector area of each triangle, (m, 3)."""
+        return _vector_areas(self.vertices, self.triangles) / 2
+
+    @cached_property
     def inward(self) -> FloatArray:
         """Unit vectors from each edge into its faces, across it, (e, 2, 3)."""
         left, right = (self.normals[self.sides[:, k]] for k in (0, 1))
@@ -110,7 +115,7 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
     is_flat = away <= flatness(vertices)
     is_thin = _are_thin(vertices, triangles, areas)
     pairs = _with_one_plane(owners[is_flat], away[is_flat], is_thin)
-    face = _groups(pairs, len(triangles))
+    face = groups(pairs, len(triangles))
     face = _mended(vertices, triangles, areas, face, owners[is_flat], is_thin)
     normals, _ = _facing(areas, face)
     sides = face[owners]
@@ -121,7 +126,12 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
 
 def flatness(vertices: FloatArray) -> float:
     """Return how far corners may be from the plane of a face that they belong to."""
-    return _FLAT * float(np.ptp(vertices, axis=0).max())
+    return _FLAT * extent(vertices)
+
+
+def extent(vertices: FloatArray) -> float:
+    """Return the longest side of the box around corners, 0 if there are none."""
+    return float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
 
 
 def _segments(triangles: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
@@ -222,15 +232,15 @@ def _mended(
     weights = np.linalg.norm(areas, axis=1)
     totals = np.bincount(face, weights)
     offsets = np.bincount(face, weights * middles) / np.where(totals > 0, totals, 1)
-    own, pair = _members(face, small)
+    own, pair = members(face, small)
     heights = np.einsum("ijk,ik->ij", corners[own], normals[large[pair]])
     away = np.zeros(len(pairs))
     np.maximum.at(away, pair, np.abs(heights - offsets[large[pair], None]).max(axis=1))
     ahead = np.einsum("ij,ij->i", normals[small], normals[large]) > 0
-    return _groups(pairs[ahead & (away <= flatness(vertices))], len(is_wide))[face]
+    return groups(pairs[ahead & (away <= flatness(vertices))], len(is_wide))[face]
 
 
-def _members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArray]:
+def members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArray]:
     """Return the triangles of chosen faces, and the place of each one's face among these."""
     counts = np.bincount(face)
     starts, sizes = np.cumsum(counts) - counts, counts[chosen]
@@ -239,7 +249,7 @@ def _members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArr
     return np.argsort(face, kind="stable")[starts[chosen][place] + rank], place
 
 
-def _groups(pairs: IndexArray, count: int) -> IndexArray:
+def groups(pairs: IndexArray, count: int) -> IndexArray:
     """Return the number of the connected group of each of so many things."""
     loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
     links = np.concatenate([loops, pairs])
@@ -269,7 +279,7 @@ def _runs(
     ahead = np.einsum("ij,ij->i", steps[before], steps[after]) > 0
     joined = (sides[before] == sides[after]).all(axis=1) & ahead
     pairs = _without_loops(np.column_stack([before, after])[joined], len(segments))
-    run = _groups(pairs, len(segments))
+    run = groups(pairs, len(segments))
     first = ~np.isin(np.arange(len(segments)), pairs[:, 1])
     last = ~np.isin(np.arange(len(segments)), pairs[:, 0])
     ends = np.empty((run.max() + 1, 2), dtype=np.int64)
@@ -284,7 +294,7 @@ def _without_loops(pairs: IndexArray, count: int) -> IndexArray:
 
     Planes meet in lines, but faces that are plane only within a tolerance can meet all around.
     """
-    run = _groups(pairs, count)
+    run = groups(pairs, count)
     has_start = np.zeros(count, dtype=np.bool_)
     has_start[run[~np.isin(np.arange(count), pairs[:, 1])]] = True
     return pairs[has_start[run[pairs[:, 0]]]]

@@ -1,0 +1,162 @@
+"""`FaceSelection`: a selection of a solid's faces."""
+
+from typing import ClassVar, Self
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray, Scalar
+from ...errors import invalid_parameter
+from ...parameters import truth_value
+from ...solid.counting import uncounted
+from ...solid.solid import Solid
+from .selection import Selection, as_bend, bends
+from .skeleton import Skeleton, groups, members, skeleton_of
+
+#: Facets of one surface are chords of one curve, much the same in width. A face that is wider than
+#: this many times its neighbour is a plane one beside a round edge.
+_AS_WIDE = 2.0
+
+#: Corners that are measured at a time: three doubles each make 24 MB.
+_AT_A_TIME = 1_000_000
+
+
+class FaceSelection(Selection):
+    """Faces of a solid: flat ones, and round ones made of flat facets.
+
+    Facets that bend little and are much alike are one face, such as the wall of a bore. All
+    properties are arrays over the faces, so that conditions are made of them.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    numbers : (n,) int64
+    surface : (f,) int64
+        The face that each flat face of the skeleton is part of.
+
+    Examples
+    --------
+    >>> import bspcsg as csg
+    >>> faces = (csg.box(9, 9, 3) - csg.cylinder(3, d=4).translate(4, 4, 0)).faces()
+    >>> len(faces), faces.filter(lambda f: ~f.is_flat)
+    (7, FaceSelection(1 of 7, area 37.6386 to 37.6386))
+    """
+
+    _things: ClassVar[str] = "faces"
+    _sizes: ClassVar[tuple[str, ...]] = ("area",)
+
+    def __init__(self, skeleton: Skeleton, numbers: IndexArray, surface: IndexArray) -> None:
+        super().__init__(skeleton, numbers)
+        self._surface = surface
+
+    def _with(self, numbers: IndexArray) -> Self:
+        return type(self)(self._skeleton, numbers, self._surface)
+
+    @property
+    def area(self) -> FloatArray:
+        """Areas, (n,), in model units squared."""
+        return np.asarray(self._sums(np.linalg.norm(self._skeleton.areas, axis=1)))
+
+    @property
+    def middle(self) -> FloatArray:
+        """The centres of area, (n, 3), in model units; that of a round face is off it."""
+        skeleton = self._skeleton
+        weights = np.linalg.norm(skeleton.areas, axis=1)
+        middles = skeleton.vertices[skeleton.triangles].mean(axis=1)
+        moments = [self._sums(weights * middles[:, axis]) for axis in range(3)]
+        return np.column_stack(moments) / self.area[:, None]
+
+    @property
+    def is_flat(self) -> BoolArray:
+        """True where a face lies in one plane, (n,)."""
+        counts = np.bincount(self._surface, minlength=self._total())
+        return np.asarray(counts[self._numbers] == 1, dtype=np.bool_)
+
+    @property
+    def normal(self) -> FloatArray:
+        """Unit normals outwards of flat faces, (n, 3); zero for round ones."""
+        first = np.zeros(self._total(), dtype=np.int64)
+        first[self._surface] = np.arange(len(self._surface))
+        normals = self._skeleton.normals[first[self._numbers]]
+        return np.where(self.is_flat[:, None], normals, 0.0)
+
+    @property
+    def direction(self) -> FloatArray:
+        """The normals, (n, 3)."""
+        return self.normal
+
+    def _sums(self, values: FloatArray) -> FloatArray:
+        """Return the sum over each face of a value of each triangle."""
+        of_triangle = self._surface[self._skeleton.face]
+        sums = np.bincount(of_triangle, values, minlength=self._total())
+        return np.asarray(sums[self._numbers], dtype=np.float64)
+
+    def _flat_faces(self) -> tuple[IndexArray, IndexArray]:
+        place = np.full(self._total(), -1)
+        place[self._numbers] = np.arange(len(self))
+        owners = place[self._surface]
+        return np.flatnonzero(owners >= 0), owners[owners >= 0]
+
+    def _between(self, heights: FloatArray) -> tuple[FloatArray, FloatArray]:
+        corners = heights[self._skeleton.triangles]
+        of_triangle = self._surface[self._skeleton.face]
+        low, high = np.full(self._total(), np.inf), np.full(self._total(), -np.inf)
+        np.minimum.at(low, of_triangle, corners.min(axis=1))
+        np.maximum.at(high, of_triangle, corners.max(axis=1))
+        return low[self._numbers], high[self._numbers]
+
+    def _total(self) -> int:
+        return int(self._surface.max(initial=-1)) + 1
+
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, FaceSelection) and np.array_equal(self._surface, other._surface)
+
+
+@uncounted
+def faces_of(solid: Solid, *, all: bool, angle: Scalar) -> FaceSelection:  # noqa: A002
+    """Return the faces of a solid; see `Solid.faces`."""
+    least = as_bend(angle, truth_value(all, "all"))
+    skeleton = skeleton_of(solid.normalized().to_mesh())
+    surface = _surfaces(skeleton, least)
+    return FaceSelection(skeleton, np.arange(int(surface.max(initial=-1)) + 1), surface)
+
+
+def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
+    """Return the normal of a selection of one flat face, and the product of its points with it.
+
+    Raises
+    ------
+    InvalidParameterError
+        If it is not one, or not flat.
+    """
+    if not isinstance(faces, FaceSelection):
+        raise invalid_parameter("A face is a selection of one: solid.faces().sort_by('z')[-1].")
+    if len(faces) != 1:
+        raise invalid_parameter(f"One face is needed, and {len(faces)} are selected.")
+    if not faces.is_flat[0]:
+        raise invalid_parameter("The face is round, and a flat one is needed.")
+    normal: FloatArray = faces.normal[0]
+    return normal, float(faces.middle[0] @ normal)
+
+
+def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
+    """Return the face of each flat face of a skeleton, once facets that bend little are one."""
+    smooth = np.flatnonzero(~bends(skeleton, least))
+    wide = [_widths(skeleton, smooth, side) for side in (0, 1)]
+    alike = np.maximum(*wide) <= _AS_WIDE * np.minimum(*wide)
+    return groups(skeleton.sides[smooth[alike]], len(skeleton.normals))
+
+
+def _widths(skeleton: Skeleton, edges: IndexArray, side: int) -> FloatArray:
+    """Return how far the face on one side of each edge reaches from it."""
+    widths = np.zeros(len(edges))
+    counts = np.bincount(skeleton.face, minlength=len(skeleton.normals))
+    sizes = counts[skeleton.sides[edges, side]]
+    parts = np.cumsum(sizes) // _AT_A_TIME
+    for part in np.split(np.arange(len(edges)), np.flatnonzero(np.diff(parts)) + 1):
+        own = edges[part]
+        triangles, pair = members(skeleton.face, skeleton.sides[own, side])
+        starts, inward = skeleton.vertices[skeleton.ends[own, 0]], skeleton.inward[own, side]
+        corners = skeleton.vertices[skeleton.triangles[triangles]]
+        away = np.einsum("ijk,ik->ij", corners - starts[pair, None], inward[pair])
+        np.maximum.at(widths, part[pair], away.max(axis=1))
+    return widths

@@ -1,0 +1,255 @@
+"""`Selection`: some of a solid's edges or faces, and how they are chosen."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, Self, TypeAlias
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, IndexArray, Scalar, Vector
+from ...errors import invalid_parameter
+from ...geometry.arrays import axes_of, doubles_or_none
+from ...geometry.transform import axis_vector
+from ...parameters import number, shown
+from .skeleton import Skeleton, extent, flatness
+
+#: The cosine of the largest angle between parallel lines, of a thousandth: the lattice turns an
+#: edge of a thousand steps so much.
+_PARALLEL = 1 - 1e-3**2 / 2
+
+#: A share of the largest value; values that are nearer to each other are one group.
+_SAME = 1e-6
+
+#: What things are sorted by: an axis, the name of a property, or a function of a selection.
+Key: TypeAlias = "str | Vector | Callable[[Any], Any]"
+
+
+class Selection(ABC):
+    """Some of a solid's edges or faces, in an order.
+
+    All properties are arrays over them, so that conditions are made of them. A number in brackets
+    gives a selection of one, a slice some in a row.
+    """
+
+    #: What a message calls them, and the properties by which they can be sorted; the first of these
+    #: is told.
+    _things: ClassVar[str]
+    _sizes: ClassVar[tuple[str, ...]]
+
+    def __init__(self, skeleton: Skeleton, numbers: IndexArray) -> None:
+        self._skeleton = skeleton
+        self._numbers = numbers
+
+    @property
+    @abstractmethod
+    def middle(self) -> FloatArray:
+        """The middles, (n, 3), in model units."""
+
+    @property
+    @abstractmethod
+    def direction(self) -> FloatArray:
+        """Unit vectors, (n, 3), or zero where there is no one direction."""
+
+    @abstractmethod
+    def _flat_faces(self) -> tuple[IndexArray, IndexArray]:
+        """Return flat faces of the skeleton, and the thing of this selection that has each."""
+
+    @abstractmethod
+    def _between(self, heights: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the least and the greatest value at each one's corners, given all corners'."""
+
+    @abstractmethod
+    def _total(self) -> int:
+        """Return how many there are to choose from."""
+
+    def _with(self, numbers: IndexArray) -> Self:
+        return type(self)(self._skeleton, numbers)
+
+    def filter(self, condition: "Callable[[Self], Any] | Any") -> Self:
+        """Return those for which a condition holds.
+
+        Parameters
+        ----------
+        condition : function or (n,) bool
+            The function is given this selection and returns a truth value for each.
+
+        Raises
+        ------
+        InvalidParameterError
+            If there are not as many truth values.
+        """
+        found = condition(self) if callable(condition) else condition
+        given = np.asarray(None if axes_of(found) is None else found)
+        if given.dtype != np.bool_ or given.shape != (len(self),):
+            raise invalid_parameter(
+                f"A condition has one truth value for each of the {len(self)} {self._things}, not"
+                f" {given.dtype} of shape {given.shape}."
+            )
+        return self._with(self._numbers[given])
+
+    def where(self, condition: "Callable[[Self], Any] | Any") -> Self:
+        """Return those for which a condition holds: another name for `filter`."""
+        return self.filter(condition)
+
+    def parallel(self, axis: str | Vector) -> Self:
+        """Return those along an axis, either way: edges, or flat faces by their normals.
+
+        Parameters
+        ----------
+        axis : {"x", "y", "z"} or (3,) float
+        """
+        return self.filter(np.abs(self.direction @ axis_vector(axis)) >= _PARALLEL)
+
+    def on(self, place: "str | Vector | Selection", offset: Scalar | None = None) -> Self:
+        """Return those that lie in a plane, or have to do with another selection.
+
+        Parameters
+        ----------
+        place : {"x", "y", "z"}, (3,) float or Selection
+            The plane's normal, which need not have unit length. Or a selection of the same solid:
+            edges lie on the faces that they bound, faces on the edges that bound them.
+        offset : float, optional
+            Of a plane: it holds the points p with ``normal . p == offset``.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.box(4, 3, 2)
+        >>> len(part.edges().on("z", 2)), len(part.edges().on(part.faces().parallel("x")))
+        (4, 8)
+        """
+        if isinstance(place, Selection):
+            return self._with_faces_of(place, offset)
+        if offset is None:
+            raise invalid_parameter("A plane needs an offset: on('z', 5).")
+        normal = axis_vector(place)
+        size = 1.0 if isinstance(place, str) else float(np.linalg.norm(np.asarray(place, float)))
+        away = self._skeleton.vertices @ normal - number(offset, "offset") / size
+        low, high = self._between(away)
+        return self.filter(np.maximum(-low, high) <= flatness(self._skeleton.vertices))
+
+    def _with_faces_of(self, other: "Selection", offset: Scalar | None) -> Self:
+        if offset is not None:
+            raise invalid_parameter("offset belongs to a plane, not to a selection.")
+        self._refuse_another_solid(other)
+        faces, owners = self._flat_faces()
+        found = np.zeros(len(self), dtype=np.bool_)
+        found[owners[np.isin(faces, other._flat_faces()[0])]] = True
+        return self.filter(found)
+
+    def sort_by(self, key: Key) -> Self:
+        """Return the same ones in ascending order, so that ``[-1]`` has the most.
+
+        Parameters
+        ----------
+        key : str, (3,) float or function
+            "x", "y", "z" or a vector: how far the middle is along it. Else the name of a property,
+            such as "length" or "area"; or a function that is given this selection and returns a
+            number for each.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.box(4, 3, 2).faces().sort_by("z")[-1].middle.tolist()
+        [[2.0, 1.5, 2.0]]
+        """
+        return self._with(self._numbers[np.argsort(self._values(key)[0], kind="stable")])
+
+    def group_by(self, key: Key) -> list[Self]:
+        """Return selections of those that are alike, in ascending order.
+
+        Parameters
+        ----------
+        key : str, (3,) float or function
+            As for `sort_by`. Values count as one that are nearer to the next than a millionth of
+            the largest, or along an axis of the solid's size.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> [len(edges) for edges in csg.box(4, 3, 2).edges().group_by("z")]
+        [4, 4, 4]
+        """
+        values, scale = self._values(key)
+        order = np.argsort(values, kind="stable")
+        starts = np.flatnonzero(np.diff(values[order]) > _SAME * scale) + 1
+        return [self._with(self._numbers[part]) for part in np.split(order, starts) if len(part)]
+
+    def _values(self, key: Key) -> tuple[FloatArray, float]:
+        """Return a number for each, and how large such numbers are."""
+        if isinstance(key, str) and key in self._sizes:
+            values = getattr(self, key)
+        elif callable(key):
+            values = doubles_or_none(key(self))
+        else:
+            if isinstance(key, str) and key.lower() not in ("x", "y", "z"):
+                names = ", ".join(("x", "y", "z", *self._sizes))
+                raise invalid_parameter(f"There is no key {shown(key)}; there are {names}.")
+            values = self.middle @ axis_vector(key)
+            return values, extent(self._skeleton.vertices)
+        if values is None or values.shape != (len(self),) or not np.isfinite(values).all():
+            raise invalid_parameter(
+                f"A key gives one finite number for each of the {len(self)} {self._things}."
+            )
+        return values, float(np.abs(values).max(initial=0))
+
+    def _refuse_another_solid(self, other: "Selection") -> None:
+        mine, theirs = self._skeleton.vertices, other._skeleton.vertices
+        if mine is not theirs and not np.array_equal(mine, theirs):
+            raise invalid_parameter("Selections of different solids do not go together.")
+
+    def _is_alike(self, other: object) -> bool:
+        """Say whether another selection numbers the same things, if it is of the same solid."""
+        return type(other) is type(self)
+
+    def __or__(self, other: object) -> Self:
+        """Return those of both selections of one solid."""
+        return self._joined(other, lambda theirs: np.union1d(self._numbers, theirs))
+
+    def __and__(self, other: object) -> Self:
+        """Return those that both selections of one solid have, in this one's order."""
+        return self._joined(other, lambda theirs: self._numbers[np.isin(self._numbers, theirs)])
+
+    def __sub__(self, other: object) -> Self:
+        """Return those that the other selection of this solid does not have."""
+        return self._joined(other, lambda theirs: self._numbers[~np.isin(self._numbers, theirs)])
+
+    def _joined(self, other: object, join: "Callable[[IndexArray], IndexArray]") -> Self:
+        if not isinstance(other, Selection) or not self._is_alike(other):
+            unlike: Self = NotImplemented
+            return unlike
+        self._refuse_another_solid(other)
+        return self._with(join(other._numbers))
+
+    def __getitem__(self, index: int | slice) -> Self:
+        """Return one, or some in a row, as a selection."""
+        return self._with(np.atleast_1d(self._numbers[index]))
+
+    def __iter__(self) -> Iterator[Self]:
+        """Yield each as a selection of one."""
+        return (self[k] for k in range(len(self)))
+
+    def __len__(self) -> int:
+        """Return the number of them."""
+        return len(self._numbers)
+
+    def __repr__(self) -> str:
+        """Say how many of how many, and how large they are."""
+        name = self._sizes[0]
+        sizes = getattr(self, name)
+        told = f", {name} {sizes.min():g} to {sizes.max():g}" if len(self) else ""
+        return f"{type(self).__name__}({len(self)} of {self._total()}{told})"
+
+
+def as_bend(angle: Scalar, every: bool) -> float:
+    """Return the degrees by which faces must bend to have an edge between them, checked."""
+    bend = number(angle, "angle")
+    if not 0 <= bend < 180:
+        raise invalid_parameter(f"angle must be from 0 to below 180 degrees, not {bend:g}.")
+    return -np.inf if every else bend
+
+
+def bends(skeleton: Skeleton, least: float) -> BoolArray:
+    """Say at which edges of a skeleton the faces bend by more than so many degrees."""
+    # Sides of a circle of twelve bend by 30 degrees, and should do so whatever rounding does.
+    return np.asarray(np.abs(180 - skeleton.angles) > least + _SAME)

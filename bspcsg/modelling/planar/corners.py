@@ -1,0 +1,137 @@
+"""Figures with other corners: rounded, or cut off."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from ..._types import BoolArray, FloatArray, Scalar
+from ...bsp import Region
+from ...errors import InvalidParameterError, invalid_parameter
+from ...geometry.arrays import axes_of
+from ...parameters import function_of, positive, refuse_many_corners, sides_around
+
+#: Degrees; outlines that bend by no more go round a curve, but for rounding.
+_SMOOTH = 30 + 1e-6
+
+#: The share of an edge, and of an area, that rounding may change.
+_SAME = 1e-9
+
+#: The part of a chord by which rounding may lengthen an arc.
+_PART = 1e-6
+
+#: Which corners are meant: a function of points, (n, 2), that returns truth values; None for all.
+Corners: TypeAlias = Callable[[FloatArray], Any] | None
+
+
+@dataclass(frozen=True)
+class _Cut:
+    """What replaces a corner: an arc, or a straight line.
+
+    Parameters
+    ----------
+    size : float
+        The radius of the arc; of a line, how far from the corner it begins.
+    around : int
+        Sides of a full circle; 0 for a line.
+    """
+
+    size: float
+    around: int
+
+    def setbacks(self, turns: FloatArray) -> FloatArray:
+        """Return how far along its edges the cut of each corner reaches."""
+        round_: FloatArray = self.size * np.tan(np.abs(turns) / 2)
+        return round_ if self.around else np.full(len(turns), self.size)
+
+    def points(self, corner: FloatArray, ahead: FloatArray, turn: float) -> FloatArray:
+        """Return what replaces a corner, given the direction before it."""
+        if not self.around:
+            after = _turned(ahead, np.array([turn]))[0]
+            return np.array([corner - self.size * ahead, corner + self.size * after])
+        steps = max(math.ceil(self.around * abs(turn) / math.tau - _PART), 1)
+        spoke = np.array([ahead[1], -ahead[0]]) * math.copysign(self.size, turn)
+        start = corner - self.size * math.tan(abs(turn) / 2) * ahead
+        return start - spoke + _turned(spoke, np.linspace(0, turn, steps + 1))
+
+
+def fillet_region(figure: Region, r: Scalar, corners: Corners, segments: int) -> Region:
+    """Return a region with round corners; see `Region.fillet`."""
+    around = sides_around(4, segments, "segments")
+    return _recut(figure, _Cut(positive(r, "r"), around), corners)
+
+
+def chamfer_region(figure: Region, size: Scalar, corners: Corners) -> Region:
+    """Return a region with corners cut off; see `Region.chamfer`."""
+    return _recut(figure, _Cut(positive(size, "size"), 0), corners)
+
+
+def _recut(figure: Region, cut: _Cut, corners: Corners) -> Region:
+    if corners is not None:
+        function_of(corners, "corners")
+    if not figure.is_bounded and (~figure).is_bounded:
+        return ~_recut(~figure, cut, corners)
+    loops = figure.to_polygons()
+    refuse_many_corners(sum(map(len, loops)) * max(cut.around, 2), "This region")
+    return _without_crossings(figure, [_recut_loop(points, cut, corners) for points in loops])
+
+
+def _recut_loop(points: FloatArray, cut: _Cut, corners: Corners) -> FloatArray:
+    steps = np.roll(points, -1, axis=0) - points
+    lengths = np.linalg.norm(steps, axis=1)
+    ahead = np.roll(steps / lengths[:, None], 1, axis=0)
+    after = np.roll(ahead, -1, axis=0)
+    across = ahead[:, 0] * after[:, 1] - ahead[:, 1] * after[:, 0]
+    turns = np.arctan2(across, (ahead * after).sum(axis=1))
+    chosen = (np.abs(turns) > math.radians(_SMOOTH)) & _meant(corners, points)
+    reach = np.where(chosen, cut.setbacks(turns), 0.0)
+    for k in np.flatnonzero(reach + np.roll(reach, -1) > lengths * (1 + _SAME)):
+        raise _no_room(points[k] if chosen[k] else points[(k + 1) % len(points)])
+    parts = [
+        cut.points(points[k], ahead[k], float(turns[k])) if chosen[k] else points[[k]]
+        for k in range(len(points))
+    ]
+    return np.concatenate(parts)
+
+
+def _turned(vector: FloatArray, angles: FloatArray) -> FloatArray:
+    """Return a vector turned by each of some angles, (n, 2)."""
+    x, y = vector
+    cosines, sines = np.cos(angles), np.sin(angles)
+    return np.column_stack([x * cosines - y * sines, x * sines + y * cosines])
+
+
+def _meant(corners: Corners, points: FloatArray) -> BoolArray:
+    if corners is None:
+        return np.ones(len(points), dtype=np.bool_)
+    answer = corners(points.copy())
+    found = np.asarray(None if axes_of(answer) is None else answer)
+    if found.dtype != np.bool_ or found.shape != (len(points),):
+        raise invalid_parameter(
+            f"corners must return one truth value for each of {len(points)} points, not"
+            f" {found.dtype} of shape {found.shape}."
+        )
+    return found
+
+
+def _without_crossings(figure: Region, loops: list[FloatArray]) -> Region:
+    """Return the region of new outlines, or raise an error where they cross each other."""
+    made = Region(loops, pitch=figure.pitch)
+    areas = [_area(loop) for loop in loops]
+    if abs(made.area - sum(areas)) > _SAME * sum(map(abs, areas)) + len(areas) * _SAME:
+        raise invalid_parameter("New corners cross another outline. Choose a smaller size.")
+    return made
+
+
+def _area(points: FloatArray) -> float:
+    x, y = (points - points[0]).T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+
+
+def _no_room(corner: FloatArray) -> InvalidParameterError:
+    place = ", ".join(f"{value:.6g}" for value in corner)
+    return invalid_parameter(
+        f"The edges leave no room at ({place}). Choose a smaller size, or fewer corners."
+    )

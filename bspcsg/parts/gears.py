@@ -1,0 +1,187 @@
+"""Involute spur gears with the tooth form of ISO 53, profile A."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .._types import FloatArray, Scalar
+from ..bsp import Region
+from ..errors import invalid_parameter
+from ..geometry.transform import cos_sin
+from ..parameters import (
+    SEGMENTS,
+    at_least,
+    not_negative,
+    number,
+    positive,
+    refuse_many_corners,
+    sides_around,
+)
+from ..solid.counting import counted
+from ..solid.solid import Solid
+
+#: Height of a tooth above the reference circle and depth below it, in modules (ISO 53, profile A).
+_ADDENDUM, _DEDENDUM = 1.0, 1.25
+
+#: Radii at which the end of an undercut is looked for, before it is halved down on.
+_LOOKED_AT = 1000
+
+
+@counted
+def spur_gear(
+    module: Scalar,
+    teeth: int,
+    width: Scalar,
+    *,
+    pressure_angle: Scalar = 20.0,
+    backlash: Scalar = 0.0,
+    bore: Scalar = 0.0,
+    segments: int = SEGMENTS,
+) -> Solid:
+    """Return an involute spur gear that stands on z = 0, a tooth on the x axis.
+
+    Parameters
+    ----------
+    module : float
+        Diameter of the reference circle for each tooth.
+    teeth : int
+        At least 6.
+    width : float
+        Along the axis.
+    pressure_angle : float
+        Degrees, from 14 to 25.
+    backlash : float
+        By which each tooth is thinner on the reference circle. Two such gears have twice that play.
+    bore : float
+        Diameter of the hole; 0 for none.
+    segments : int
+        Sides of the bore; a flank has a quarter as many.
+
+    Raises
+    ------
+    InvalidParameterError
+        If a number is out of its range, or the teeth are pointed or leave no room for the bore.
+
+    Notes
+    -----
+    Teeth are as a rack of ISO 53 cuts them, those of small gears undercut at their feet. So any two
+    gears of one module and pressure angle mesh at the distance ``module * (teeth + others) / 2``;
+    there one of an even number of teeth is to be turned by half a tooth, ``180 / teeth`` degrees.
+
+    Examples
+    --------
+    >>> import bspcsg as csg
+    >>> pinion, wheel = csg.parts.spur_gear(2, 12, 8, bore=5), csg.parts.spur_gear(2, 25, 8)
+    >>> pinion.isdisjoint(wheel.translate(2 * (12 + 25) / 2, 0, 0))
+    True
+    """
+    size, count, high = (
+        positive(module, "module"),
+        at_least(6, teeth, "teeth"),
+        positive(width, "width"),
+    )
+    angle = number(pressure_angle, "pressure_angle")
+    if not 14 <= angle <= 25:
+        raise invalid_parameter(f"pressure_angle must be from 14 to 25 degrees, not {angle:g}.")
+    around, hole = sides_around(8, segments, "segments"), not_negative(bore, "bore") / 2
+    refuse_many_corners(count * around * 2, "This gear")
+    # In modules, so that no size is lost in rounding.
+    thickness = math.pi / 2 - not_negative(backlash, "backlash") / size
+    if thickness <= 0:
+        raise invalid_parameter(f"backlash leaves nothing of the teeth: {backlash:g} is too much.")
+    form = _Form(count, math.radians(angle), thickness)
+    if hole >= form.root * size:
+        wide = 2 * form.root * size
+        raise invalid_parameter(f"bore must be below {wide:g}, the diameter at the teeth's feet.")
+    tooth = _tooth(form, around // 4)
+    turns = [tooth @ _turn(2 * math.pi * k / count) for k in range(count)]
+    figure = Region(np.concatenate(turns) * size)
+    if hole:
+        figure = figure - Region.circle(hole, around)
+    return figure.extrude(high)
+
+
+@dataclass(frozen=True)
+class _Form:
+    """Half the angle of a tooth by its radius, in modules and radians.
+
+    Parameters
+    ----------
+    teeth : int
+    angle : float
+        Of pressure.
+    thickness : float
+        Of a tooth, on the reference circle.
+    """
+
+    teeth: int
+    angle: float
+    thickness: float
+
+    @property
+    def reference(self) -> float:
+        """The radius of the reference circle."""
+        return self.teeth / 2
+
+    @property
+    def root(self) -> float:
+        """The radius at the foot of the teeth."""
+        return self.reference - _DEDENDUM
+
+    @property
+    def base(self) -> float:
+        """The radius of the circle that the flanks unwind from."""
+        return self.reference * math.cos(self.angle)
+
+    def flank(self, radii: FloatArray) -> FloatArray:
+        """Return the half angles of the involute at some radii."""
+        roll = np.sqrt(np.maximum((radii / self.base) ** 2 - 1, 0))
+        whole = self.thickness / self.teeth + math.tan(self.angle) - self.angle
+        return np.asarray(whole - (roll - np.arctan(roll)))
+
+    def foot(self, radii: FloatArray) -> FloatArray:
+        """Return the half angles where the corner of the rack's tooth has cut, at some radii.
+
+        While the gear turns by an angle, the rack moves on by as much on the reference circle.
+        """
+        # From the middle of the space to the corner.
+        corner = (math.pi - self.thickness) / 2 - _DEDENDUM * math.tan(self.angle)
+        behind = np.sqrt(np.maximum(radii**2 - self.root**2, 0))
+        turned = np.arctan2(behind, self.root) - (behind - corner) / self.reference
+        return np.asarray(math.pi / self.teeth - turned)
+
+    def meeting(self) -> float:
+        """Return the radius where foot and flank meet."""
+        along = self.reference * math.sin(self.angle) - _DEDENDUM / math.sin(self.angle)
+        if along >= 0:
+            return math.hypot(self.base, along)
+        # The corner cuts into the flank: up to where its path leaves it.
+        radii = np.linspace(self.base, self.reference + _ADDENDUM, _LOOKED_AT)
+        inside = np.flatnonzero(self.foot(radii) < self.flank(radii))
+        low, high = radii[inside[-1]], radii[min(inside[-1] + 1, _LOOKED_AT - 1)]
+        for _ in range(50):
+            middle = (low + high) / 2
+            is_inside = self.foot(np.array([middle])) < self.flank(np.array([middle]))
+            low, high = (middle, high) if is_inside[0] else (low, middle)
+        return float(low)
+
+
+def _tooth(form: _Form, steps: int) -> FloatArray:
+    """Return the outline of the tooth on the x axis, counter-clockwise, in modules."""
+    tip, start = form.reference + _ADDENDUM, form.meeting()
+    # The foot bends most where it begins.
+    low = form.root + (start - form.root) * np.linspace(0, 1, steps, endpoint=False) ** 2
+    high = np.linspace(start, tip, steps + 1)
+    radii = np.concatenate([low, high])
+    halves = np.concatenate([form.foot(low), form.flank(high)])
+    if halves[-1] <= 0:
+        raise invalid_parameter(f"Gears of {form.teeth} teeth would be pointed.")
+    right = np.column_stack([radii * np.cos(halves), -radii * np.sin(halves)])
+    return np.concatenate([right, [(tip, 0)], right[::-1] * (1, -1)])
+
+
+def _turn(angle: float) -> FloatArray:
+    """Return what turns rows of points by an angle."""
+    cosine, sine = cos_sin(math.degrees(angle))
+    return np.array([(cosine, sine), (-sine, cosine)])

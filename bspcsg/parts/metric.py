@@ -1,0 +1,104 @@
+"""Sizes of metric threads, bolts and nuts, M3 to M20."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ..errors import invalid_parameter
+from ..parameters import shown
+
+#: The height of the triangle of a profile whose pitch is 1.
+_HEIGHT = math.sqrt(3) / 2
+
+
+@dataclass(frozen=True)
+class MetricSize:
+    """The dimensions that go with a nominal diameter, in millimetres.
+
+    Parameters
+    ----------
+    diameter : float
+        Nominal, the major diameter (ISO 261).
+    pitch : float
+        The coarse one (ISO 261).
+    allowance : float
+        By which threads of the tolerance 6g are smaller in diameter at least (ISO 965-1).
+    flats : float
+        Width across flats of bolts and nuts (ISO 4014, ISO 4032).
+    head : float
+        Height of a bolt's head (ISO 4014, nominal).
+    nut : float
+        Height of a nut (ISO 4032, maximum).
+
+    Examples
+    --------
+    >>> import bspcsg as csg
+    >>> size = csg.parts.metric("M10")
+    >>> size.pitch, round(size.pitch_diameter, 3), round(size.minor_diameter, 3)
+    (1.5, 9.026, 8.376)
+    """
+
+    diameter: float
+    pitch: float
+    allowance: float
+    flats: float
+    head: float
+    nut: float
+
+    @property
+    def pitch_diameter(self) -> float:
+        """The diameter at which ridge and groove are as wide (ISO 724)."""
+        return self.diameter - 2 * 3 / 8 * _HEIGHT * self.pitch
+
+    @property
+    def minor_diameter(self) -> float:
+        """The inner diameter of an internal thread (ISO 724)."""
+        return self.diameter - 2 * 5 / 8 * _HEIGHT * self.pitch
+
+    @property
+    def root_diameter(self) -> float:
+        """The inner diameter of an external thread, where its round root is deepest (ISO 68-1)."""
+        return self.diameter - 2 * 17 / 24 * _HEIGHT * self.pitch
+
+    def threaded(self, length: float) -> float:
+        """Return how much of a bolt of some length has a thread (ISO 4014)."""
+        longer = 6 if length <= 125 else 12 if length <= 200 else 25
+        return min(2 * self.diameter + longer, length)
+
+
+#: The sizes by their names.
+METRIC: Mapping[str, MetricSize] = MappingProxyType(
+    {
+        "M3": MetricSize(3, 0.5, 0.020, 5.5, 2.0, 2.4),
+        "M3.5": MetricSize(3.5, 0.6, 0.021, 6, 2.4, 2.8),
+        "M4": MetricSize(4, 0.7, 0.022, 7, 2.8, 3.2),
+        "M5": MetricSize(5, 0.8, 0.024, 8, 3.5, 4.7),
+        "M6": MetricSize(6, 1.0, 0.026, 10, 4.0, 5.2),
+        "M8": MetricSize(8, 1.25, 0.028, 13, 5.3, 6.8),
+        "M10": MetricSize(10, 1.5, 0.032, 16, 6.4, 8.4),
+        "M12": MetricSize(12, 1.75, 0.034, 18, 7.5, 10.8),
+        "M14": MetricSize(14, 2.0, 0.038, 21, 8.8, 12.8),
+        "M16": MetricSize(16, 2.0, 0.038, 24, 10.0, 14.8),
+        "M18": MetricSize(18, 2.5, 0.042, 27, 11.5, 15.8),
+        "M20": MetricSize(20, 2.5, 0.042, 30, 12.5, 18.0),
+    }
+)
+
+
+def metric(size: str) -> MetricSize:
+    """Return the dimensions of a size.
+
+    Parameters
+    ----------
+    size : str
+        Such as ``"M6"``.
+
+    Raises
+    ------
+    InvalidParameterError
+        If there is no such size; the message has those that there are.
+    """
+    if isinstance(size, str) and size.upper() in METRIC:
+        return METRIC[size.upper()]
+    raise invalid_parameter(f"There is no size {shown(size)}; there are {', '.join(METRIC)}.")
