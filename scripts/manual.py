@@ -212,6 +212,7 @@ _PACKAGES = (
     "bspcsg.bsp.analysis",
     "bspcsg.csg",
     "bspcsg.io",
+    "bspcsg.parts",
     "bspcsg.block",
     "bspcsg.trimesh_engine",
 )
@@ -225,6 +226,7 @@ _PAGES = {
     "bspcsg.shapes": "shapes",
     "bspcsg.operations": "operations",
     "bspcsg.modelling": "modelling",
+    "bspcsg.parts": "parts",
     "bspcsg.trimesh_engine": "trimesh",
     "bspcsg.errors": "errors",
     "bspcsg.verify": "check",
@@ -267,6 +269,7 @@ TITLES = {
     "shapes": "Shapes",
     "operations": "Operations",
     "modelling": "Modelling",
+    "parts": "Standard parts",
     "errors": "Errors and findings",
     "check": "Checks against manifold3d",
     "regions": "Regions of the plane, intervals, drawings",
