@@ -51,7 +51,7 @@ def rounded_box(
     >>> import bspcsg as csg
     >>> round(csg.rounded_box((4, 3, 2), 0.5, segments=4).volume, 4)
     20.1667
-    >>> b.rounded_box(4, 3, 2, r=0.5) == b.rounded_box((4, 3, 2), 0.5)
+    >>> csg.rounded_box(4, 3, 2, r=0.5) == csg.rounded_box((4, 3, 2), 0.5)
     True
     """
     given = numbers if r is None else (*numbers, r)
