@@ -1,4 +1,4 @@
-"""The campaign over real meshes whose counts are on record: ``bspcsg crosscheck``, as it is set here.
+"""The campaign over real meshes whose counts are on record: ``bspcsg crosscheck`` with settings.
 
     scripts/campaign [--meshes FOLDER] [--poses N] [--record] [options of bspcsg crosscheck]
 
