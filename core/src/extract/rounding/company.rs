@@ -1,30 +1,21 @@
 //! The triangles of a mesh that lie so near others that the two may meet, by a coarse grid.
 
-use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
 use crate::mesh::faces::Faces;
-use crate::mesh::tasks::{each, fill_chunks, Worth, CHUNK};
+use crate::mesh::handle::VertexId;
+use crate::mesh::tasks::{each_chunk, fill_chunks};
 
 /// The most cells along an axis: the grid then fits into a cache, and the number of a cell into
 /// sixteen bits.
 const FINEST: usize = 32;
 
-/// So few triangles are compared all with all: telling them apart costs as much.
-const FEW: usize = 256;
-
-/// The number of triangles asked about for each other one from which all others are compared: telling
-/// which are near costs more than it saves.
-const MOST: usize = 4;
-
-/// The most cells that a triangle is marked in, on average: comparing it with its neighbours costs as
+/// The most cells that a triangle reaches into, on average: comparing it with its neighbours costs as
 /// much. A grid of four cells along an axis has no more.
 const SPREAD: usize = 64;
-
-/// Triangles that one thread looks through: a millisecond of work, above what marks of its own cost.
-const SHARE: usize = CHUNK;
 
 /// The triangles that are not among some, ascending, but may meet one of them or a triangle of
 /// another party; with their parties, ascending.
@@ -34,260 +25,208 @@ const SHARE: usize = CHUNK;
 pub fn in_company(
     faces: &Faces,
     some: &[u32],
-    party: impl Fn(u32) -> u32 + Sync + Send,
+    party: impl Fn(u32) -> u32 + Sync,
 ) -> Vec<(u32, u32)> {
-    let count = faces.triangles.len();
-    if some.len() == count {
+    if some.len() == faces.triangles.len() {
         return Vec::new();
     }
-    let others = Others { some, count };
-    let mut near: Vec<(u32, u32)> = if count <= FEW || MOST * (count - some.len()) <= some.len() {
-        others.each().map(|t| (party(t), t)).collect()
-    } else {
-        others.near(faces, &party)
+    let mut cells = Cells::of(faces);
+    let marks = loop {
+        if let Some(marks) = cells.marks(some, &party) {
+            break marks;
+        }
+        cells.double();
     };
+    let mut some = some.iter().peekable();
+    let mut near = cells.shared(&marks);
+    near.retain(|t| {
+        while some.next_if(|s| *s < t).is_some() {}
+        some.next_if_eq(&t).is_none()
+    });
+    let mut near: Vec<(u32, u32)> = near.into_iter().map(|t| (party(t), t)).collect();
     near.sort_unstable();
     near
 }
 
-/// All triangles but some, ascending.
-#[derive(Clone, Copy)]
-struct Others<'a> {
-    some: &'a [u32],
-    count: usize,
-}
-
-impl<'a> Others<'a> {
-    fn each(self) -> impl Iterator<Item = u32> + 'a {
-        self.within(0..as_number(self.count))
-    }
-
-    /// Those in a range, ascending.
-    fn within(self, range: Range<u32>) -> impl Iterator<Item = u32> + 'a {
-        let place = |t: u32| self.some.partition_point(|s| *s < t);
-        let some = &self.some[place(range.start)..place(range.end)];
-        let mut next = range.start;
-        some.iter()
-            .copied()
-            .chain([range.end])
-            .flat_map(move |end| {
-                let between = next..end;
-                next = end + 1;
-                between
-            })
-    }
-
-    /// The triangles in shares, each of which one thread looks through.
-    fn shares(self) -> Vec<Range<u32>> {
-        let starts = (0..self.count).step_by(SHARE);
-        let share = |start: usize| as_number(start)..as_number(self.count.min(start + SHARE));
-        starts.map(share).collect()
-    }
-
-    /// Those in a cell with one that is left out, or with one of another party.
-    fn near(self, faces: &Faces, party: impl Fn(u32) -> u32 + Sync + Send) -> Vec<(u32, u32)> {
-        let Some(mut grid) = Grid::around(faces) else {
-            return Vec::new();
-        };
-        loop {
-            let places = Places::of(faces, grid);
-            if let Some(marks) = self.marks(&places, &party) {
-                let near = each(Worth::Task, self.shares(), |share| {
-                    let shared = |t: &u32| marks.is_shared(places.corners(*t));
-                    let near = self.within(share).filter(shared);
-                    near.map(|t| (party(t), t)).collect::<Vec<_>>()
-                });
-                return near.concat();
-            }
-            grid = grid.coarser();
-        }
-    }
-
-    /// The marks of all triangles; `None` if they reach into more cells than are worth marking.
-    fn marks(self, places: &Places, party: impl Fn(u32) -> u32 + Sync + Send) -> Option<Marks> {
-        let marked = each(Worth::Task, self.shares(), |share| {
-            let mut marks = places.grid.marks(share.len());
-            let mark = |t: u32| marks.mark(places.corners(t), party(t) + 1);
-            self.within(share).try_for_each(mark).map(|()| marks)
-        });
-        let mut all = places.grid.marks(self.some.len());
-        for marks in marked {
-            all = all.joined(marks?);
-        }
-        let mut some = self.some.iter();
-        some.try_for_each(|t| all.mark(places.corners(*t), SHARED))?;
-        Some(all)
-    }
-}
+/// The number of a cell of the grid: so many bits for each axis.
+type Cell = u16;
 
 /// The cells of a grid in which the corners of triangles lie.
-struct Places<'a> {
-    faces: &'a Faces<'a>,
-    grid: Grid,
+struct Cells<'a> {
+    triangles: &'a [[VertexId; 3]],
     /// Of the vertices.
     cells: Vec<Cell>,
-}
-
-impl<'a> Places<'a> {
-    fn of(faces: &'a Faces, grid: Grid) -> Self {
-        let mut cells = vec![0; faces.vertices.len()];
-        fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
-            for (place, cell) in places.iter().zip(cells) {
-                *cell = grid.cell(place);
-            }
-        });
-        Self { faces, grid, cells }
-    }
-
-    fn corners(&self, triangle: u32) -> [Cell; 3] {
-        self.faces.triangles[triangle as usize].map(|v| self.cells[v.place()])
-    }
+    /// Bits of the number of cells along an axis.
+    bits: u32,
 }
 
 /// The mark of cells with triangles of several parties, or with one of those that are asked about.
 const SHARED: u32 = u32::MAX;
 
-/// Cells over a mesh, each with the party whose triangles it holds, from 1 on.
-struct Marks {
-    grid: Grid,
-    of_cells: Vec<u32>,
-    /// So many more may be set, about.
-    left: usize,
-}
+/// For each cell the party whose triangles reach into it, from 1 on; 0 if none do.
+type Marks = Vec<AtomicU32>;
 
-impl Marks {
-    /// The marks of the triangles of both.
-    fn joined(mut self, other: Self) -> Self {
-        for (mark, party) in self.of_cells.iter_mut().zip(other.of_cells) {
-            *mark = joint(*mark, party);
-        }
-        self
-    }
-
-    /// Marks the cells that a triangle may meet; `None` if these are more than may be set.
-    fn mark(&mut self, corners: [Cell; 3], party: u32) -> Option<()> {
-        let of_cells = &mut self.of_cells;
-        let [a, b, c] = corners;
-        if a == b && b == c {
-            let mark = &mut of_cells[usize::from(a)];
-            *mark = joint(*mark, party);
-            return Some(());
-        }
-        let mut set = 0;
-        self.grid.visit(corners, |cell| {
-            of_cells[cell] = joint(of_cells[cell], party);
-            set += 1;
-            true
-        });
-        self.left = self.left.checked_sub(set)?;
-        Some(())
-    }
-
-    fn is_shared(&self, corners: [Cell; 3]) -> bool {
-        let mut shared = false;
-        self.grid.visit(corners, |cell| {
-            shared = self.of_cells[cell] == SHARED;
-            !shared
-        });
-        shared
-    }
-}
-
-/// The mark of a cell with what two marks tell of.
-#[inline]
-const fn joint(one: u32, other: u32) -> u32 {
-    if one == other || other == 0 {
-        one
-    } else if one == 0 {
-        other
-    } else {
-        SHARED
-    }
-}
-
-/// Equal cells over a mesh.
-#[derive(Clone, Copy)]
-struct Grid {
-    low: Point,
-    factor: Point,
-    /// Bits of the number of cells along an axis.
-    bits: u32,
-}
-
-/// The number of a cell of the grid, so many bits for each axis.
-type Cell = u16;
-
-impl Grid {
-    fn around(faces: &Faces) -> Option<Self> {
-        let first = *faces.vertices.first()?;
-        let (mut low, mut high) = (first, first);
-        for p in faces.vertices {
-            for i in 0..3 {
-                low[i] = low[i].min(p[i]);
-                high[i] = high[i].max(p[i]);
-            }
-        }
+impl<'a> Cells<'a> {
+    /// The cells of a grid around a mesh.
+    fn of(faces: &Faces<'a>) -> Self {
+        let first = faces.vertices.first().copied().unwrap_or_default();
+        let end = |extreme: fn(f64, f64) -> f64| {
+            let joined = |a: Point, b: &Point| each_axis(|i| extreme(a[i], b[i]));
+            faces.vertices.iter().fold(first, joined)
+        };
+        let (low, high) = (end(f64::min), end(f64::max));
         let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
         let bits = size.next_power_of_two().ilog2();
-        let factor =
-            |i: usize| as_double(1usize << bits) / (high[i] - low[i]).max(f64::MIN_POSITIVE);
-        Some(Self {
-            low,
-            factor: each_axis(factor),
-            bits,
-        })
-    }
-
-    /// The same with half as many cells along each axis.
-    fn coarser(mut self) -> Self {
-        self.bits -= 1;
-        self.factor = self.factor.map(|x| x / 2.0);
-        self
-    }
-
-    /// A mark for each cell, none set, for so many triangles.
-    fn marks(self, triangles: usize) -> Marks {
-        Marks {
-            grid: self,
-            of_cells: vec![0; 1 << (3 * self.bits)],
-            left: SPREAD * triangles,
-        }
-    }
-
-    #[allow(
-        clippy::cast_sign_loss,
-        clippy::cast_possible_truncation,
-        reason = "no place is below the lowest, and none beyond the size"
-    )]
-    fn cell(self, p: &Point) -> Cell {
-        let last = (1 << self.bits) - 1;
-        let place = |i: usize| (((p[i] - self.low[i]) * self.factor[i]) as Cell).min(last);
-        self.number([place(0), place(1), place(2)])
-    }
-
-    fn number(self, [x, y, z]: [Cell; 3]) -> Cell {
-        (x << self.bits | y) << self.bits | z
-    }
-
-    /// Call a function with each cell that a triangle may meet, until it says no.
-    #[inline]
-    fn visit(self, corners: [Cell; 3], mut visit: impl FnMut(usize) -> bool) {
-        let [a, b, c] = corners;
-        if a == b && b == c {
-            visit(usize::from(a));
-            return;
-        }
-        let last = (1 << self.bits) - 1;
-        let [x, y, z] = [2, 1, 0].map(|above| {
-            let [a, b, c] = corners.map(|cell| cell >> (above * self.bits) & last);
-            a.min(b).min(c)..=a.max(b).max(c)
+        let along = as_double(1usize << bits);
+        let factor = each_axis(|i| along / (high[i] - low[i]).max(f64::MIN_POSITIVE));
+        let mut cells = vec![0; faces.vertices.len()];
+        fill_chunks(faces.vertices, &mut cells, |_, places, cells| {
+            for (place, cell) in places.iter().zip(cells) {
+                let at = each_axis(|i| along_axis((place[i] - low[i]) * factor[i], bits));
+                *cell = number(at, bits);
+            }
         });
-        for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
-            for z in z.clone() {
-                if !visit(usize::from(self.number([x, y, z]))) {
-                    return;
+        Self {
+            triangles: faces.triangles,
+            cells,
+            bits,
+        }
+    }
+
+    /// Makes one cell of two along each axis.
+    fn double(&mut self) {
+        let bits = self.bits - 1;
+        let doubled = |cell| number(self.place(cell).map(|k| k >> 1), bits);
+        self.cells = self.cells.iter().map(|cell| doubled(*cell)).collect();
+        self.bits = bits;
+    }
+
+    /// The place of a cell along each axis.
+    #[inline]
+    fn place(&self, cell: Cell) -> [Cell; 3] {
+        [2, 1, 0].map(|above| cell >> (above * self.bits) & ((1 << self.bits) - 1))
+    }
+
+    /// Return whether two cells are neighbours along an axis.
+    #[inline]
+    fn are_beside(&self, low: Cell, high: Cell) -> bool {
+        let along = |above: u32| {
+            let shift = above * self.bits;
+            high - low == 1 << shift && (low ^ high) >> shift < 1 << self.bits
+        };
+        along(0) || along(1) || along(2)
+    }
+
+    /// The marks of all triangles; `None` if they reach into more cells than are worth marking.
+    fn marks(&self, some: &[u32], party: impl Fn(u32) -> u32 + Sync) -> Option<Marks> {
+        let mut marks = Vec::new();
+        marks.resize_with(1 << (3 * self.bits), AtomicU32::default);
+        let marked = each_chunk(self.triangles, |first, triangles| {
+            let numbered = (as_number(first)..).zip(triangles);
+            let parties = numbered.map(|(t, corners)| (*corners, party(t) + 1));
+            self.mark(&marks, parties, triangles.len())
+        });
+        let shared = some.iter().map(|t| (self.triangles[*t as usize], SHARED));
+        let all = marked.into_iter().all(|done| done);
+        (all && self.mark(&marks, shared, some.len())).then_some(marks)
+    }
+
+    /// Marks the cells of so many triangles; says whether they reach into few enough.
+    fn mark(
+        &self,
+        marks: &Marks,
+        parties: impl Iterator<Item = ([VertexId; 3], u32)>,
+        count: usize,
+    ) -> bool {
+        let mut left = SPREAD * count;
+        for (corners, party) in parties {
+            let mut reached = 0;
+            self.any_row(marks, corners, |row| {
+                reached += row.len();
+                for mark in row {
+                    join(mark, party);
+                }
+                false
+            });
+            if reached > left {
+                return false;
+            }
+            left -= reached;
+        }
+        true
+    }
+
+    /// The triangles that reach into a shared cell, ascending.
+    fn shared(&self, marks: &Marks) -> Vec<u32> {
+        let is_shared = |mark: &AtomicU32| mark.load(Ordering::Relaxed) == SHARED;
+        let near = each_chunk(self.triangles, |first, triangles| {
+            let numbered = (as_number(first)..).zip(triangles);
+            let near = numbered.filter(|(_, corners)| {
+                self.any_row(marks, **corners, |row| row.iter().any(is_shared))
+            });
+            near.map(|(t, _)| t).collect::<Vec<u32>>()
+        });
+        near.concat()
+    }
+
+    /// Return whether something holds for the marks in one of the rows of cells that a triangle may
+    /// reach into.
+    #[inline]
+    fn any_row(
+        &self,
+        marks: &[AtomicU32],
+        corners: [VertexId; 3],
+        mut holds: impl FnMut(&[AtomicU32]) -> bool,
+    ) -> bool {
+        let cells @ [a, b, c] = corners.map(|v| self.cells[v.place()]);
+        if a == b && b == c {
+            return holds(&marks[usize::from(a)..=usize::from(a)]);
+        }
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        if (a == b || b == c || c == a) && self.are_beside(low, high) {
+            let mut holds = |cell: Cell| holds(&marks[usize::from(cell)..=usize::from(cell)]);
+            return holds(low) || holds(high);
+        }
+        let places = cells.map(|cell| self.place(cell));
+        let [x, y, z] = each_axis(|i| {
+            let [a, b, c] = places.map(|place| usize::from(place[i]));
+            (a.min(b).min(c), a.max(b).max(c))
+        });
+        for x in x.0..=x.1 {
+            for y in y.0..=y.1 {
+                let row = (x << self.bits | y) << self.bits;
+                if holds(&marks[row + z.0..=row + z.1]) {
+                    return true;
                 }
             }
+        }
+        false
+    }
+}
+
+fn number([x, y, z]: [Cell; 3], bits: u32) -> Cell {
+    (x << bits | y) << bits | z
+}
+
+/// The cell at a place along an axis.
+#[allow(
+    clippy::cast_sign_loss,
+    clippy::cast_possible_truncation,
+    reason = "no place is below the lowest, and the last cell takes what lies beyond"
+)]
+fn along_axis(place: f64, bits: u32) -> Cell {
+    (place as Cell).min((1 << bits) - 1)
+}
+
+/// Marks a cell with a party, too. Whoever does so first, the mark becomes the same.
+#[inline]
+fn join(mark: &AtomicU32, party: u32) {
+    let mut old = mark.load(Ordering::Relaxed);
+    while old != party && old != SHARED {
+        let joint = if old == 0 { party } else { SHARED };
+        match mark.compare_exchange_weak(old, joint, Ordering::Relaxed, Ordering::Relaxed) {
+            Ok(_) => return,
+            Err(now) => old = now,
         }
     }
 }
@@ -296,7 +235,6 @@ impl Grid {
 mod tests {
     use super::*;
     use crate::geometry::doubles::extent::Extent;
-    use crate::mesh::handle::VertexId;
 
     /// Small triangles in a cube, their places taken from numbers that look random.
     fn scattered(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
@@ -334,14 +272,9 @@ mod tests {
             vertices: &vertices,
             triangles: &triangles,
         };
-        let others = Others {
-            some: &[0],
-            count: triangles.len(),
-        };
-        let grid = Grid::around(&faces).expect("vertices");
-        assert!(others.marks(&Places::of(&faces, grid), |_| 0).is_none());
+        assert!(Cells::of(&faces).marks(&[0], |_| 0).is_none());
         let company = in_company(&faces, &[0], |_| 0);
-        assert!(company.contains(&(0, 1)) && company.len() < others.count);
+        assert!(company.contains(&(0, 1)) && company.len() < triangles.len() - 1);
     }
 
     #[test]
