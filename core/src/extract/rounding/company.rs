@@ -54,8 +54,7 @@ type Cell = u16;
 /// The cells of a grid in which the corners of triangles lie.
 struct Cells<'a> {
     triangles: &'a [[VertexId; 3]],
-    /// Of the vertices.
-    cells: Vec<Cell>,
+    of_vertices: Vec<Cell>,
     /// Bits of the number of cells along an axis.
     bits: u32,
 }
@@ -88,7 +87,7 @@ impl<'a> Cells<'a> {
         });
         Self {
             triangles: faces.triangles,
-            cells,
+            of_vertices: cells,
             bits,
         }
     }
@@ -97,7 +96,7 @@ impl<'a> Cells<'a> {
     fn double(&mut self) {
         let bits = self.bits - 1;
         let doubled = |cell| number(self.place(cell).map(|k| k >> 1), bits);
-        self.cells = self.cells.iter().map(|cell| doubled(*cell)).collect();
+        self.of_vertices = self.of_vertices.iter().map(|cell| doubled(*cell)).collect();
         self.bits = bits;
     }
 
@@ -178,7 +177,7 @@ impl<'a> Cells<'a> {
         corners: [VertexId; 3],
         mut holds: impl FnMut(&[AtomicU32]) -> bool,
     ) -> bool {
-        let cells @ [a, b, c] = corners.map(|v| self.cells[v.place()]);
+        let cells @ [a, b, c] = corners.map(|v| self.of_vertices[v.place()]);
         if a == b && b == c {
             return holds(&marks[usize::from(a)..=usize::from(a)]);
         }
