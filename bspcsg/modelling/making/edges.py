@@ -5,12 +5,14 @@ from typing import ClassVar
 import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, Scalar
+from ...owned import owning
 from ...parameters import truth_value
 from ...solid.solid import Solid
 from .selection import Selection, as_bend, bends
 from .skeleton import Skeleton, skeleton_of
 
 
+@owning
 class EdgeSelection(Selection):
     """Edges of a solid, each between two plane faces, from corner to corner.
 

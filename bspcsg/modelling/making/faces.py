@@ -6,6 +6,7 @@ import numpy as np
 
 from ..._types import BoolArray, FloatArray, IndexArray, Scalar
 from ...errors import invalid_parameter
+from ...owned import owning
 from ...parameters import truth_value
 from ...solid.counting import uncounted
 from ...solid.solid import Solid
@@ -20,6 +21,7 @@ _AS_WIDE = 2.0
 _AT_A_TIME = 1_000_000
 
 
+@owning
 class FaceSelection(Selection):
     """Faces of a solid: flat ones, and round ones made of flat facets.
 
