@@ -14,13 +14,15 @@ use super::support::{assert_same_set, manifold_mesh, normalized, volume, Numbers
 const REACH: i64 = 60;
 
 /// The ways to combine two operands.
-fn terms() -> [Vec<Term>; 4] {
+fn terms() -> [Vec<Term>; 6] {
     let with = |more: Vec<Term>| [vec![Term::Operand(0), Term::Operand(1)], more].concat();
     [
         with(vec![Term::Or(vec![0, 1])]),
         with(vec![Term::And(vec![0, 1])]),
         with(vec![Term::Not(1), Term::And(vec![0, 2])]),
         with(vec![Term::Xor(vec![0, 1])]),
+        with(vec![Term::Not(0), Term::And(vec![1, 2])]),
+        with(vec![Term::And(vec![0, 1]), Term::Xor(vec![2, 1])]),
     ]
 }
 
@@ -52,7 +54,13 @@ fn compared(count: usize, mut pair: impl FnMut() -> [Solid; 2]) -> usize {
             assert_same_set(&found, &expected);
             if found.is_reduced() {
                 assert_eq!(volume(&found), volume(&expected), "{k}");
-                manifold_mesh(&found, "arranged");
+                let [found, expected] = [&found, &expected].map(|s| manifold_mesh(s, "arranged"));
+                assert_eq!(found.triangles, expected.triangles, "{k}");
+                assert_eq!(
+                    (found.origins, found.flips),
+                    (expected.origins, expected.flips),
+                    "{k}"
+                );
             }
         }
     }

@@ -18,7 +18,8 @@ pub(super) enum Kept {
 /// What stays of two operands.
 #[derive(Debug)]
 pub(super) struct Pair {
-    /// By operand, by whether the other one holds what is in front of a face, and what is behind.
+    /// By operand, by whether the other one holds what is in front of a face, and what is behind. Of
+    /// faces in one plane it is the owner that stays.
     of: [[[Option<Orientation>; 2]; 2]; 2],
     /// The value outside of both operands.
     outside: bool,
@@ -29,12 +30,16 @@ impl Pair {
         let mut scratch = Vec::new();
         let mut value = |inside: [bool; 2]| expression.value(|k| inside[k as usize], &mut scratch);
         let mut stays = |operand: usize, in_front: bool, behind: bool| {
-            let mut at = |own: bool, other: bool| {
+            let inside = |own: bool, other: bool| {
                 let mut inside = [other; 2];
                 inside[operand] = own;
-                value(inside)
+                inside
             };
-            between(at(false, in_front), at(true, behind))
+            let (in_front, behind) = (inside(false, in_front), inside(true, behind));
+            let word = |inside: [bool; 2], k: u32| u64::from(inside[k as usize]);
+            let owners = expression.owners(|k| word(behind, k), |k| word(in_front, k));
+            let owns = owners.iter().any(|(k, _)| *k as usize == operand);
+            between(value(in_front), value(behind)).filter(|_| owns)
         };
         let of = [0, 1].map(|operand| {
             [false, true].map(|front| [false, true].map(|behind| stays(operand, front, behind)))
@@ -108,11 +113,13 @@ impl Kept {
     ) -> Result<Option<Orientation>, Declined> {
         let in_front = first + cell.in_front;
         let behind = in_front + cell.behind;
-        let stays = match self {
-            Self::Pair(_) if cell.covers > 1 => return Err(Declined::Overlap),
-            Self::Pair(pair) => pair.at(operand, [in_front, behind])?,
-            Self::Alone(rule) => between(rule.inside(in_front), rule.inside(behind + 1)),
-        };
-        Ok(stays.filter(|_| !cell.is_others))
+        match self {
+            Self::Pair(_) if cell.covers > 1 => Err(Declined::Overlap),
+            Self::Pair(pair) => pair.at(operand, [in_front, behind]),
+            Self::Alone(rule) => {
+                let stays = between(rule.inside(in_front), rule.inside(behind + 1));
+                Ok(stays.filter(|_| !cell.is_others))
+            }
+        }
     }
 }
