@@ -166,7 +166,7 @@ def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Targe
     if made.turned:
         lines.append(f"{counted(made.turned, 'triangle')} faced inwards and were turned round.")
     if made.dropped:
-        lines.append(f"{counted(made.dropped, 'triangle')} of stray fragments were dropped.")
+        lines.append(f"Dropped {counted(made.dropped, 'triangle')} of stray fragments.")
     return "\n".join([*lines, f"{shown(target.path)}: {_verdict(after)}"])
 
 

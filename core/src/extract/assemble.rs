@@ -34,8 +34,8 @@ struct SplitFace {
     inner: [Vec<u32>; 3],
 }
 
-/// Groups of as many edges are looked through faster than a table of their points is made.
-const SMALL: usize = 16;
+/// Edges of a group that are searched one by one, at most: a table of their points takes longer to make.
+const MAX_EDGES_SEARCHED: usize = 16;
 
 /// The mesh of a bounded solid.
 ///
@@ -172,7 +172,7 @@ impl Assembly<'_> {
     /// Numbers the ends of a group's edges; those that two edges share are looked up once.
     fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
         let start = edges.len();
-        if group.edges().len() > SMALL {
+        if group.edges().len() > MAX_EDGES_SEARCHED {
             let mut known: HashMap<*const Vertex, u32> = HashMap::default();
             for e in group.edges() {
                 let [from, to] = [&e.from, &e.to].map(|at| {

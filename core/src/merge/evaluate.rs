@@ -23,7 +23,7 @@ use crate::tree::table::Table;
 
 /// An operand of which kernels took so many elements is likely to be a step of a chain of which the
 /// next step wants as much: that takes a millisecond or more, and to wake a pool some 50 µs.
-const LONG: u64 = 512;
+const POOL_AFTER: u64 = 512;
 
 /// The value of an expression whose operands are these solids.
 ///
@@ -90,7 +90,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let run = |roots| descent.run(expression.clone(), roots);
         let visit = || {
-            if operands.iter().any(|s| s.effort() >= LONG) {
+            if operands.iter().any(|s| s.effort() >= POOL_AFTER) {
                 handed_over(roots, run).unwrap_or_else(run)
             } else {
                 run(roots)
@@ -394,7 +394,7 @@ mod tests {
         let step = made_of(&[cuboid([1; 3], [9; 3]), cuboid([2; 3], [12; 3])], Term::Or);
         let [first, second] = [step.by_effort(0), cuboid([5; 3], [13; 3])];
         let (short, none) = shared(&[first.clone(), second.clone()]);
-        let (long, one) = shared(&[first.by_effort(LONG), second]);
+        let (long, one) = shared(&[first.by_effort(POOL_AFTER), second]);
         assert_eq!((none, one), (0, 1));
         assert_eq!(short, long);
     }

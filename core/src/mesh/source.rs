@@ -44,9 +44,9 @@ pub enum Shape {
     HalfSpace(Arc<Plane>),
 }
 
-/// One vertex in so many, or fewer, is looked at alone; of more all are looked at, which is kept for
-/// the next operation.
-const FEW: usize = 4;
+/// Look at one vertex alone if at most one in so many is asked for; of more all are looked at, which is
+/// kept for the next operation.
+const ALONE_IF_ONE_IN: usize = 4;
 
 /// The code of the finding that vertices were welded.
 pub(super) const WELDED: &str = "welded";
@@ -207,7 +207,7 @@ impl Source {
     ) -> Vec<VertexId> {
         let known = self.irregular.get().is_some() || !self.open_vertices().is_empty();
         match self.mesh() {
-            Some(mesh) if !known && used < mesh.vertices.len() / FEW => {
+            Some(mesh) if !known && used < mesh.vertices.len() / ALONE_IF_ONE_IN => {
                 let all = VertexId::all().take(mesh.vertices.len());
                 let used = all.filter(|v| is_used(*v)).collect();
                 links::irregular_among(used, &mesh.faces, mesh.vertices.len())

@@ -26,8 +26,8 @@ use crate::mesh::topology::NONE;
 /// only, and are compared with these sooner than terrains are found.
 const NEEDLE: f64 = 16.0;
 
-/// So few needles are compared with each other before terrains are found.
-const FEW: usize = 256;
+/// Needles that are compared with each other before terrains are found, at most.
+const MAX_NEEDLES_COMPARED: usize = 256;
 
 /// Pieces of fewer triangles are not worth a sweep.
 const LEAST: usize = 4;
@@ -45,7 +45,7 @@ pub fn terrains(faces: &Faces, some: &[u32]) -> Vec<u32> {
     let is_thin = |t: &u32| is_needle(&faces.corners(*t));
     let needles: Vec<u32> = some.iter().copied().filter(is_thin).collect();
     let mut terrains = vec![NONE; some.len()];
-    if needles.len() <= FEW {
+    if needles.len() <= MAX_NEEDLES_COMPARED {
         return terrains;
     }
     let mut found = needles_terrains(faces, &needles)

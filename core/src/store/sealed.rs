@@ -29,7 +29,7 @@ const VERSION: u8 = 3;
 const OLDEST: u8 = 2;
 
 /// The first byte of version 1, which had neither mark nor checksum.
-const FIRST: u8 = 1;
+const VERSION_ONE: u8 = 1;
 
 const HEAD: usize = MARK.len() + 2;
 const CHECKSUM: usize = 4;
@@ -88,7 +88,7 @@ pub fn unseal<T: DeserializeOwned>(kind: Kind, bytes: &[u8]) -> Result<T> {
 }
 
 fn payload(kind: Kind, bytes: &[u8]) -> Result<&[u8]> {
-    if let Some((&FIRST, payload)) = bytes.split_first() {
+    if let Some((&VERSION_ONE, payload)) = bytes.split_first() {
         return Ok(payload);
     }
     let head = [&MARK[..], &[kind.letter()]].concat();

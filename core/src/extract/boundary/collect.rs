@@ -38,8 +38,8 @@ pub struct Boundary {
     pub near: Vec<SourceFace>,
 }
 
-/// Fewer faces than this are looked at on one thread.
-const MANY: usize = 256;
+/// Faces from which several threads look at them.
+const PARALLEL_FROM: usize = 256;
 
 /// One in so many faces must be listed for counting to be faster than sorting.
 const SPARSE: usize = 16;
@@ -68,7 +68,7 @@ impl Collector<'_> {
             .chunk_by(|a, b| a.face.face == b.face.face)
             .collect();
         let whole = carried(|run: &&[Spanning]| self.is_whole(run));
-        let whole: Vec<bool> = if in_pool() && runs.len() > MANY {
+        let whole: Vec<bool> = if in_pool() && runs.len() > PARALLEL_FROM {
             runs.par_iter().map(whole).collect()
         } else {
             runs.iter().map(whole).collect()
@@ -122,7 +122,7 @@ impl Collector<'_> {
         let same = |a: &Piece, b: &Piece| a.face == b.face;
         let runs: Vec<&mut [Piece]> = pieces.chunk_by_mut(same).collect();
         let joined = carried(|run: &mut [Piece]| self.joined(run));
-        let found: Vec<CutFace> = if in_pool() && runs.len() > MANY {
+        let found: Vec<CutFace> = if in_pool() && runs.len() > PARALLEL_FROM {
             runs.into_par_iter().map(joined).collect()
         } else {
             runs.into_iter().map(joined).collect()

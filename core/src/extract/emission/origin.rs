@@ -9,8 +9,8 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 use crate::mesh::source::Shape;
 
-/// So few points are looked for among all faces near them: halving them costs as much.
-const FEW: usize = 8;
+/// Points that are looked for among all faces near them, at most: halving more costs less.
+const MAX_POINTS_UNHALVED: usize = 8;
 
 /// Halving points that leaves both halves together more sixteenths of the faces, seven of eight each,
 /// does not pay for itself.
@@ -90,7 +90,7 @@ impl<'a> Owners<'a> {
     /// Two searches in place of one, or the one itself if that gains little.
     fn halved<'p>(&self, search: Search<'p>) -> Result<[Search<'p>; 2], Search<'p>> {
         let Search { points, faces } = search;
-        if points.len() <= FEW || faces.len() <= FEW {
+        if points.len() <= MAX_POINTS_UNHALVED || faces.len() <= MAX_POINTS_UNHALVED {
             return Err(Search { points, faces });
         }
         let [low, high] = bounds(points);

@@ -23,7 +23,7 @@ use crate::mesh::triangles::TriangleMesh;
 const BATCH: usize = 8 * CHUNK;
 
 /// As many are looked at first where the search may end; then twice as many each time.
-const FIRST: usize = 256;
+const FIRST_BATCH: usize = 256;
 
 /// A mesh as quick looks at its faces need it.
 pub(super) struct View<'a> {
@@ -84,7 +84,7 @@ impl<'a> View<'a> {
         let mut search = Search {
             view: self,
             until_overlap,
-            batch: if until_overlap { FIRST } else { BATCH },
+            batch: if until_overlap { FIRST_BATCH } else { BATCH },
             waiting: Vec::new(),
             found: Vec::new(),
         };

@@ -6,7 +6,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
-use crate::merge::kernels::general::MOST;
+use crate::merge::kernels::general::MAX_OPERANDS;
 
 /// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
 /// their position: local trees cost the square, smaller cells cost halvings and cut faces.
@@ -66,9 +66,9 @@ pub const GROUPED: usize = 3;
 /// again, and of more operands most of what crosses lies inside of others.
 pub const TOGETHER: usize = 8;
 
-/// So many operands in one place are evaluated in groups even before a kernel is asked: what is left
+/// Operands in one place from which groups are evaluated before a kernel is asked: what is left
 /// of a group's boundaries is less than all of them, and all of them cross each other.
-const MANY: usize = 16;
+const GROUPS_FROM: usize = 16;
 
 /// The least share of a cell's elements that should lie in small parts in which several operands
 /// have some: others cost the kernel for general position little more than halving costs.
@@ -200,7 +200,7 @@ impl Round {
     /// That looks at all elements, halving only at where they are: so a share of at least `MIXED`
     /// should lie in small parts of the cell where several operands have some.
     pub fn suits_general_position(&self, cell: &Cell, states: &States, total: usize) -> bool {
-        if states.len() > MOST || total > self.refused / RETRY {
+        if states.len() > MAX_OPERANDS || total > self.refused / RETRY {
             return false;
         }
         if states.iter().all(|s| s.1.is_given()) {
@@ -240,7 +240,7 @@ fn longest([low, high]: [Lattice; 2]) -> i64 {
 
 /// Return whether so many operands are in one place that no kernel should be asked.
 pub fn is_overcrowded(cell: &Cell, states: &States) -> bool {
-    states.len() >= MANY && is_crowded(cell, states)
+    states.len() >= GROUPS_FROM && is_crowded(cell, states)
 }
 
 /// Return whether operands are in one place: one of three pairs of them has boxes that overlap in
@@ -249,7 +249,7 @@ pub fn is_crowded(cell: &Cell, states: &States) -> bool {
     if states.len() < GROUPED {
         return false;
     }
-    let some = states.iter().step_by(states.len().div_ceil(MOST));
+    let some = states.iter().step_by(states.len().div_ceil(MAX_OPERANDS));
     let boxes: Vec<[Lattice; 2]> = some.map(|s| within(cell, s.1.bounds(cell))).collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::choice::{extent, is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK};
 use super::counters::Counters;
 use super::join;
-use super::state::{find, has_constant, has_surface, nested, worth, State, States, MANY};
+use super::state::{find, has_constant, has_surface, nested, worth, State, States, BINS_FROM};
 use super::twins::{self, Firsts};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
@@ -277,7 +277,7 @@ impl<'a> Descent<'a> {
             return self.grouped(cell, parted, states, 0);
         }
         // No level of bins suited these faces, so halving will not separate them either.
-        let long = listed && opening >= MANY;
+        let long = listed && opening >= BINS_FROM;
         if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
             let kernel: &dyn Kernel = if stuck {
                 &GeneralPosition::LAST
@@ -363,7 +363,7 @@ impl<'a> Descent<'a> {
     fn opened(&self, cell: &Cell, states: States, opening: usize) -> States {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
-        if in_pool() && opening >= 8 * MANY {
+        if in_pool() && opening >= 8 * BINS_FROM {
             return states.into_par_iter().map(carried(open)).collect();
         }
         states.into_iter().map(open).collect()

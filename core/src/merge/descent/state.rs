@@ -30,11 +30,11 @@ pub const fn worth(elements: usize) -> Worth {
     }
 }
 
-/// Deferred leaves at least this long are sorted into bins instead of being halved.
-pub const MANY: usize = 1024;
+/// Faces from which a deferred leaf is sorted into bins instead of being halved.
+pub const BINS_FROM: usize = 1024;
 
-/// With so few entries in a cell the bins give way to a list.
-const FEW: usize = 64;
+/// Entries in a cell at which the bins give way to a list, at most.
+const MAX_ENTRIES_LISTED: usize = 64;
 
 /// The state of an operand in a cell: what is known of it there.
 #[derive(Clone, Debug)]
@@ -224,7 +224,7 @@ impl State {
     pub fn opened(self, cell: &Cell, sources: &Sources, binned: &AtomicU64) -> Self {
         match self {
             Self::Tree(branch) if branch.cell == *cell => opened_leaf(branch, sources, binned),
-            Self::Bins(bins) if !bins.divide(cell) || bins.len_in(cell) <= FEW => {
+            Self::Bins(bins) if !bins.divide(cell) || bins.len_in(cell) <= MAX_ENTRIES_LISTED => {
                 opened_leaf(bins.branch_in(cell), sources, binned)
             }
             other => other,
@@ -270,7 +270,7 @@ fn bounds_below(branch: &Branch) -> [Lattice; 2] {
         return whole;
     };
     match leaf.groups.as_slice() {
-        [group] if leaf.len() <= FEW && leaf.parts.is_empty() => {
+        [group] if leaf.len() <= MAX_ENTRIES_LISTED && leaf.parts.is_empty() => {
             let around = group.source.box_around(&group.faces);
             around.map_or(whole, <[Lattice; 2]>::from)
         }
@@ -283,7 +283,7 @@ fn opened_leaf(branch: Branch, sources: &Sources, binned: &AtomicU64) -> State {
     let Node::Deferred(leaf) = &*branch.node else {
         return State::Tree(branch);
     };
-    let bins = if leaf.len() >= MANY {
+    let bins = if leaf.len() >= BINS_FROM {
         Bins::new(&branch)
     } else {
         None

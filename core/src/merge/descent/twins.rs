@@ -41,9 +41,9 @@ fn itself(operand: u32) -> Twin {
     }
 }
 
-/// So few subtrees are compared in a cell: of more, which are hardly steps of one chain, each would be
+/// Subtrees that are compared in a cell, at most: more are hardly steps of one chain, and each would be
 /// looked up in each cell.
-const FEW: usize = 16;
+const MAX_SUBTREES_COMPARED: usize = 16;
 
 /// The operands whose subtrees in a cell are the same node; `None` if all differ, or they are many.
 ///
@@ -51,7 +51,7 @@ const FEW: usize = 16;
 /// A look at each operand.
 pub fn of_one_node(states: &States) -> Option<Firsts> {
     let is_tree = |s: &&(u32, State)| matches!(s.1, State::Tree(_));
-    if !(2..=FEW).contains(&states.iter().filter(is_tree).count()) {
+    if !(2..=MAX_SUBTREES_COMPARED).contains(&states.iter().filter(is_tree).count()) {
         return None;
     }
     let mut known = HashMap::default();

@@ -7,11 +7,12 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 
-/// Up to this many boxes are compared all with all: halving them costs about as much.
-const FEW: usize = 256;
+/// Boxes that are compared all with all, at most: halving fewer costs about as much.
+const MAX_COMPARED: usize = 256;
 
-/// Up to this many that halving does not separate are compared even so: a sweep costs about as much.
-pub const SOME: usize = 384;
+/// Boxes that are compared although halving does not separate them, at most: a sweep of fewer costs
+/// about as much.
+pub const MAX_COMPARED_UNSEPARATED: usize = 384;
 
 /// So many pairs of boxes are compared in the time of one unit of work.
 const PAIRS: usize = 16;
@@ -114,8 +115,8 @@ pub fn pairs(
     mut meet: impl FnMut(u32, u32) -> Option<()>,
     mut crowd: impl FnMut(&[Boxed], &Space) -> Option<()>,
 ) -> Option<()> {
-    part.halved(FEW, |part| {
-        if part.elements.len() <= SOME {
+    part.halved(MAX_COMPARED, |part| {
+        if part.elements.len() <= MAX_COMPARED_UNSEPARATED {
             let space = part.space;
             compare_all(&part.elements, &space, |a, b| {
                 space.if_owned(a, b, || meet(a.number, b.number))

@@ -11,8 +11,8 @@ use crate::arith::convert::as_double;
 use crate::geometry::doubles::Triangle;
 use crate::interrupt::spend;
 
-/// So few fragments are compared all with all: dividing them costs about as much.
-const FEW: usize = 64;
+/// Fragments that are compared all with all, at most: dividing fewer costs about as much.
+const MAX_FRAGMENTS_COMPARED: usize = 64;
 
 /// Each axis is divided at one of so many places, less one.
 const PLACES: usize = 16;
@@ -139,7 +139,7 @@ impl Iterator for Crowd {
             if whole.are_of_one_operand() {
                 continue;
             }
-            let many = whole.elements.len() > FEW;
+            let many = whole.elements.len() > MAX_FRAGMENTS_COMPARED;
             match many.then(|| self.divide(&whole)).flatten() {
                 Some(parts) => self.open.extend(parts),
                 None => return Some(whole),

@@ -7,8 +7,8 @@ use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// Among fewer elements than this other lines than the axes are not worth finding.
-pub const MANY: usize = 512;
+/// Elements from which other lines than the axes are worth finding.
+pub const SLANTED_LINES_FROM: usize = 512;
 
 /// Lines closer than this cosine are nearly one: their plane shows little.
 const PARALLEL: f64 = 0.8;
@@ -70,7 +70,7 @@ impl Line {
     /// long, and slopes as seen from the corner that most of an operand's have in common.
     pub fn all(elements: &[&Swept]) -> Vec<Self> {
         let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
-        if elements.len() > MANY {
+        if elements.len() > SLANTED_LINES_FROM {
             let slanted = directions(elements);
             lines.extend(slanted.iter().filter_map(|d| Self::slanted(elements, d)));
             lines.extend(

@@ -135,7 +135,8 @@ fn compare(
 ) -> Option<()> {
     let mut open = vec![cell.elements];
     while let Some(crowd) = open.pop() {
-        let groups = (crowd.len() > boxes::SOME).then(|| divided(&crowd, &swept));
+        let groups =
+            (crowd.len() > boxes::MAX_COMPARED_UNSEPARATED).then(|| divided(&crowd, &swept));
         if let Some(Groups { elements, middle }) = groups.flatten() {
             let (first, second) = elements.split_at(middle);
             sweep_groups((first, second), &swept, &meet)?;

@@ -6,7 +6,7 @@
 //! also the edges of triangles tell them from boxes.
 
 use super::direction::{largest_coordinate, Span};
-use super::line::{longest_edge, Line, MANY};
+use super::line::{longest_edge, Line, SLANTED_LINES_FROM};
 use super::rim::{rims, HalfPlane};
 use super::Swept;
 use crate::arith::convert::as_double;
@@ -42,7 +42,7 @@ fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
     let (ours, others): (Vec<usize>, Vec<usize>) =
         (0..elements.len()).partition(|i| elements[*i].operand == own);
     let alike = |k: &usize| elements[*k].operand == elements[others[0]].operand;
-    if elements.len() <= MANY || others.is_empty() || !others.iter().all(alike) {
+    if elements.len() <= SLANTED_LINES_FROM || others.is_empty() || !others.iter().all(alike) {
         return vec![(0..elements.len()).collect()];
     }
     let (ours, others) = (by_length(elements, ours), by_length(elements, others));

@@ -18,8 +18,8 @@ const UNLIKE: usize = 8;
 /// A tree that has grown to more than this many times its size at first is built anew.
 const GROWTH: usize = 4;
 
-/// Trees of so few nodes are let grow.
-const SMALL: usize = 64;
+/// Nodes of a tree that is let grow, at most.
+const MAX_UNSHRUNK: usize = 64;
 
 /// Return the set that a set operation makes of two sets.
 ///
@@ -63,7 +63,7 @@ fn merged(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
     };
     let built = nodes(a).max(nodes(b));
     let mut set = PlaneSet::from(tree);
-    if set.size() > GROWTH * built + SMALL {
+    if set.size() > GROWTH * built + MAX_UNSHRUNK {
         return Ok(PlaneSet::from(Boundary::clone(set.boundary()?)));
     }
     set.spent.built = built;

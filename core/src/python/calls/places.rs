@@ -22,7 +22,7 @@ mod linux {
 
     /// Threads beyond which the kernel is left alone: each costs a call of the system, and among so
     /// many processors threads seldom meet.
-    const MOST: usize = 8;
+    const MAX_THREADS_PLACED: usize = 8;
 
     /// The time for which processors count as free: a hundred times what it takes to ask.
     const FRESH: Duration = Duration::from_millis(5);
@@ -54,7 +54,7 @@ mod linux {
         /// Has each thread begin on a processor of its own, the first on the caller's, which is about
         /// to wait. `None` where other work would lose by it, or another call holds the threads.
         pub fn hold(&self) -> Option<Held<'_>> {
-            if !(2..=MOST).contains(&self.threads.len()) {
+            if !(2..=MAX_THREADS_PLACED).contains(&self.threads.len()) {
                 return None;
             }
             let mut seen = self.seen.try_lock().ok()?;

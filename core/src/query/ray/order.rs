@@ -8,8 +8,8 @@ use super::cell::Frame;
 /// Bits of the place of entry on each axis.
 const BITS: u32 = 7;
 
-/// Batches of fewer rays are not sorted: all of the tree that they visit stays near.
-const FEW: usize = 256;
+/// Rays from which a batch is sorted: all of the tree that fewer visit stays near.
+const SORT_FROM: usize = 256;
 
 /// A batch of which at least one in so many pairs of neighbours go alike is left in its order.
 const ALIKE: usize = 2;
@@ -25,7 +25,7 @@ pub fn sorted<const D: usize>(
     frame: &Frame<D>,
     ray: impl Fn(usize) -> ([f64; D], [f64; D]),
 ) -> Option<Vec<u32>> {
-    if count < FEW {
+    if count < SORT_FROM {
         return None;
     }
     let count = u32::try_from(count).ok()?;

@@ -37,7 +37,7 @@ type Stack = SmallVec<[Open; 64]>;
 
 /// A leaf's list is tested from end to end, as the notes have it, up to so many facets, which takes
 /// some 40 µs; of a longer one those facets whose boxes the ray meets.
-const LONG: usize = 4096;
+const MAX_FACETS_TESTED: usize = 4096;
 
 /// A facet that was hit within a leaf, and its place in the leaf's list.
 #[derive(Clone, Copy, Debug)]
@@ -131,7 +131,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     /// Tests what of L(v) the ray may hit; hits within the leaf count for its heap.
     fn test_leaf(&mut self, node: NodeId, list: &Heap<S::Fragment>, visits: u64, to: f64) {
         self.trace.leaves += 1;
-        let hits = if list.len() > LONG {
+        let hits = if list.len() > MAX_FACETS_TESTED {
             self.search(node, list, to)
         } else {
             self.test_all(node, list, to)

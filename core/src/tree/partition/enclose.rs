@@ -14,7 +14,7 @@ use crate::geometry::spaces::space::Region;
 use crate::interrupt::poll;
 
 /// Lists of at most this many facets get no axis-parallel cut.
-const FEW: usize = 12;
+const MAX_WITHOUT_AXIS_CUT: usize = 12;
 
 /// The division of a tree above the facets' own hyperplanes.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,7 @@ fn planned_cut<S: AxisSpace>(
     facets: &[Facet<S>],
 ) -> Option<S::Hyperplane> {
     let given = plan.cuts.iter().find(|cut| region.span(cut).is_some());
-    if given.is_some() || !plan.axis_cuts || facets.len() <= FEW {
+    if given.is_some() || !plan.axis_cuts || facets.len() <= MAX_WITHOUT_AXIS_CUT {
         return given.cloned();
     }
     let middles = (0..S::DIM).filter_map(|axis| middle_cut(facets, axis));

@@ -22,7 +22,7 @@ type Neighbours = SmallVec<[u32; 6]>;
 
 /// The number of the first pair that is looked at as soon as it is found; then that of twice the number
 /// each time. Where many meet in a special way, the others need not be found.
-const FIRST: usize = 16;
+const FIRST_PAIR_LOOKED_AT: usize = 16;
 
 /// The fate of an element.
 pub(super) enum Fate {
@@ -144,7 +144,7 @@ impl Scene<'_> {
             found[i].push(b);
             found[j].push(a);
             count += 1;
-            if count >= FIRST && count.is_power_of_two() {
+            if count >= FIRST_PAIR_LOOKED_AT && count.is_power_of_two() {
                 self.meeting(i, &[b])?;
             }
             Some(())

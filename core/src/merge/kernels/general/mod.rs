@@ -29,8 +29,8 @@ use crate::merge::rule::Rule;
 use crate::tree::node::Node;
 use scene::Scene;
 
-/// More operands than this do not meet in one small cell, or are left to the local trees.
-pub const MOST: usize = 64;
+/// Operands in one small cell, at most; more are left to the local trees.
+pub const MAX_OPERANDS: usize = 64;
 
 /// Most faces by which another one is divided piece by piece, where the cell may be halved instead:
 /// the cost is the square of their number, that of a halving is not.
@@ -65,7 +65,7 @@ impl Kernel for GeneralPosition {
     fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
         let operands = &problem.operands;
         let simple = operands.iter().all(|l| (0..=1).contains(&l.list.corner));
-        let some = (2..=MOST).contains(&operands.len());
+        let some = (2..=MAX_OPERANDS).contains(&operands.len());
         if problem.rule != Rule::Positive || !simple || !some {
             return None;
         }

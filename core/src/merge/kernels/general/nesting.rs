@@ -19,8 +19,8 @@ use crate::interrupt::poll;
 /// of these within ten; the rest is room for the bound's own rounding.
 const DOUBT: f64 = 16.0 * f64::EPSILON;
 
-/// So many curves times segments are compared: some milliseconds, more than halving the cell costs.
-const MOST: usize = 1 << 20;
+/// Curves times segments that are compared, at most: some milliseconds, more than halving the cell costs.
+const MAX_CURVES_TIMES_SEGMENTS: usize = 1 << 20;
 
 /// Rays run aslant by so much: things stand in rows along axes, and a ray along a
 /// row would pass through corners.
@@ -113,7 +113,7 @@ impl<'a> View<'a> {
     /// Labels what divides an element.
     pub(super) fn label(&self, walls: &mut Walls, border: &mut Border) -> Result<(), Special> {
         let loops = self.loops(walls)?;
-        if loops.len().saturating_mul(walls.segments.len()) > MOST {
+        if loops.len().saturating_mul(walls.segments.len()) > MAX_CURVES_TIMES_SEGMENTS {
             return Err(Special);
         }
         let ending = border.operands();

@@ -13,7 +13,7 @@ use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
 /// Intervals on each axis, at most: the regions above a rectangle are the bits of one word.
-const MOST: usize = 64;
+const MAX_INTERVALS: usize = 64;
 
 /// The grid: on each axis intervals between lines, of which the first and last are the cell's walls.
 pub(super) struct Grid {
@@ -39,7 +39,7 @@ impl Grid {
             let plane = |at: &i64| Arc::new(Plane::axis_cut(i, *at));
             lines[i].iter().map(plane).collect()
         });
-        let fits = lines.iter().all(|l| l.len() <= MOST + 1);
+        let fits = lines.iter().all(|l| l.len() <= MAX_INTERVALS + 1);
         fits.then_some(Self { lines, planes })
     }
 

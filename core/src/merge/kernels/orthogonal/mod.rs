@@ -21,7 +21,7 @@ use grid::Grid;
 use keep::Scene;
 
 /// Words of all operands' columns, at most: two megabytes, which stay in a cache.
-const MOST: usize = 1 << 18;
+const MAX_WORDS: usize = 1 << 18;
 
 /// Works in the grid of the faces' planes.
 ///
@@ -43,7 +43,7 @@ fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let facets = Facets::new(problem.cell, operands, problem.sources)?;
     let grid = Grid::new(problem.cell, &facets)?;
-    if operands.len() * grid.columns() > MOST {
+    if operands.len() * grid.columns() > MAX_WORDS {
         return None;
     }
     let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
