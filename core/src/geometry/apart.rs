@@ -46,7 +46,7 @@ impl NearTriangle {
     }
 }
 
-/// Return whether two lattice triangles certainly have no point in common; errs on no.
+/// Return whether two lattice triangles certainly have no point in common; may return false negatives.
 ///
 /// They do not if one lies on one side of the other's plane, or else if the stretches in which they
 /// cover the line that both planes share are apart (Möller 1997; in signs alone as Guigue and

@@ -359,7 +359,7 @@ impl Polygon {
         Some(polygon)
     }
 
-    /// Return whether the polygon may reach beyond half a step outside low and high; errs on yes.
+    /// Return whether the polygon may reach beyond half a step outside low and high; may return false positives.
     fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {

@@ -141,7 +141,7 @@ impl Vertex {
         ([x - a, y - b, z - c], [x + a, y + b, z + c])
     }
 
-    /// Return whether this may be a lattice point; errs on yes.
+    /// Return whether this may be a lattice point; may return false positives.
     pub fn may_be(&self, place: &Lattice) -> bool {
         let (low, high) = self.bounds();
         (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
@@ -212,7 +212,7 @@ impl Vertex {
         Filtered::when(value.abs() > doubt, side)
     }
 
-    /// Return whether the point lies in a plane by what it was constructed from; errs on no.
+    /// Return whether the point lies in a plane by what it was constructed from; may return false negatives.
     fn is_known_in(&self, plane: &Plane) -> bool {
         let is_it = |own: &Arc<Plane>| {
             std::ptr::eq(Arc::as_ptr(own), plane) || own.coincides(plane).is_some()

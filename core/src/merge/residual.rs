@@ -99,12 +99,12 @@ impl Expression {
         let mut same: HashMap<u32, u32> = HashMap::default();
         let add = |folding: &mut Folding, operand| {
             let twin = twin(operand);
-            if let Some(line) = same.get(&twin.first).filter(|_| twin.has_its_faces) {
+            if let Some(line) = same.get(&twin.first).filter(|_| twin.is_same_source) {
                 return *line;
             }
             let line = folding.append(Term::Operand(operand));
             folding.lines[line as usize].twin = *firsts.entry(twin.first).or_insert(line);
-            if twin.has_its_faces {
+            if twin.is_same_source {
                 same.insert(twin.first, line);
             }
             line
@@ -118,8 +118,8 @@ impl Expression {
 pub struct Twin {
     /// Its number.
     pub first: u32,
-    /// True if the other one has the very faces of the first, not only equal ones.
-    pub has_its_faces: bool,
+    /// True if the other one lists the same faces by number, not just coincident ones.
+    pub is_same_source: bool,
 }
 
 impl Twin {
@@ -127,7 +127,7 @@ impl Twin {
     pub fn of(first: u32) -> Self {
         Self {
             first,
-            has_its_faces: false,
+            is_same_source: false,
         }
     }
 }

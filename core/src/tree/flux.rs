@@ -162,7 +162,7 @@ impl Sum {
         }
     }
 
-    /// Return whether all of a part lies in the cell; errs on no.
+    /// Return whether all of a part lies in the cell; may return false negatives.
     fn surely_holds(&self, part: &Part) -> bool {
         self.cell.holds(&part.home) || {
             let mut corners = part.edges.iter().map(|e| e.from.approx());

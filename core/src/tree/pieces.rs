@@ -32,7 +32,7 @@ impl Piece {
         }
     }
 
-    /// Return whether the piece may meet a cell; errs on yes.
+    /// Return whether the piece may meet a cell; may return false positives.
     pub fn may_meet(&self, cell: &Cell) -> bool {
         let ([low, high], least, most) = (&self.around, cell.low(), cell.high());
         (0..3).all(|i| low[i] <= most[i] && high[i] >= least[i])

@@ -103,7 +103,7 @@ impl Collector<'_> {
             && (self.fill_box(run, source) || covers(self.root, source, first))
     }
 
-    /// Return whether the cells of the leaves that list a face make up its box; errs on no.
+    /// Return whether the cells of the leaves that list a face make up its box; may return false negatives.
     fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
         let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
         fill(
@@ -231,7 +231,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Return whether every leaf that a face meets lists it; errs on no.
+/// Return whether every leaf that a face meets lists it; may return false negatives.
 fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     let (low, high) = source.face_box(face.id());
     if !root.cell.holds_box(&low, &high) {

@@ -203,7 +203,7 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Return whether the leaves that list a part have all of it; errs on no.
+/// Return whether the leaves that list a part have all of it; may return false negatives.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -223,7 +223,7 @@ fn part_box(part: &Part) -> (Lattice, Lattice) {
     )
 }
 
-/// Return whether the cells of different leaves make up a box; errs on no.
+/// Return whether the cells of different leaves make up a box; may return false negatives.
 ///
 /// Leaves are apart, so that it is enough to count lattice points.
 pub fn fill(

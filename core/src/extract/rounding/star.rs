@@ -10,8 +10,8 @@ use crate::geometry::side::Side;
 use crate::mesh::chain::is_closed;
 use crate::mesh::faces::Faces;
 
-/// Return whether a mesh is closed by index and star-shaped about the mean of its vertices; errs on
-/// no.
+/// Return whether a mesh is closed by index and star-shaped about the mean of its vertices; may return false
+/// negatives.
 ///
 /// # Cost
 /// One look at each triangle, up to the first that the mean is not clearly behind.

@@ -25,7 +25,7 @@ const DISTINCT: u64 = 1 << 51;
 
 /// Return whether the triangles of a rounded mesh cannot cross unless they do so on the lattice, since
 /// they are perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and
-/// none is turned over; errs on no.
+/// none is turned over; may return false negatives.
 pub fn keeps_order(faces: &Faces, exact: &ExactMesh, sources: &Sources, pitch: Pitch) -> bool {
     let mut triangles = (0..).zip(&exact.faces);
     let mut vertices = exact.vertices.iter().zip(faces.vertices);

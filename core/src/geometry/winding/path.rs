@@ -50,7 +50,7 @@ impl Way {
         }
     }
 
-    /// Return whether the path may meet a box; errs on yes.
+    /// Return whether the path may meet a box; may return false positives.
     #[inline]
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
         let beyond = |i: usize| low[i] > self.high[i] || high[i] < self.low[i];

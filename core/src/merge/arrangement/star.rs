@@ -22,8 +22,8 @@ use crate::geometry::winding::crossing::{triangle_change, Segment};
 use crate::geometry::winding::path::determinant;
 use crate::mesh::triangles::TriangleMesh;
 
-/// Return whether a mesh that closes by index is star-shaped about the mean of its vertices; errs
-/// on no.
+/// Return whether a mesh that closes by index is star-shaped about the mean of its vertices; may return
+/// false negatives.
 pub fn is_star_shaped(mesh: &TriangleMesh) -> bool {
     let Some(eye) = mean(&mesh.vertices) else {
         return false;

@@ -227,8 +227,8 @@ pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
     boxes.reduce(joined).map(longest)
 }
 
-/// Return whether what is left where halving a cell cuts off only what is empty is no smaller than the
-/// cell: it spans half of it or more, or is one lattice point.
+/// Return whether an occupied box is as large as its cell: it spans half of the cell or more, or is one
+/// lattice point.
 pub fn fills(extent: i64, cell: &Cell) -> bool {
     extent == 0 || 2 * extent >= longest([*cell.low(), cell.high()])
 }

@@ -35,8 +35,8 @@ pub(super) enum End {
     Failed(Error),
     /// This operand overlaps itself, and is to be united with itself first.
     Overlap(u32),
-    /// Something before it has ended.
-    Before,
+    /// Cancelled: an earlier sibling ended the descent.
+    Cancelled,
 }
 
 impl From<Error> for End {
@@ -62,7 +62,7 @@ pub(super) fn both_in_turn(
     };
     let second = || {
         if ended.load(Ordering::Relaxed) {
-            return Err(End::Before);
+            return Err(End::Cancelled);
         }
         second()
     };
@@ -158,7 +158,7 @@ impl<'a> Descent<'a> {
             Ok(branch) => branch,
             Err(End::Failed(error)) => return Err(error),
             Err(End::Overlap(operand)) => return Ok(self.ended_by(operand, cell)),
-            Err(End::Before) => return Err(Error::internal("an end with nothing before it")),
+            Err(End::Cancelled) => return Err(Error::internal("an end with nothing before it")),
         };
         Ok(match branch.constant() {
             Some(w) => Branch::uniform(branch.cell, w),

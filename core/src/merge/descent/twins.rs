@@ -37,7 +37,7 @@ impl Firsts {
 fn itself(operand: u32) -> Twin {
     Twin {
         first: operand,
-        has_its_faces: true,
+        is_same_source: true,
     }
 }
 
@@ -96,7 +96,7 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
         }
         are_equal(&other.list, &listed.list, |r| corners(r, sources)).then(|| Twin {
             first: other.number,
-            has_its_faces: are_equal(&other.list, &listed.list, |r| (r.slot(), r.face)),
+            is_same_source: are_equal(&other.list, &listed.list, |r| (r.slot(), r.face)),
         })
     };
     let own = operands.iter().map(|listed| listed.number);

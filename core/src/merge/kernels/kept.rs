@@ -245,7 +245,7 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cel
 }
 
 /// Return whether some edge of a face surely lies on none of the face's edges and in no wall of the
-/// cell; errs on no.
+/// cell; may return false negatives.
 fn has_inner<'a>(
     mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
     source: &Source,
@@ -263,7 +263,7 @@ fn has_inner<'a>(
     })
 }
 
-/// Return whether two points may lie in one wall of a cell that holds both; errs on yes.
+/// Return whether two points may lie in one wall of a cell that holds both; may return false positives.
 fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
     let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
     (0..3).any(|i| {

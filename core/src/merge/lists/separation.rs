@@ -11,7 +11,7 @@ use crate::mesh::source::{Shape, Source};
 /// Relative slack of the separating axis tests in doubles: far above their rounding.
 const SLACK: f64 = 1e-13;
 
-/// Return whether a face certainly misses a closed cell; errs on no.
+/// Return whether a face certainly misses a closed cell; may return false negatives.
 pub fn misses(source: &Source, face: FaceId, cell: &Cell) -> bool {
     let (low, high) = (cell.low(), cell.high());
     match source.shape() {
@@ -30,7 +30,7 @@ fn plane_misses(plane: &Plane, low: &Lattice, high: &Lattice) -> bool {
 }
 
 /// Return whether a lattice triangle certainly misses the box half a step around lattice points;
-/// errs on no.
+/// may return false negatives.
 ///
 /// Separating axes: the face's normal, and each of its edges projected along each axis.
 ///

@@ -132,7 +132,7 @@ fn awaited<T: Send>(pool: &Pool, task: Task, work: impl FnOnce() -> T + Send) ->
 /// `KeyboardInterrupt`, or the watcher raised one.
 ///
 /// A handler may fork. The child has the threads of the pool no more, and the work borrows from
-/// this stack, so that there is no way on and none back: the child ends with a word, not by waiting.
+/// this stack, so that it can neither go on nor return: the child aborts with a message instead of hanging.
 fn signal_raised() -> bool {
     let process = std::process::id();
     let raised = attached(|py| py.check_signals().and_then(|()| tell_watcher(py)).err());

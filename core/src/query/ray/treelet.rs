@@ -27,7 +27,7 @@ pub const WIDTH: usize = 8;
 /// A list of at most so many facets becomes one treelet: some 100 µs of work, within 100 kB.
 const TREELET: usize = 1024;
 
-/// From so many facets on a sample tells how to divide, and each is looked at once.
+/// Facets from which splits are chosen from a sample.
 const SAMPLED: usize = 16 * TREELET;
 
 /// A longer list than this is deferred where the tree is only begun.

@@ -49,7 +49,7 @@ pub(super) fn wedges<R: Radial>(
         .chain(backward.iter().map(|h| (h, false)))
     {
         let spoke = Spoke::new(radial, half, is_forward);
-        // Insertion, unlike the library's sorts, puts up with normals that contradict each other.
+        // Insertion tolerates an inconsistent order, which normals may give; `sort_by` may panic.
         let place = spokes.partition_point(|other| {
             axis.order(&spokes[0].across, &other.across, &spoke.across)
                 .is_le()

@@ -191,7 +191,7 @@ pub(super) enum Name {
     Crossing(Slot, [VertexId; 2], u8),
 }
 
-/// A box around what is listed; one that holds nothing if that is nothing.
+/// The bounding box of the listed elements; empty if there are none.
 fn box_around(list: &List, sources: &Sources) -> [Lattice; 2] {
     let faces = list.records.iter();
     let faces = faces.map(|r| sources.get(r.slot()).face_box(r.face));
