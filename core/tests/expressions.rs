@@ -234,7 +234,7 @@ fn owners_stay_where_operands_are_equal() {
         let rest = |is_copy: bool| {
             whole.where_equal(|k| Twin {
                 first: first(k),
-                has_its_faces: !is_copy || first(k) == k,
+                is_same_source: !is_copy || first(k) == k,
             })
         };
         let [copies, same] = [true, false].map(rest);

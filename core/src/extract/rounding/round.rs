@@ -380,9 +380,8 @@ const COLLAPSED: &str = "rounding to doubles put two corners of these triangles 
 const TURNED: &str = "rounding to doubles turned these triangles over or left them no area";
 const CROSSING: &str = "rounding to doubles makes these triangles cross or overlap others, which \
     could not be mended";
-const OWN: &str =
-    "a solid that takes part crosses itself, so that these triangles cross or overlap \
-    others; `normalized()` unites it with itself";
+const OWN: &str = "an operand crosses itself, so these triangles cross or overlap others; \
+    `normalized()` unites it with itself";
 
 /// Return whether two corners of a triangle were rounded to the same place.
 #[allow(clippy::float_cmp)]
