@@ -46,7 +46,7 @@ class PlacedMesh:
 
 
 def is_exact(points: FloatArray | SingleArray, linear: FloatArray, shift: FloatArray) -> bool:
-    """Say whether an affine map of points, row by row, rounds no coordinate; may return false negatives.
+    """Say whether an affine map of points rounds no coordinate; may return false negatives.
 
     Parameters
     ----------
