@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::arrangement::{arranged, united, United, POOL};
+use super::arrangement::{arranged, is_simple_mesh, united, United, POOL};
 use super::descent::counters::Counters;
 use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
@@ -283,10 +283,12 @@ fn found_simple(solid: &Solid) -> Result<Option<bool>> {
         return Ok(Some(true));
     }
     let Some(doubts) = solid.doubts() else {
-        return Ok(None);
+        return Ok(is_simple_mesh(solid).map(|known| *solid.simple().get_or_make(|| known)));
     };
     for mesh in doubts {
-        normalize(mesh, Rule::Positive)?;
+        if found_simple(mesh)?.is_none() {
+            normalize(mesh, Rule::Positive)?;
+        }
         if !mesh.is_reduced() {
             return Ok(None);
         }

@@ -50,39 +50,57 @@ pub enum United {
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
-    let root = solid.root();
-    let is_plain = !root.complement && root.outside == 0;
-    let source = solid.whole_mesh().filter(|_| is_plain)?;
-    let operand = Operand::new(Slot(0), source)?;
-    if source.open_vertices().is_empty() && is_star_shaped(operand.mesh) {
+    let operand = whole_mesh(solid)?;
+    if is_star(&operand) {
         return Some(United::Same);
     }
-    let irregular = irregular(source);
-    let view = View::new(source, &irregular)?;
-    let alone = Alone {
-        scene: Scene::alone(operand, root.cell, rule),
-        view,
-        irregular: &irregular,
-    };
+    let irregular = irregular(operand.source);
+    let alone = Alone::new(operand, solid.root().cell, rule, &irregular)?;
     let shells = shells(operand.mesh);
     let count = shells.len();
     if count == 1 || rule == Rule::EvenOdd {
-        return alone.united(alone.view.pairs(&alone.scene.near[0]));
+        return alone.united(alone.pairs());
     }
     let shells = distinct(operand.mesh, shells);
     let found = if shells.len() < count {
-        Pairs::Many
+        Pairs::Overlap
     } else {
         alone.view.pairs_unless_overlapping(&alone.scene.near[0])
     };
     match found {
-        Pairs::Many if alone.are_simple(&shells) => {
-            let branches = shells.into_iter().map(|shell| shell.branch(source));
+        few @ Pairs::Few(_) => alone.united(few),
+        Pairs::Many | Pairs::Overlap if alone.are_simple(&shells) => {
+            let branches = shells.into_iter().map(|s| s.branch(operand.source));
             Some(United::Shells(branches.collect()))
         }
-        Pairs::Many => alone.united(alone.view.pairs(&alone.scene.near[0])),
-        few @ Pairs::Few(_) => alone.united(few),
+        Pairs::Many | Pairs::Overlap => alone.united(alone.pairs()),
     }
+}
+
+/// Return whether a mesh as it was given is the reduced boundary of what it holds; looks no further than
+/// the first two faces that certainly overlap. `None` as for [`united`].
+pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
+    let operand = whole_mesh(solid)?;
+    if is_star(&operand) {
+        return Some(true);
+    }
+    let irregular = irregular(operand.source);
+    let alone = Alone::new(operand, solid.root().cell, Rule::Positive, &irregular)?;
+    match alone.view.pairs_unless_overlapping(&alone.scene.near[0]) {
+        Pairs::Overlap => Some(false),
+        found => Some(matches!(alone.united(found)?, United::Same)),
+    }
+}
+
+/// The mesh that a solid is, as it was given.
+fn whole_mesh(solid: &Solid) -> Option<Operand<'_>> {
+    let root = solid.root();
+    let is_plain = !root.complement && root.outside == 0;
+    Operand::new(Slot(0), solid.whole_mesh().filter(|_| is_plain)?)
+}
+
+fn is_star(operand: &Operand) -> bool {
+    operand.source.open_vertices().is_empty() && is_star_shaped(operand.mesh)
 }
 
 /// A mesh that is compared with itself.
@@ -92,7 +110,19 @@ struct Alone<'a> {
     irregular: &'a [bool],
 }
 
-impl Alone<'_> {
+impl<'a> Alone<'a> {
+    fn new(operand: Operand<'a>, cell: Cell, rule: Rule, irregular: &'a [bool]) -> Option<Self> {
+        Some(Self {
+            scene: Scene::alone(operand, cell, rule),
+            view: View::new(operand.source, irregular)?,
+            irregular,
+        })
+    }
+
+    fn pairs(&self) -> Pairs {
+        self.view.pairs(&self.scene.near[0])
+    }
+
     /// The mesh united with itself, by the pairs of faces that may overlap.
     fn united(&self, pairs: Pairs) -> Option<United> {
         let found = self.contacts(pairs)?;

@@ -25,7 +25,7 @@ mod surfaces;
 mod triangulation;
 mod windings;
 
-pub use alone::{united, United};
+pub use alone::{is_simple_mesh, united, United};
 pub use pair::{arranged, Arranged};
 
 /// Faces in one box that are worth waking a pool: they take some milliseconds.

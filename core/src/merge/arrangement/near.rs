@@ -43,8 +43,10 @@ pub(super) struct View<'a> {
 pub(super) enum Pairs {
     /// Those that may have more in common than corners and edges, each once, ascending.
     Few(Vec<[u32; 2]>),
-    /// They are many, or two certainly overlap where one such pair was enough.
+    /// They are many.
     Many,
+    /// Two faces certainly overlap; no others were looked for.
+    Overlap,
 }
 
 impl<'a> View<'a> {
@@ -87,13 +89,18 @@ impl<'a> View<'a> {
             batch: if until_overlap { FIRST_BATCH } else { BATCH },
             waiting: Vec::new(),
             found: Vec::new(),
+            overlap: false,
         };
         let face = |number: u32| sorted[number as usize];
         let swept = |number: u32| self.swept(face(number));
         let add = |a: u32, b: u32| search.add([face(a), face(b)]);
         let all = pairs_of_many(Part::of(boxes, self.shift), swept, add);
         if all.and_then(|()| search.look()).is_none() {
-            return Pairs::Many;
+            return if search.overlap {
+                Pairs::Overlap
+            } else {
+                Pairs::Many
+            };
         }
         search.found.sort_unstable();
         search.found.dedup();
@@ -143,6 +150,8 @@ struct Search<'a> {
     /// Pairs that are near each other and were not looked at yet.
     waiting: Vec<[FaceId; 2]>,
     found: Vec<[u32; 2]>,
+    /// True if two faces certainly overlap, which ended the search.
+    overlap: bool,
 }
 
 impl Search<'_> {
@@ -162,7 +171,8 @@ impl Search<'_> {
         self.waiting.clear();
         let found: Vec<[FaceId; 2]> = found.into_iter().flatten().collect();
         let overlap = |[a, b]: &[FaceId; 2]| self.view.of(*a).overlaps(&self.view.of(*b));
-        if self.until_overlap && found.iter().any(overlap) {
+        self.overlap = self.until_overlap && found.iter().any(overlap);
+        if self.overlap {
             return None;
         }
         let ascending = found.iter().map(|[a, b]| [a.0.min(b.0), a.0.max(b.0)]);
@@ -231,13 +241,13 @@ mod tests {
         let irregular = vec![false; source.mesh()?.vertices.len()];
         let faces: Vec<FaceId> = source.mesh()?.face_ids().collect();
         let view = View::new(source, &irregular)?;
-        let overlap = matches!(view.pairs_unless_overlapping(&faces), Pairs::Many);
+        let overlap = !matches!(view.pairs_unless_overlapping(&faces), Pairs::Few(_));
         match view.pairs(&faces) {
             Pairs::Few(pairs) => {
                 assert_eq!(overlap, !pairs.is_empty());
                 Some(pairs)
             }
-            Pairs::Many => None,
+            Pairs::Many | Pairs::Overlap => None,
         }
     }
 
