@@ -68,15 +68,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
     let mut profile = Profile::default();
     match fresh_pair(expression, &operands, pitch, &mut profile) {
-        Ok((solid, counters)) => {
-            return Ok((
-                solid,
-                Counters {
-                    profile,
-                    ..counters
-                },
-            ))
-        }
+        Ok((solid, counters)) => return Ok((solid, counters.with(profile))),
         Err(reason) => profile.declined = Some(reason),
     }
     let mut is_first = true;
@@ -104,11 +96,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
             let solid = Solid::new(root, pitch, table, false).outgrowing(named);
             let solid = solid.made_of(&operands).by_effort(descent.counters.taken());
-            let counters = Counters {
-                profile,
-                ..descent.counters
-            };
-            return Ok((solid, counters));
+            return Ok((solid, descent.counters.with(profile)));
         }
         let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
         if open.is_empty() {
@@ -230,8 +218,11 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
 /// # Errors
 /// `Internal`.
 pub fn is_simple(solid: &Solid, suspects: &[Lattice]) -> Result<bool> {
-    if let Some(known) = found_simple(solid)? {
+    if let Some(known) = simple_by_meshes(solid)? {
         return Ok(known);
+    }
+    if let Some(found) = is_simple_mesh(solid) {
+        return Ok(*solid.simple().get_or_make(|| found));
     }
     if overlaps_at(solid, suspects) {
         return Ok(*solid.simple().get_or_make(|| false));
@@ -251,11 +242,8 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
     if rule != Rule::Positive {
         return unite(solid, rule);
     }
-    if found_simple(solid)? == Some(true) {
-        return Ok(solid.clone());
-    }
-    if let Some(known) = solid.united().get() {
-        return Ok(known.clone());
+    if let Some(known) = settled(solid)? {
+        return Ok(known);
     }
     let united = unite(solid, rule)?;
     Ok(solid.united().get_or_make(|| united).clone())
@@ -270,26 +258,23 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     if let Some(known) = solid.united().get() {
         return Ok(Some(known.clone()));
     }
-    Ok((found_simple(solid)? == Some(true)).then(|| solid.clone()))
+    Ok((simple_by_meshes(solid)? == Some(true)).then(|| solid.clone()))
 }
 
-/// Return whether a solid is simple, if that is known, or once the meshes that decide it have been
+/// Return whether a solid is simple, if that is known, or once the meshes it was made of have been
 /// checked.
-fn found_simple(solid: &Solid) -> Result<Option<bool>> {
+fn simple_by_meshes(solid: &Solid) -> Result<Option<bool>> {
     if let Some(known) = solid.simple().get() {
         return Ok(Some(*known));
     }
     if solid.is_reduced() {
         return Ok(Some(true));
     }
-    let Some(doubts) = solid.doubts() else {
-        return Ok(is_simple_mesh(solid).map(|known| *solid.simple().get_or_make(|| known)));
+    let Some(meshes) = solid.doubts() else {
+        return Ok(None);
     };
-    for mesh in doubts {
-        if found_simple(mesh)?.is_none() {
-            normalize(mesh, Rule::Positive)?;
-        }
-        if !mesh.is_reduced() {
+    for mesh in meshes {
+        if !is_simple(mesh, &[])? {
             return Ok(None);
         }
     }

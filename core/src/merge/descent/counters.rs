@@ -59,6 +59,12 @@ impl Counters {
         }
     }
 
+    /// The same with the stages of the evaluation.
+    #[must_use]
+    pub(in crate::merge) fn with(self, profile: Profile) -> Self {
+        Self { profile, ..self }
+    }
+
     /// Counts a cell that a kernel took, and its elements.
     pub(in crate::merge) fn count_leaf(&self, elements: usize) {
         self.leaves.fetch_add(1, Ordering::Relaxed);
