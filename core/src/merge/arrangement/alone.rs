@@ -125,7 +125,7 @@ impl<'a> Alone<'a> {
 
     /// The mesh united with itself, by the pairs of faces that may overlap.
     fn united(&self, pairs: Pairs) -> Option<United> {
-        let found = self.contacts(pairs)?;
+        let found = self.contacts(pairs)?.touching_at(self.irregular);
         let root = self.scene.root(&found).ok()?;
         Some(
             if is_all_of(&root, self.scene.surfaces.operands[0].source) {
@@ -141,13 +141,10 @@ impl<'a> Alone<'a> {
         let Pairs::Few(pairs) = pairs else {
             return None;
         };
-        let surfaces = &self.scene.surfaces;
-        Some(contacts_among(
-            surfaces,
-            &pairs,
-            self.irregular.to_vec(),
-            self.scene.worth,
-        ))
+        let Scene {
+            surfaces, worth, ..
+        } = &self.scene;
+        Some(contacts_among(surfaces, &pairs, *worth))
     }
 
     /// Return whether each shell is the reduced boundary of what it holds.

@@ -56,10 +56,10 @@ pub(super) struct Stretch {
 }
 
 /// What two triangles have in common that touch, or cross in corners or edges.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Touching {
     /// For each triangle the sides of the other's plane on which its corners lie.
-    pub(super) sides: [SmallVec<[Side; 3]>; 2],
+    pub(super) sides: [[Side; 3]; 2],
     /// The points at which an edge or a corner of one meets the other.
     pub(super) spots: SmallVec<[Spot; 6]>,
     /// The segments: one at most, but for triangles in one plane.
@@ -78,23 +78,34 @@ pub(super) fn contact(f: &Facing, g: &Facing) -> Contact {
     if is_apart(theirs) {
         return Contact::Apart;
     }
+    let both = [ours, theirs];
     if ours == [Side::On; 3] {
-        return of_spots(in_one_plane(f, g), ours, theirs);
+        return in_one_plane(f, g, both).into_contact();
     }
-    let touching = || across(f, g, ours, theirs);
-    if ours.contains(&Side::On) || theirs.contains(&Side::On) {
-        return of_spots(touching(), ours, theirs);
+    if both.as_flattened().contains(&Side::On) {
+        return across(f, g, both).into_contact();
     }
     crossing(f.triangle(), g.triangle(), ours, theirs)
-        .unwrap_or_else(|| of_spots(touching(), ours, theirs))
+        .unwrap_or_else(|| across(f, g, both).into_contact())
 }
 
-fn of_spots(found: Touching, ours: [Side; 3], theirs: [Side; 3]) -> Contact {
-    if found.spots.is_empty() {
-        return Contact::Apart;
+impl Touching {
+    fn new(sides: [[Side; 3]; 2]) -> Self {
+        Self {
+            sides,
+            spots: SmallVec::new(),
+            stretches: SmallVec::new(),
+            overlap: false,
+        }
     }
-    let sides = [ours, theirs].map(|s| SmallVec::from_slice(&s));
-    Contact::Touching(Box::new(Touching { sides, ..found }))
+
+    fn into_contact(self) -> Contact {
+        if self.spots.is_empty() {
+            Contact::Apart
+        } else {
+            Contact::Touching(Box::new(self))
+        }
+    }
 }
 
 /// The sides of a triangle's plane on which the corners of another one lie.
@@ -141,14 +152,17 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> O
 }
 
 /// What triangles in different planes have in common.
-fn across(f: &Facing, g: &Facing, ours: [Side; 3], theirs: [Side; 3]) -> Touching {
-    let mut found = Touching::default();
-    for (of, t, other, sides) in [(0, f, g, ours), (1, g, f, theirs)] {
-        let corners = t.triangle();
+fn across(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
+    let mut found = Touching::new(both);
+    for (of, t, other) in [(0, f, g), (1, g, f)] {
+        let (corners, sides) = (t.triangle(), both[of]);
         for (i, corner) in corners.iter().enumerate() {
             let next = (i + 1) % 3;
             if sides[i] == Side::On && holds(other, corner) {
-                add(&mut found.spots, corner_spot(of, i, t, other));
+                add(
+                    &mut found.spots,
+                    corner_spot(of, i, corner, other.triangle()),
+                );
             } else if sides[i].is_across_from(sides[next])
                 && let Some(spot) = spot_inside(of, [i, next], corners, other.triangle())
             {
@@ -170,10 +184,8 @@ fn add(spots: &mut SmallVec<[Spot; 6]>, spot: Spot) {
 }
 
 /// A corner of a triangle; where it is one of the first triangle's corners, as that.
-fn corner_spot(of: usize, corner: usize, t: &Facing, other: &Facing) -> Spot {
-    let place = &t.triangle()[corner];
-    let twin = other.triangle().iter().position(|p| p == place);
-    match twin.filter(|_| of == 1) {
+fn corner_spot<P: PartialEq>(of: usize, corner: usize, place: &P, others: &[P; 3]) -> Spot {
+    match others.iter().position(|p| p == place).filter(|_| of == 1) {
         Some(twin) => Spot::Corner(0, twin),
         None => Spot::Corner(of, corner),
     }
@@ -207,14 +219,14 @@ fn holds(g: &Facing, p: &Point) -> bool {
 }
 
 /// What triangles in one plane have in common.
-fn in_one_plane(f: &Facing, g: &Facing) -> Touching {
+fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     let axis = f.main_axis();
     let both = [f, g].map(|t| seen_along(t.triangle(), axis));
     let beside = [
         Beside::of(&both[0], &both[1]),
         Beside::of(&both[1], &both[0]),
     ];
-    let mut found = Touching::default();
+    let mut found = Touching::new(sides);
     if beside.iter().any(Beside::is_apart) {
         return found;
     }
@@ -288,14 +300,7 @@ fn spots_along(
         .into_iter()
         .filter(|i| in_theirs.holds(*i))
     {
-        let twin = theirs.iter().position(|p| *p == ours[end]);
-        add(
-            &mut spots,
-            match twin.filter(|_| of == 1) {
-                Some(twin) => Spot::Corner(0, twin),
-                None => Spot::Corner(of, end),
-            },
-        );
+        add(&mut spots, corner_spot(of, end, &ours[end], theirs));
     }
     for (k, corner) in theirs.iter().enumerate() {
         if in_theirs.are_divided(k, edge) && in_ours.are_divided(edge, k) {

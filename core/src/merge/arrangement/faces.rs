@@ -54,20 +54,20 @@ pub(super) struct Arrangement<'a> {
     triangulation: Triangulation,
     /// For each segment the plane that has what is on its left on the minus side.
     cuts: Vec<Arc<Plane>>,
-    pub(super) cells: Vec<Cell>,
+    pub(super) cells: Vec<CellNumbers>,
 }
 
 /// The winding numbers around a cell: of the other operand, or of the mesh that is compared with itself.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Cell {
+pub(super) struct CellNumbers {
     /// By how much the number in front exceeds that in front of the first cell.
     pub(super) in_front: i32,
     /// By how much the number behind exceeds that in front, but for the face itself.
     pub(super) behind: i32,
     /// The number of other faces in the same plane that have the cell, too.
     pub(super) covers: u32,
-    /// True if one of these comes first.
-    pub(super) is_others: bool,
+    /// True if one of these comes before the face.
+    pub(super) is_of_earlier: bool,
 }
 
 impl<'a> Arrangement<'a> {
@@ -82,8 +82,9 @@ impl<'a> Arrangement<'a> {
         let mut cuts: Vec<Arc<Plane>> = Vec::with_capacity(face.segments.len());
         for (number, segment) in (0..).zip(face.segments) {
             let ends = segment.ends.map(|p| places.of(p));
-            let ends = directed(&mut triangulation, ends, segment, &face, shared);
-            cuts.push(cut(segment, &face, shared));
+            let cut = cut(segment, &face, shared);
+            let ends = directed(&mut triangulation, ends, segment.line, &cut, &face);
+            cuts.push(cut);
             let meet = |other: u32| {
                 let other = &cuts[other as usize];
                 let vertex = Vertex::meet(face.plane, &cuts[number as usize], other);
@@ -123,7 +124,7 @@ impl<'a> Arrangement<'a> {
     }
 
     /// The cells, with the numbers in front of them.
-    fn numbered(&self) -> Vec<Cell> {
+    fn numbered(&self) -> Vec<CellNumbers> {
         let cells = self.triangulation.cells();
         let mut numbers = vec![None; cells.len()];
         numbers[0] = Some(0);
@@ -137,9 +138,9 @@ impl<'a> Arrangement<'a> {
                 }
             }
         }
-        let cell = |n: Option<i32>| Cell {
+        let cell = |n: Option<i32>| CellNumbers {
             in_front: n.unwrap_or(0),
-            ..Cell::default()
+            ..CellNumbers::default()
         };
         numbers.into_iter().map(cell).collect()
     }
@@ -179,14 +180,14 @@ impl<'a> Arrangement<'a> {
                     let cell = &mut self.cells[cell];
                     cell.behind += if is_same { 1 } else { -1 };
                     cell.covers += 1;
-                    cell.is_others |= *other < self.face.number;
+                    cell.is_of_earlier |= *other < self.face.number;
                 }
             }
         }
     }
 
     /// The outline of some cells; no two of its edges continue each other.
-    pub(super) fn outline(&mut self, holds: impl Fn(&Cell) -> bool) -> Vec<BareEdge> {
+    pub(super) fn outline(&mut self, holds: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
         let holds: Vec<bool> = self.cells.iter().map(holds).collect();
         let is_border = |this: &Self, (cell, edge): (u32, usize)| {
             let mate = this.triangulation.cells()[cell as usize].mates[edge];
@@ -321,16 +322,15 @@ fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
 fn directed(
     cells: &mut Triangulation,
     [from, to]: [u32; 2],
-    segment: &Segment,
+    line: Line,
+    cut: &Plane,
     face: &Face,
-    shared: &Shared,
 ) -> [u32; 2] {
-    let (corner, side) = match segment.line {
+    let (corner, side) = match line {
         Line::Directed => return [from, to],
         Line::Touching { corner, side, .. } => (corner, side),
         Line::Edge(_) => {
-            let plane = cut(segment, face, shared);
-            let sides = face.corners.each_ref().map(|c| plane.side_of_lattice(c));
+            let sides = face.corners.each_ref().map(|c| cut.side_of_lattice(c));
             let corner = (0..3).find(|i| sides[*i] != Side::On).unwrap_or(0);
             (corner, sides[corner])
         }

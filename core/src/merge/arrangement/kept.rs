@@ -1,6 +1,6 @@
 //! What stays of faces, by the winding numbers in front of them and behind.
 
-use super::faces::Cell;
+use super::faces::CellNumbers;
 use crate::geometry::side::Orientation;
 use crate::merge::expression::Expression;
 use crate::merge::profile::Declined;
@@ -108,7 +108,7 @@ impl Kept {
     pub(super) fn of_cell(
         &self,
         operand: usize,
-        cell: &Cell,
+        cell: &CellNumbers,
         first: i32,
     ) -> Result<Option<Orientation>, Declined> {
         let in_front = first + cell.in_front;
@@ -118,7 +118,7 @@ impl Kept {
             Self::Pair(pair) => pair.at(operand, [in_front, behind]),
             Self::Alone(rule) => {
                 let stays = between(rule.inside(in_front), rule.inside(behind + 1));
-                Ok(stays.filter(|_| !cell.is_others))
+                Ok(stays.filter(|_| !cell.is_of_earlier))
             }
         }
     }

@@ -30,12 +30,12 @@ pub(super) struct Labels<'a> {
     /// The number at the root of a class.
     known: Vec<Option<i32>>,
     /// By vertex, whether it lies on the other operand; empty if none does.
-    touching: Vec<bool>,
+    touching: &'a [bool],
 }
 
 impl<'a> Labels<'a> {
     /// The numbers of one operand around the vertices of another: nothing is known.
-    pub(super) fn new(of: Operand<'a>, around: Operand<'a>, touching: Vec<bool>) -> Self {
+    pub(super) fn new(of: Operand<'a>, around: Operand<'a>, touching: &'a [bool]) -> Self {
         let vertices = of.mesh.vertices.len();
         Self {
             of,

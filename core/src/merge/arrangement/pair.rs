@@ -49,14 +49,14 @@ pub fn arranged(
         mut candidates,
     } = near;
     let faces = candidates.each_mut().map(|c| std::mem::take(&mut c.faces));
-    let surfaces = Surfaces::new(operands.to_vec(), faces.to_vec());
+    let surfaces = Surfaces::new(operands.into(), faces.into());
     let count = |found: &Result<Contacts, Declined>| found.as_ref().map_or(0, Contacts::len);
     let search = || contacts_of(&surfaces, &candidates, worth);
     let found = profile.timed("contacts", search, count)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
     let scene = Scene {
         surfaces,
-        near: within.map(|w| w.faces).to_vec(),
+        near: within.map(|w| w.faces).into(),
         cell: solids[0].root().cell.join(&solids[1].root().cell),
         kept: Kept::of(expression),
         worth,

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::candidates::Operand;
-use super::faces::{Arrangement, Cell as FaceCell, Face, Planes, Shared};
+use super::faces::{Arrangement, CellNumbers, Face, Planes, Shared};
 use super::kept::Kept;
 use super::labels::Labels;
 use super::segments::{Contacts, Cover, Edge, Point as CommonPoint, Segment};
@@ -130,8 +130,9 @@ impl<'a> Scene<'a> {
         let covered = found.covers.iter().map(|c| c.face);
         let mut faces: Vec<u32> = segments.chain(covered).collect();
         faces.dedup();
-        for k in 0..self.surfaces.operands.len() {
-            let touches = |v: &VertexId| found.touching[k].get(v.place()).is_some_and(|t| *t);
+        let operands = 0..self.surfaces.operands.len();
+        for k in operands.filter(|k| !found.touching[*k].is_empty()) {
+            let touches = |v: &VertexId| found.touching[k][v.place()];
             let of_operand = self.surfaces.of_operand(k);
             faces.extend(of_operand.filter(|f| self.surfaces.vertices(*f).iter().all(touches)));
         }
@@ -238,16 +239,19 @@ impl<'a> Scene<'a> {
     }
 
     /// The winding numbers around the vertices of an operand.
-    fn labels(
+    fn labels<'b>(
         &self,
         operand: usize,
         arranged: &mut [Arrangement],
         fates: &[Fate],
-        found: &Contacts,
-    ) -> Result<Labels<'a>, Declined> {
+        found: &'b Contacts,
+    ) -> Result<Labels<'b>, Declined>
+    where
+        'a: 'b,
+    {
         let of = self.surfaces.operands[operand];
         let around = self.surfaces.operands[self.surfaces.operands.len() - 1 - operand];
-        let mut labels = Labels::new(of, around, found.touching[operand].clone());
+        let mut labels = Labels::new(of, around, &found.touching[operand]);
         for arrangement in arranged.iter() {
             labels.join_cells(arrangement)?;
         }
@@ -340,7 +344,7 @@ impl<'a> Scene<'a> {
         arrangement: &mut Arrangement,
         first: i32,
     ) -> Result<Left, Declined> {
-        let stays = |cell: &FaceCell| self.kept.of_cell(operand, cell, first);
+        let stays = |cell: &CellNumbers| self.kept.of_cell(operand, cell, first);
         let all = arrangement
             .cells
             .iter()

@@ -125,27 +125,15 @@ pub(super) fn contacts_of(
     Ok(Contacts::new(surfaces, met))
 }
 
-/// Where faces of one operand meet, of some pairs of them; vertices that are not regular count as touching.
-pub(super) fn contacts_among(
-    surfaces: &Surfaces,
-    pairs: &[[u32; 2]],
-    irregular: Vec<bool>,
-    worth: Worth,
-) -> Contacts {
+/// Where faces of one operand meet, of some pairs of them.
+pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Worth) -> Contacts {
     let blocks = pairs.chunks(BLOCK).collect();
     let operand = &surfaces.operands[0];
     let triangle = |face: u32| operand.triangle(FaceId(face));
     let met = each(worth, blocks, |block: &[[u32; 2]]| {
         met([&triangle, &triangle], block, 0)
     });
-    let mut contacts = Contacts::new(surfaces, met);
-    for (touches, more) in contacts.touching[0].iter_mut().zip(&irregular) {
-        *touches |= more;
-    }
-    if contacts.touching[0].is_empty() {
-        contacts.touching[0] = irregular;
-    }
-    contacts
+    Contacts::new(surfaces, met)
 }
 
 fn met([ours, theirs]: [&dyn Fn(u32) -> Triangle; 2], pairs: &[[u32; 2]], second: u32) -> Vec<Met> {
@@ -171,6 +159,15 @@ impl Contacts {
     /// The number of segments in all faces.
     pub(super) fn len(&self) -> usize {
         self.segments.len()
+    }
+
+    /// Counts some vertices of the first operand as touching.
+    pub(super) fn touching_at(mut self, some: &[bool]) -> Self {
+        self.touching[0].resize(some.len(), false);
+        for (touches, more) in self.touching[0].iter_mut().zip(some) {
+            *touches |= more;
+        }
+        self
     }
 
     /// Return whether no face divides or covers another one.

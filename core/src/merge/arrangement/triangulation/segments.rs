@@ -1,0 +1,269 @@
+//! Segments become edges of a triangulation, by flips of the edges that they cross.
+//!
+//! # Source
+//! Sloan 1993.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+use super::{Place, Run, Triangulation, NONE};
+use crate::arith::Sign;
+use crate::geometry::vertex::Vertex;
+use crate::interrupt::poll;
+use crate::merge::profile::Declined;
+
+/// The first stretch of a way.
+enum Way {
+    /// It leads to a point, across edges that no segment runs along.
+    Free(u32, Vec<[u32; 2]>),
+    /// It meets an edge of a triangle that segments run along.
+    Blocked(u32, usize),
+}
+
+/// How a way leaves a point.
+enum Start {
+    /// Across an edge of a triangle.
+    Edge(u32, usize),
+    /// Along the edge to a point.
+    Along(u32),
+}
+
+impl Triangulation {
+    /// Makes a segment a chain of edges. Where it crosses another segment is a new point, which `meet`
+    /// gives by the other segment's number.
+    ///
+    /// # Errors
+    /// `Defect` if it leaves the face.
+    pub(in super::super) fn constrain(
+        &mut self,
+        [from, to]: [u32; 2],
+        segment: u32,
+        meet: impl Fn(u32) -> Arc<Vertex>,
+    ) -> Result<(), Declined> {
+        let (mut at, mut goals) = (from, vec![to]);
+        while let Some(goal) = goals.last().copied() {
+            poll();
+            if at == goal {
+                goals.pop();
+                continue;
+            }
+            match self.way(at, goal)? {
+                Way::Free(end, crossed) => {
+                    self.remove(crossed, at, end);
+                    self.mark(at, end, segment)?;
+                    at = end;
+                }
+                Way::Blocked(cell, edge) => {
+                    let mark = self.cells[cell as usize].marks[edge];
+                    let (other, _) = self.along(mark).next().ok_or(Declined::Defect)?;
+                    let point = self.add(meet(other), 0);
+                    self.split_edge(cell, edge, point);
+                    goals.push(point);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The segments with a mark, each with whether it runs the way of the edge.
+    fn along(&self, mark: i32) -> impl Iterator<Item = (u32, bool)> + '_ {
+        let is_turned = mark < 0;
+        let mut next = mark.unsigned_abs();
+        std::iter::from_fn(move || {
+            let run = self.runs[next.checked_sub(1)? as usize];
+            next = run.before.unsigned_abs();
+            Some((run.segment, run.is_forward != is_turned))
+        })
+    }
+
+    /// The segments along an edge of a triangle, each with whether it runs the way of the edge.
+    pub(in super::super) fn along_edge(
+        &self,
+        cell: u32,
+        edge: usize,
+    ) -> impl Iterator<Item = (u32, bool)> + '_ {
+        self.along(self.cells[cell as usize].marks[edge])
+    }
+
+    /// Marks an edge as a part of a segment.
+    fn mark(&mut self, from: u32, to: u32, segment: u32) -> Result<(), Declined> {
+        let edges = [self.edge_between(from, to), self.edge_between(to, from)];
+        let known = |at: &Option<(u32, usize)>| at.map(|(c, e)| self.cells[c as usize].marks[e]);
+        let before = known(&edges[0])
+            .or_else(|| known(&edges[1]).map(|m| -m))
+            .unwrap_or(0);
+        self.runs.push(Run {
+            segment,
+            is_forward: before >= 0,
+            before,
+        });
+        let sign = if before < 0 { -1 } else { 1 };
+        let mark = i32::try_from(self.runs.len()).map_err(|_| Declined::Defect)? * sign;
+        for (at, mark) in edges.into_iter().zip([mark, -mark]) {
+            if let Some((cell, edge)) = at {
+                self.cells[cell as usize].marks[edge] = mark;
+            }
+        }
+        Ok(())
+    }
+
+    /// The first stretch of the way from a point to another one.
+    fn way(&mut self, from: u32, to: u32) -> Result<Way, Declined> {
+        if self.edge_between(from, to).is_some() || self.edge_between(to, from).is_some() {
+            return Ok(Way::Free(to, Vec::new()));
+        }
+        let (mut at, mut edge) = match self.first_crossed(from, to)? {
+            Start::Edge(cell, edge) => (cell, edge),
+            Start::Along(point) => return Ok(Way::Free(point, Vec::new())),
+        };
+        let mut crossed = Vec::new();
+        loop {
+            poll();
+            let cell = self.cells[at as usize];
+            if cell.marks[edge] != 0 {
+                return Ok(Way::Blocked(at, edge));
+            }
+            let across = cell.mates[edge];
+            if across == NONE {
+                return Err(Declined::Defect);
+            }
+            crossed.push([cell.corners[edge], cell.corners[(edge + 1) % 3]]);
+            let back = self.edge_to(across, at);
+            let next = self.cells[across as usize].corners[(back + 2) % 3];
+            if next == to {
+                return Ok(Way::Free(to, crossed));
+            }
+            at = across;
+            edge = match self.turn([from, to, next]) {
+                Sign::Zero => return Ok(Way::Free(next, crossed)),
+                Sign::Positive => (back + 1) % 3,
+                Sign::Negative => (back + 2) % 3,
+            };
+        }
+    }
+
+    /// The first edge that the way from a point to another one crosses, or runs along.
+    fn first_crossed(&mut self, from: u32, to: u32) -> Result<Start, Declined> {
+        for (number, k) in self.fan(from) {
+            let corners = self.cells[number as usize].corners;
+            let [right, left] = [1, 2].map(|i| corners[(k + i) % 3]);
+            let sides = [right, left].map(|corner| self.turn([from, to, corner]));
+            for (corner, side) in [right, left].into_iter().zip(sides) {
+                if side == Sign::Zero && self.is_ahead(from, to, corner) {
+                    return Ok(Start::Along(corner));
+                }
+            }
+            if sides == [Sign::Negative, Sign::Positive] {
+                return Ok(Start::Edge(number, (k + 1) % 3));
+            }
+        }
+        Err(Declined::Defect)
+    }
+
+    /// Return whether a point of the line through two others lies on the second one's side of the first.
+    fn is_ahead(&self, from: u32, to: u32, point: u32) -> bool {
+        let [from, to, point] = [from, to, point].map(|p| &self.places[p as usize]);
+        let width = |i: usize| (to.at[i] - from.at[i]).abs();
+        let axis = self.axes[usize::from(width(1) > width(0))];
+        let order = |p: &Place| from.vertex.compare_along(&p.vertex, axis);
+        order(point) == order(to)
+    }
+
+    /// Flips edges until none crosses a segment.
+    fn remove(&mut self, crossed: Vec<[u32; 2]>, from: u32, to: u32) {
+        let mut open = VecDeque::from(crossed);
+        while let Some([a, b]) = open.pop_front() {
+            poll();
+            let Some((number, edge)) = self.edge_between(a, b) else {
+                continue;
+            };
+            let quad = self.around(number, edge);
+            if !self.is_convex(quad) {
+                open.push_back([a, b]);
+                continue;
+            }
+            self.flip(number, edge);
+            let [.., apex, other] = quad;
+            let is_end = |p: u32| p == from || p == to;
+            if is_end(apex) || is_end(other) {
+                continue;
+            }
+            let sides = [apex, other].map(|p| self.turn([from, to, p]));
+            if sides[0] != sides[1] {
+                open.push_back([apex, other]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{area, at, face, vertex};
+    use super::*;
+    use crate::arith::convert::as_number;
+    use crate::geometry::plane::Plane;
+
+    /// Adds all segments between points, one after the other.
+    fn constrain_all(cells: &mut Triangulation, segments: &[[u32; 2]]) {
+        let plane = |[a, b]: [u32; 2]| {
+            let [a, b] = [a, b].map(|p| *cells.vertex(p).as_lattice().expect("a lattice point"));
+            Arc::new(Plane::beside_edge(&a, &b, 2))
+        };
+        let floor = Arc::new(Plane::axis_cut(2, 0));
+        let planes: Vec<Arc<Plane>> = segments.iter().map(|s| plane(*s)).collect();
+        for (number, ends) in (0..).zip(segments) {
+            let meet = |other: u32| {
+                let [p, q] = [number, other].map(|i| &planes[i as usize]);
+                Arc::new(Vertex::meet(&floor, p, q).expect("they cross"))
+            };
+            cells
+                .constrain(*ends, number, meet)
+                .expect("inside the face");
+        }
+    }
+
+    /// The length of all edges that a segment runs along.
+    fn length(cells: &Triangulation, segment: u32) -> f64 {
+        let mut sum = 0.0;
+        for (cell, edge) in
+            (0..as_number(cells.cells().len())).flat_map(|c| [0, 1, 2].map(|e| (c, e)))
+        {
+            let (from, to) = cells.ends((cell, edge));
+            if cells
+                .along_edge(cell, edge)
+                .any(|run| run == (segment, true))
+            {
+                let [[a, b], [c, d]] = [from, to].map(|p| at(cells, p));
+                sum += (c - a).hypot(d - b);
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn all_segments_between_points_become_edges() {
+        for k in 0..200i64 {
+            let mut cells = face();
+            let places = (0..12).map(|i| [1 + (k * 5 + i * 17) % 31, 1 + (k * 3 + i * 11) % 29]);
+            let points: Vec<u32> = places
+                .map(|p| cells.insert(vertex(p)).expect("inside"))
+                .collect();
+            let pairs = points
+                .windows(2)
+                .chain(points.chunks_exact(3).map(|c| &c[1..]));
+            let segments: Vec<[u32; 2]> = pairs
+                .map(|p| [p[0], p[1]])
+                .filter(|[a, b]| a != b)
+                .collect();
+            constrain_all(&mut cells, &segments);
+            assert!((area(&cells) - 4096.0).abs() < 1e-9);
+            for (number, ends) in (0..).zip(segments) {
+                let [[a, b], [c, d]] = ends.map(|p| at(&cells, p));
+                assert!(
+                    (length(&cells, number) - (c - a).hypot(d - b)).abs() < 1e-9,
+                    "{k}"
+                );
+            }
+        }
+    }
+}
