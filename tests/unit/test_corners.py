@@ -68,6 +68,21 @@ def test_regular_polygons_and_slots() -> None:
     assert len(Region.slot(10, 2, segments=5).outlines[0].points) == 6 + 2
 
 
+@pytest.mark.parametrize("scale", [1e-7, 1e-5, 1e-3, 1, 1e3, 1e6])
+def test_sizes_make_no_difference(scale: float) -> None:
+    hole = Region.rectangle(scale).translate(0.6 * scale, 0.6 * scale)
+    figure = Region.rectangle(10 * scale) - hole
+
+    def first(points: Any) -> Any:
+        return (points == 0).all(axis=1)
+
+    assert figure.chamfer(scale, first).area == pytest.approx(98.5 * scale**2, rel=1e-4)
+    for size in (2.5, 5.0):
+        for call in (figure.chamfer, figure.fillet):
+            with pytest.raises(b.InvalidParameterError, match="cross another outline"):
+                call(size * scale, first)
+
+
 @pytest.mark.parametrize(
     ("call", "word"),
     [

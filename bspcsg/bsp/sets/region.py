@@ -189,8 +189,8 @@ class Region(PlaneQueries):
         if r is not None or d is not None:
             raise invalid_parameter("Give r, d or flats, and only one of them.")
         # Every other point of twice as many, so that sides lie where they should bit by bit.
-        middle = positive(flats, "flats") / 2
-        return cls(unit_circle(2 * around)[1::2] * (middle / unit_circle(2 * around)[1, 0]))
+        corners = unit_circle(2 * around)[1::2]
+        return cls(corners * (positive(flats, "flats") / 2 / corners[0, 0]))
 
     @classmethod
     def slot(

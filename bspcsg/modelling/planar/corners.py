@@ -16,7 +16,7 @@ from ...parameters import function_of, positive, refuse_many_corners, sides_arou
 #: Degrees; outlines that bend by no more go round a curve, but for rounding.
 _SMOOTH = 30 + 1e-6
 
-#: The share of an edge, and of an area, that rounding may change.
+#: The share of an edge that rounding may change.
 _SAME = 1e-9
 
 #: The part of a chord by which rounding may lengthen an arc.
@@ -119,15 +119,13 @@ def _meant(corners: Corners, points: FloatArray) -> BoolArray:
 def _without_crossings(figure: Region, loops: list[FloatArray]) -> Region:
     """Return the region of new outlines, or raise an error where they cross each other."""
     made = Region(loops, pitch=figure.pitch)
-    areas = [_area(loop) for loop in loops]
-    if abs(made.area - sum(areas)) > _SAME * sum(map(abs, areas)) + len(areas) * _SAME:
+    # Between outlines that cross, winding numbers other than 0 and 1 occur. Corners that the
+    # lattice moves by a step account for no more than a step along all outlines.
+    crossed = made ^ Region(loops, winding="even-odd", pitch=figure.pitch)
+    length = math.fsum(outline.length for outline in made.outlines)
+    if crossed.area > length * 10.0**figure.pitch:
         raise invalid_parameter("New corners cross another outline. Choose a smaller size.")
     return made
-
-
-def _area(points: FloatArray) -> float:
-    x, y = (points - points[0]).T
-    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
 
 
 def _no_room(corner: FloatArray) -> InvalidParameterError:
