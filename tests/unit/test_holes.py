@@ -99,3 +99,12 @@ BORE = PLATE.hole(TOP, d=4).faces().filter(lambda f: ~f.is_flat)
 def test_holes_refuse_what_makes_no_sense(call: Any, word: str) -> None:
     with pytest.raises(b.InvalidParameterError, match=word):
         call()
+
+
+@pytest.mark.parametrize("scale", [1e-7, 1e-4, 1, 1e6])
+def test_sizes_make_no_difference(scale: float) -> None:
+    part = b.box(30 * scale, 20 * scale, 5 * scale)
+    made = part.hole(part.faces().sort_by("z")[-1], d=8 * scale)
+    assert made.bounds.tolist() == part.bounds.tolist() and made.genus == 1
+    assert len(made.edges().on("z", 5 * scale)) == 4 + 32
+    assert made.volume / scale**3 == pytest.approx(3000 - 5 * disc(4), rel=1e-4)

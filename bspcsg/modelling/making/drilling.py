@@ -20,7 +20,8 @@ from ...solid.solid import Solid
 from .faces import FaceSelection, flat_face
 from .skeleton import Skeleton, flatness, skeleton_of
 
-#: A hole begins so many times the rounding of corners before its face, and leaves no skin of it.
+#: A hole begins so many times the rounding of corners before its face, and leaves no skin of it;
+#: they are rounded to steps of the lattice at least.
 _BEFORE = 10
 
 
@@ -114,7 +115,7 @@ def _drilled(
     if bottom <= deepest:
         raise invalid_parameter(f"depth must be more than that of the head, which is {deepest:g}.")
     wide = head[-1][0] if head else bore
-    before = _BEFORE * flatness(skeleton.vertices)
+    before = _BEFORE * max(flatness(skeleton.vertices), 10.0**solid.pitch)
     profile = [(0, bottom), (bore, bottom), *head, (wide, -before), (0, -before)]
     tools = _turned(np.array(profile) * (1, -1), around, normal, points)
     return solid - union(tools) if tools else solid
