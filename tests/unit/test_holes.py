@@ -105,6 +105,7 @@ def test_holes_refuse_what_makes_no_sense(call: Any, word: str) -> None:
 def test_sizes_make_no_difference(scale: float) -> None:
     part = b.box(30 * scale, 20 * scale, 5 * scale)
     made = part.hole(part.faces().sort_by("z")[-1], d=8 * scale)
+    assert made.bounds is not None and part.bounds is not None
     assert made.bounds.tolist() == part.bounds.tolist() and made.genus == 1
     assert len(made.edges().on("z", 5 * scale)) == 4 + 32
     assert made.volume / scale**3 == pytest.approx(3000 - 5 * disc(4), rel=1e-4)
