@@ -28,8 +28,8 @@ const POOL_AFTER: u64 = 512;
 /// The value of an expression whose operands are these solids.
 ///
 /// Always (G1): a point is inside the result where the expression holds for the operands' sides.
-/// If all operands are reduced, so is the result (G2). An operand that a visited cell shows to
-/// overlap itself is united with itself, and the evaluation starts again.
+/// If all operands are reduced, so is the result (G2). An operand that turns out to overlap itself is
+/// united with itself, and the evaluation starts again.
 ///
 /// # Errors
 /// `PitchMismatch` if the operands live on different lattices.
@@ -67,12 +67,15 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     let expression = merged.as_ref().unwrap_or(expression);
     let mut operands: Vec<Solid> = solids.iter().map(bounding).collect();
     let mut profile = Profile::default();
-    match fresh_pair(expression, &operands, pitch, &mut profile) {
+    let reason = match fresh_pair(expression, &operands, pitch, &mut profile) {
         Ok((solid, counters)) => return Ok((solid, counters.with(profile))),
-        Err(reason) => profile.declined = Some(reason),
-    }
-    let mut is_first = true;
+        Err(reason) => reason,
+    };
+    profile.declined = Some(reason);
+    let mut overlaps: Vec<usize> = reason.overlapping().into_iter().collect();
+    let mut is_first = overlaps.is_empty();
     loop {
+        unite_those(&mut operands, &overlaps, &mut profile)?;
         let sources = Sources::new(joint_table(&operands));
         let is_open = |k: &usize| !operands[*k].is_reduced();
         let doubted = (0..operands.len()).filter(is_open).collect();
@@ -90,7 +93,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         };
         let cells = |_: &Result<Branch>| descent.counters.visited();
         let root = profile.timed("descent", visit, cells)?;
-        let overlaps = descent.overlapping();
+        overlaps = descent.overlapping();
         if overlaps.is_empty() {
             let table = sources.table().clone();
             let named = operands.iter().map(Solid::named).max().unwrap_or(0);
@@ -98,16 +101,23 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             let solid = solid.made_of(&operands).by_effort(descent.counters.taken());
             return Ok((solid, descent.counters.with(profile)));
         }
-        let open: Vec<usize> = overlaps.iter().copied().filter(is_open).collect();
-        if open.is_empty() {
+        if !overlaps.iter().any(is_open) {
             return Err(wrongly_reduced(&operands, &overlaps));
         }
-        for k in open {
-            let unite = || normalize(&operands[k], Rule::Positive);
-            let faces = operands[k].whole_mesh().map_or(0, |s| s.face_count());
-            operands[k] = profile.timed("uniting", unite, |_| faces)?;
+    }
+}
+
+/// Unites operands with themselves, those that are not known to be reduced.
+fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile) -> Result<()> {
+    for k in numbers {
+        let operand = &operands[*k];
+        if !operand.is_reduced() {
+            let unite = || normalize(operand, Rule::Positive);
+            let faces = operand.whole_mesh().map_or(0, |s| s.face_count());
+            operands[*k] = profile.timed("uniting", unite, |_| faces)?;
         }
     }
+    Ok(())
 }
 
 /// The value for two meshes as they were given, by the arrangement of their faces.

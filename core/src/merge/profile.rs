@@ -24,8 +24,8 @@ pub enum Declined {
     AllOver,
     /// Faces are crowded: boxes do not tell them apart.
     Crowded,
-    /// A mesh overlaps itself where the other one meets it.
-    Overlap,
+    /// The operand of this number overlaps itself where the other one meets it.
+    Overlap(usize),
     /// Faces are too thin to count winding numbers in front of them.
     Thin,
     /// A segment left its face: a defect.
@@ -33,6 +33,14 @@ pub enum Declined {
 }
 
 impl Declined {
+    /// The operand that is known to overlap itself, if one is.
+    pub fn overlapping(self) -> Option<usize> {
+        match self {
+            Self::Overlap(operand) => Some(operand),
+            _ => None,
+        }
+    }
+
     /// The reason in words.
     pub fn text(self) -> &'static str {
         match self {
@@ -40,7 +48,7 @@ impl Declined {
             Self::Apart => "the boxes around the meshes are apart",
             Self::AllOver => "the meshes touch nearly everywhere",
             Self::Crowded => "the faces are crowded: boxes do not tell them apart",
-            Self::Overlap => "a mesh overlaps itself where the other one meets it",
+            Self::Overlap(_) => "a mesh overlaps itself where the other one meets it",
             Self::Thin => "faces are too thin to count winding numbers in front of them",
             Self::Defect => "a segment left its face, which is a defect",
         }

@@ -50,9 +50,9 @@ impl Pair {
 
     fn at(&self, operand: usize, numbers: [i32; 2]) -> Result<Option<Orientation>, Declined> {
         let [in_front, behind] = numbers.map(usize::try_from);
-        let by_front = self.of[operand].get(in_front.map_err(|_| Declined::Overlap)?);
+        let by_front = in_front.ok().and_then(|n| self.of[operand].get(n));
         let stays = by_front.and_then(|b| b.get(behind.ok()?));
-        stays.copied().ok_or(Declined::Overlap)
+        stays.copied().ok_or(Declined::Overlap(1 - operand))
     }
 }
 
@@ -114,7 +114,7 @@ impl Kept {
         let in_front = first + cell.in_front;
         let behind = in_front + cell.behind;
         match self {
-            Self::Pair(_) if cell.covers > 1 => Err(Declined::Overlap),
+            Self::Pair(_) if cell.covers > 1 => Err(Declined::Overlap(1 - operand)),
             Self::Pair(pair) => pair.at(operand, [in_front, behind]),
             Self::Alone(rule) => {
                 let stays = between(rule.inside(in_front), rule.inside(behind + 1));

@@ -23,6 +23,8 @@ use crate::mesh::handle::{FaceId, VertexId};
 #[derive(Debug)]
 pub(super) struct Labels<'a> {
     of: Operand<'a>,
+    /// The number of the operand that winds around it.
+    around: usize,
     windings: Windings<'a>,
     parents: Vec<u32>,
     /// By how much the number at a vertex exceeds that at its parent.
@@ -34,12 +36,18 @@ pub(super) struct Labels<'a> {
 }
 
 impl<'a> Labels<'a> {
-    /// The numbers of one operand around the vertices of another: nothing is known.
-    pub(super) fn new(of: Operand<'a>, around: Operand<'a>, touching: &'a [bool]) -> Self {
+    /// The numbers around the vertices of one operand of another one, given by its number: nothing is
+    /// known.
+    pub(super) fn new(
+        of: Operand<'a>,
+        (around, operand): (usize, Operand<'a>),
+        touching: &'a [bool],
+    ) -> Self {
         let vertices = of.mesh.vertices.len();
         Self {
             of,
-            windings: Windings::of(around),
+            around,
+            windings: Windings::of(operand),
             parents: (0..as_number(vertices)).collect(),
             above: vec![0; vertices],
             known: vec![None; vertices],
@@ -151,7 +159,7 @@ impl<'a> Labels<'a> {
         // The number at a's root is that at b's root and this.
         let between = above_b + more - above_a;
         match a.cmp(&b) {
-            Ordering::Equal if between != 0 => Err(Declined::Overlap),
+            Ordering::Equal if between != 0 => Err(Declined::Overlap(self.around)),
             Ordering::Equal => Ok((a, above_a)),
             Ordering::Greater => {
                 self.parents[a] = as_number(b);

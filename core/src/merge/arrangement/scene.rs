@@ -249,9 +249,10 @@ impl<'a> Scene<'a> {
     where
         'a: 'b,
     {
-        let of = self.surfaces.operands[operand];
-        let around = self.surfaces.operands[self.surfaces.operands.len() - 1 - operand];
-        let mut labels = Labels::new(of, around, &found.touching[operand]);
+        let operands = &self.surfaces.operands;
+        let (of, around) = (operands[operand], operands.len() - 1 - operand);
+        let touching = &found.touching[operand];
+        let mut labels = Labels::new(of, (around, operands[around]), touching);
         for arrangement in arranged.iter() {
             labels.join_cells(arrangement)?;
         }
