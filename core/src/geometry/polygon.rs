@@ -129,7 +129,7 @@ type Corners = SmallVec<[Corner; 5]>;
 pub type Sides = SmallVec<[Side; 8]>;
 
 /// The ends of a segment inside a polygon.
-pub type Chord = SmallVec<[Arc<Vertex>; 2]>;
+type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
 /// Return whether there are corners on the minus side, and whether there are on the plus side.
 pub fn straddle(sides: &[Side]) -> (bool, bool) {
@@ -266,7 +266,7 @@ impl Polygon {
 
     /// The ends of the segment in which a plane with corners strictly on both sides cuts the
     /// polygon, in the order in which its border meets them.
-    pub fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
+    fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
         let n = self.corners.len();
         let mut ends = Chord::new();
         for i in 0..n {
@@ -286,7 +286,7 @@ impl Polygon {
     }
 
     /// The pieces on the minus and on the plus side of a plane that cuts the polygon in a chord.
-    pub fn divided(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord) -> (Self, Self) {
+    fn divided(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord) -> (Self, Self) {
         let half = |own| self.half(cut, sides, chord, own);
         (half(Side::Minus), half(Side::Plus))
     }

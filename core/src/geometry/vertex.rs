@@ -252,6 +252,18 @@ impl Vertex {
         self.compare(other, axis)
     }
 
+    /// An axis along which another vertex lies elsewhere: that along which it is farthest, where doubles
+    /// tell.
+    pub fn axis_to(&self, other: &Self) -> usize {
+        let (p, q) = (self.approx(), other.approx());
+        let length = each_axis(|i| (q[i] - p[i]).abs());
+        let longer = |i: &usize, j: &usize| length[*i].total_cmp(&length[*j]);
+        let longest = (0..3).max_by(longer).unwrap_or(0);
+        let differs = |axis: &usize| self.compare_along(other, *axis).is_ne();
+        let mut axes = std::iter::once(longest).chain(0..3);
+        axes.find(differs).unwrap_or(longest)
+    }
+
     /// The order by one coordinate where doubles tell it.
     fn near_order(&self, other: &Self, axis: usize) -> Filtered<Ordering> {
         let left = self.approx[axis] * other.approx[3];

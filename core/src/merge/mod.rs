@@ -2,6 +2,7 @@
 
 pub mod arrangement;
 pub mod descent;
+mod division;
 pub mod evaluate;
 pub mod expression;
 pub mod generic;

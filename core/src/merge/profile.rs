@@ -1,5 +1,6 @@
 //! What an evaluation did, stage by stage.
 
+use super::division::Defect;
 use std::time::Instant;
 
 /// A stage of an evaluation.
@@ -30,6 +31,12 @@ pub enum Declined {
     Thin,
     /// A segment left its face: a defect.
     Defect,
+}
+
+impl From<Defect> for Declined {
+    fn from(_: Defect) -> Self {
+        Self::Defect
+    }
 }
 
 impl Declined {

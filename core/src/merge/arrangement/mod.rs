@@ -2,7 +2,7 @@
 //!
 //! The stages, each in a file of its own: faces that may meet (`pair` with `probe`, `occupancy` and
 //! `candidates`; `alone`), pairs of them whose boxes meet (`boxes`), what they have in common (`contact`,
-//! `segments`), the cells into which that divides a face (`triangulation`, `faces`), winding numbers
+//! `segments`), the cells into which that divides a face (`faces`), winding numbers
 //! (`labels`), and the leaf that lists what stays (`kept`, `scene`).
 
 mod alone;
@@ -22,7 +22,6 @@ mod segments;
 mod shells;
 pub(super) mod star;
 mod surfaces;
-mod triangulation;
 mod windings;
 
 pub use alone::{is_simple_mesh, united, United};

@@ -114,7 +114,7 @@ pub(super) fn contacts_of(
 ) -> Result<Contacts, Declined> {
     let [first, second] = candidates;
     let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.triangles.len() + second.triangles.len()));
-    let visit = |block: &[[u32; 2]]| {
+    let visit = |block: &[[u32; 2]]| -> Result<Vec<Met>, Declined> {
         let take = |left: usize| left.checked_sub(block.len());
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
             .map_err(|_| Declined::Crowded)?;

@@ -279,12 +279,9 @@ impl<'a> Descent<'a> {
         // No level of bins suited these faces, so halving will not separate them either.
         let long = listed && opening >= BINS_FROM;
         if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
-            let kernel: &dyn Kernel = if stuck {
-                &GeneralPosition::LAST
-            } else {
-                &GeneralPosition::FIRST
-            };
-            if let Some(branch) = self.solved(cell, &expression, &states, total, &[kernel])? {
+            if let Some(branch) =
+                self.solved(cell, &expression, &states, total, &[&GeneralPosition])?
+            {
                 return Ok(branch);
             }
             round.refused(total);

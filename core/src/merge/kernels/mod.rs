@@ -16,6 +16,6 @@ use problem::Kernel;
 /// All kernels in the order in which small cells are offered to them. The last one takes every cell.
 pub const ALL: [&dyn Kernel; 3] = [
     &orthogonal::Orthogonal,
-    &general::GeneralPosition::LAST,
+    &general::GeneralPosition,
     &trees::LocalTrees,
 ];

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::anchors::{Anchor, Names};
-use super::cutting::{contact, cut_up, Contact, Cutter, Cutting};
+use super::contact::{contact, Contact};
 use super::points::Points;
 use super::scene::{Element, Scene};
 use super::segment::{Crossed, Crosser};
@@ -40,8 +40,6 @@ pub(super) enum Fate {
 struct Made<'a> {
     points: Points,
     names: Names<'a>,
-    /// The most others by which an element is divided piece by piece.
-    cutters: usize,
 }
 
 /// The others that an element meets.
@@ -58,30 +56,19 @@ enum Meeting<'a> {
 pub(super) struct Cut {
     /// All of it inside the cell.
     pub(super) polygon: Polygon,
-    pub(super) parts: Parts,
+    pub(super) trace: Trace,
     pub(super) anchors: Vec<Anchor>,
 }
 
-/// The parts into which an element is divided.
-#[allow(clippy::large_enum_variant, reason = "nearly all are traces")]
-pub(super) enum Parts {
-    /// Parts by the operands inside which they lie.
-    Sides(Trace),
-    /// Convex pieces, by the faces of any operands.
-    Pieces(Cutting),
-}
-
 impl Scene<'_> {
-    /// The fates of all elements; `None` if two meet in a special way, or one is divided piece by
-    /// piece by more than so many.
-    pub(super) fn fates(&self, cutters: usize) -> Option<Vec<Fate>> {
+    /// The fates of all elements; `None` if two meet in a special way.
+    pub(super) fn fates(&self) -> Option<Vec<Fate>> {
         let near = self.neighbours()?.into_iter().enumerate();
         // A cell in which anything is special is refused before anything is divided.
         let meetings: Option<Vec<Meeting>> = near.map(|(i, near)| self.meeting(i, &near)).collect();
         let mut made = Made {
             points: Points::default(),
             names: Names::of(self),
-            cutters,
         };
         let meetings = meetings?.into_iter().enumerate();
         let fate = |(i, meeting)| match meeting {
@@ -176,10 +163,10 @@ impl Scene<'_> {
             polygon: &polygon,
             number: as_number(i),
         };
-        let parts = Parts::of(&crossed, crossers, &mut made.points, made.cutters)?;
+        let trace = Trace::new(&crossed, crossers, &mut made.points).ok()?;
         Some(Fate::Cut(Box::new(Cut {
             polygon,
-            parts,
+            trace,
             anchors,
         })))
     }
@@ -208,24 +195,6 @@ impl Scene<'_> {
     }
 }
 
-impl Parts {
-    fn of(
-        crossed: &Crossed,
-        crossers: &[Crosser],
-        points: &mut Points,
-        most: usize,
-    ) -> Option<Self> {
-        if let Some(trace) = Trace::new(crossed, crossers, points) {
-            return Some(Self::Sides(trace));
-        }
-        if crossers.len() > most {
-            return None;
-        }
-        let cutters: Vec<Cutter> = crossers.iter().map(Crosser::cutter).collect();
-        Some(Self::Pieces(cut_up(crossed.polygon.clone(), &cutters)?))
-    }
-}
-
 impl Cut {
     /// A part that has an anchor as a corner.
     pub(super) fn part_at(&self, anchor: &Anchor) -> Option<usize> {
@@ -234,14 +203,8 @@ impl Cut {
 
     /// The first part that has such a corner.
     pub(super) fn part_with(&self, is_it: impl Fn(&Arc<Vertex>) -> bool) -> Option<usize> {
-        let has = |piece: &Polygon| piece.corners().iter().any(|c| is_it(&c.at));
-        match &self.parts {
-            Parts::Pieces(cutting) => cutting.pieces.iter().position(has),
-            Parts::Sides(trace) => {
-                let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
-                trace.part_at_corner(corner)
-            }
-        }
+        let corner = self.polygon.corners().iter().position(|c| is_it(&c.at))?;
+        self.trace.part_at_corner(corner)
     }
 }
 
@@ -255,43 +218,38 @@ mod tests {
         let shared = crossing();
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
-        let fates = scene.fates(usize::MAX).expect("general position");
-        let cut =
-            |fate: &Fate| matches!(fate, Fate::Cut(cut) if matches!(cut.parts, Parts::Sides(_)));
+        let fates = scene.fates().expect("general position");
+        let cut = |fate: &Fate| matches!(fate, Fate::Cut(_));
         let cut: Vec<bool> = fates.iter().map(cut).collect();
         // The face across from the origin, and those at the corner inside.
         assert_eq!(cut, [false, false, false, true, true, true, true, false]);
         let alone = Scene::new(&shared.cell, &operands[..1], &shared.sources);
-        let fates = alone.fates(usize::MAX).expect("nothing meets");
+        let fates = alone.fates().expect("nothing meets");
         assert!(fates.iter().all(|fate| matches!(fate, Fate::Untouched)));
     }
 
-    /// For each face of a tetrahedron the edges of the part inside all of some operands, 0 if it is
-    /// divided piece by piece or not at all.
+    /// For each face of a tetrahedron the edges of the part inside all of some operands.
     fn traced(operands: &[&[[[i64; 3]; 2]]]) -> Vec<usize> {
         let floor = tetrahedron([[-90, -95, 0], [290, -85, 0], [-80, 310, 0], [-70, -70, 300]]);
         let others = operands.iter().map(|o| cuboids(o.iter().copied()));
         let shared = Shared::of(&std::iter::once(floor).chain(others).collect::<Vec<_>>());
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
-        let fates = scene.fates(usize::MAX).unwrap_or_default();
-        let edges = |fate: &Fate| match fate {
-            Fate::Cut(cut) => match &cut.parts {
-                Parts::Sides(trace) => {
-                    let inside = trace.parts.iter().map(|p| *p == trace.operands && *p != 0);
-                    let inside: Vec<bool> = inside.collect();
-                    let some = inside.contains(&true);
-                    some.then(|| trace.outline(&cut.polygon, &inside).len())
-                }
-                Parts::Pieces(_) => None,
-            },
+        let fates = scene.fates().unwrap_or_default();
+        let edges = |fate: Fate| match fate {
+            Fate::Cut(mut cut) => {
+                let Trace {
+                    parts, operands, ..
+                } = &cut.trace;
+                let inside = parts.iter().map(|p| p == operands && *p != 0);
+                let inside: Vec<bool> = inside.collect();
+                let some = inside.contains(&true);
+                some.then(|| cut.trace.outline(&inside).len())
+            }
             _ => None,
         };
-        fates
-            .iter()
-            .take(4)
-            .map(|fate| edges(fate).unwrap_or(0))
-            .collect()
+        let faces = fates.into_iter().take(4);
+        faces.map(|fate| edges(fate).unwrap_or(0)).collect()
     }
 
     #[test]
@@ -320,8 +278,8 @@ mod tests {
     }
 
     #[test]
-    fn curves_of_one_operand_that_are_not_nested_by_turns_are_no_trace() {
+    fn an_operand_that_winds_twice_around_a_place_of_a_face_is_no_trace() {
         let nested = [[[1, 2, -9], [19, 21, 9]], [[5, 6, -5], [9, 11, 5]]];
-        assert_eq!(traced(&[&nested]), [0, 0, 0, 0]);
+        assert!(traced(&[&nested]).is_empty());
     }
 }

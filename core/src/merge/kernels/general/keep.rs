@@ -3,10 +3,9 @@
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::fates::{Fate, Parts};
+use super::fates::Fate;
 use super::scene::{Element, Place, Scene};
 use super::{Labels, OnPieces};
-use crate::interrupt::poll;
 use crate::merge::kernels::kept::Kept;
 use crate::merge::kernels::stays::{kept, Owner, Stays};
 use crate::mesh::handle::{FaceId, SourceFace};
@@ -110,29 +109,17 @@ fn all_on(side: usize) -> [Stays; 2] {
 
 /// The parts by the sides on which they stay.
 fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
-    let Fate::Cut(cut) = fate else {
+    let Fate::Cut(mut cut) = fate else {
         return [Stays::Nothing, Stays::Nothing];
     };
-    match cut.parts {
-        Parts::Sides(trace) => [0, 1].map(|side| {
-            let stays: SmallVec<[bool; 4]> = sides.iter().map(|s| *s == Some(side)).collect();
-            if stays.contains(&true) {
-                Stays::Outline(trace.outline(&cut.polygon, &stays))
-            } else {
-                Stays::Nothing
-            }
-        }),
-        Parts::Pieces(cutting) => {
-            let mut found = [Vec::new(), Vec::new()];
-            for (piece, side) in cutting.pieces.into_iter().zip(sides) {
-                poll();
-                if let Some(side) = side {
-                    found[*side].push(piece);
-                }
-            }
-            found.map(Stays::of)
+    [0, 1].map(|side| {
+        let stays: SmallVec<[bool; 4]> = sides.iter().map(|s| *s == Some(side)).collect();
+        if stays.contains(&true) {
+            Stays::Outline(cut.trace.outline(&stays))
+        } else {
+            Stays::Nothing
         }
-    }
+    })
 }
 
 #[cfg(test)]

@@ -197,7 +197,7 @@ mod tests {
         let operands = shared.operands();
         let roots = |count: usize| {
             let scene = Scene::new(&shared.cell, &operands[..count], &shared.sources);
-            let fates = scene.fates(usize::MAX).expect("general position");
+            let fates = scene.fates().expect("general position");
             let mut known = Known::new(&scene, &fates);
             let vertex = |v: u32| Name::Vertex(Slot(0), VertexId(v));
             [0, 1, 2, 3].map(|v| known.root_of(0, vertex(v)))

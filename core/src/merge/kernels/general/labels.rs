@@ -6,10 +6,10 @@
 use std::sync::Arc;
 
 use super::anchors::Spot;
-use super::cutting::{Cutting, Tie};
-use super::fates::{Cut, Fate, Parts};
+use super::fates::{Cut, Fate};
 use super::known::Known;
 use super::scene::{Element, Place, Scene};
+use super::trace::Trace;
 use super::{Labels, OnPieces};
 use crate::arith::convert::as_double;
 use crate::arith::Filtered;
@@ -69,7 +69,7 @@ impl Scene<'_> {
             let (Fate::Cut(cut), true) = (&fates[i], labels[i].is_empty()) else {
                 continue;
             };
-            labels[i] = spread(&cut.parts, part, start)?;
+            labels[i] = spread(&cut.trace, part, start)?;
             for anchor in &cut.anchors {
                 let label = labels[i][cut.part_at(anchor)?];
                 let root = known.root_of(self.elements[i].operand, anchor.name) as usize;
@@ -143,79 +143,27 @@ impl Scene<'_> {
 }
 
 /// The labels of all parts from those of one; `None` if they contradict each other.
-fn spread(parts: &Parts, first: usize, start: Labels) -> Option<OnPieces> {
-    match parts {
-        Parts::Pieces(cutting) => spread_along_ties(cutting, first, start),
-        Parts::Sides(trace) => {
-            let agrees = start & trace.operands == trace.parts[first];
-            let others = start & !trace.operands;
-            agrees.then(|| trace.parts.iter().map(|part| others | part).collect())
-        }
-    }
-}
-
-/// The labels of all pieces from those of one; `None` if the ties contradict each other, or a
-/// number is neither 0 nor 1.
-fn spread_along_ties(cutting: &Cutting, first: usize, start: Labels) -> Option<OnPieces> {
-    let mut labels: Vec<Option<Labels>> = vec![None; cutting.pieces.len()];
-    labels[first] = Some(start);
-    let mut changed = true;
-    while changed {
-        changed = false;
-        for tie in &cutting.ties {
-            poll();
-            let (minus, plus) = (tie.minus as usize, tie.plus as usize);
-            match (labels[minus], labels[plus]) {
-                (Some(w), None) => labels[plus] = Some(across(tie, w, true)?),
-                (None, Some(w)) => labels[minus] = Some(across(tie, w, false)?),
-                (Some(v), Some(w)) if across(tie, v, true) != Some(w) => return None,
-                _ => continue,
-            }
-            changed = true;
-        }
-    }
-    labels.into_iter().collect()
-}
-
-/// The labels on the other side of a tie, from its minus to its plus piece or back.
-fn across(tie: &Tie, labels: Labels, onward: bool) -> Option<Labels> {
-    let bit: Labels = 1 << tie.operand;
-    let rises = (tie.change > 0) == onward;
-    ((labels & bit == 0) == rises).then_some(labels ^ bit)
+fn spread(trace: &Trace, first: usize, start: Labels) -> Option<OnPieces> {
+    let agrees = start & trace.operands == trace.parts[first];
+    let others = start & !trace.operands;
+    agrees.then(|| trace.parts.iter().map(|part| others | part).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::merge::scenes::{crossing, triangle};
+    use crate::merge::scenes::crossing;
 
     #[test]
     fn a_cut_face_lies_outside_and_inside_the_solid_that_cuts_it() {
         let shared = crossing();
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
-        let fates = scene.fates(usize::MAX).expect("general position");
+        let fates = scene.fates().expect("general position");
         let labels = scene.labels(&fates).expect("labels agree");
         let labels: Vec<&[Labels]> = labels.iter().map(|l| &l[..]).collect();
         let (of_first, of_second): (&[Labels], &[Labels]) = (&[0, 0b10], &[0, 0b01]);
         assert_eq!(labels[..4], [&[0][..], &[0], &[0], of_first]);
         assert_eq!(labels[4..], [of_second, of_second, of_second, &[0]]);
-    }
-
-    #[test]
-    fn ties_that_contradict_each_other_give_no_labels() {
-        let tie = |change: i32| Tie {
-            minus: 0,
-            plus: 1,
-            operand: 1,
-            change,
-        };
-        let piece = || triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
-        let spread = |ties: Vec<Tie>| {
-            let pieces = vec![piece(), piece()];
-            spread_along_ties(&Cutting { pieces, ties }, 0, 0)
-        };
-        assert_eq!(spread(vec![tie(1)]).as_deref(), Some(&[0, 0b10][..]));
-        assert!(spread(vec![tie(1), tie(-1)]).is_none());
     }
 }

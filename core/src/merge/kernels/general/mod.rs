@@ -6,20 +6,15 @@
 //! contacts, operands that overlap themselves — is left to the local trees.
 
 mod anchors;
-mod border;
-mod curves;
-mod cutting;
+mod contact;
 mod fates;
 mod keep;
 mod known;
 mod labels;
-mod nesting;
 mod points;
 mod scene;
 mod segment;
-mod stops;
 mod trace;
-mod walls;
 
 use smallvec::SmallVec;
 
@@ -32,10 +27,6 @@ use scene::Scene;
 /// Operands in one small cell, at most; more are left to the local trees.
 pub const MAX_OPERANDS: usize = 64;
 
-/// Most faces by which another one is divided piece by piece, where the cell may be halved instead:
-/// the cost is the square of their number, that of a halving is not.
-const CUTTERS: usize = 48;
-
 /// For each operand of the cell whether a region is inside it, as bits.
 type Labels = u64;
 
@@ -46,20 +37,7 @@ type OnPieces = SmallVec<[Labels; 2]>;
 ///
 /// Refuses cells in which anything is special, and rules other than w > 0.
 #[derive(Debug)]
-pub struct GeneralPosition {
-    cutters: usize,
-}
-
-impl GeneralPosition {
-    /// For cells that are not halved any more.
-    pub const LAST: Self = Self {
-        cutters: usize::MAX,
-    };
-
-    /// For cells that are halved if they are refused: those, too, in which a face is divided along
-    /// more than one curve by many others.
-    pub const FIRST: Self = Self { cutters: CUTTERS };
-}
+pub struct GeneralPosition;
 
 impl Kernel for GeneralPosition {
     fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node> {
@@ -70,7 +48,7 @@ impl Kernel for GeneralPosition {
             return None;
         }
         let scene = Scene::new(problem.cell, operands, problem.sources);
-        let found = kept_and_corner(&scene, problem, self.cutters);
+        let found = kept_and_corner(&scene, problem);
         overlapping.extend(scene.overlapping.get().map(|k| operands[*k].number));
         let (kept, corner) = found?;
         let touching = operands.iter().any(|l| l.list.is_touching());
@@ -85,13 +63,9 @@ impl Kernel for GeneralPosition {
 }
 
 /// Return what stays of the operands' boundaries, and the value at the cell's corner.
-fn kept_and_corner(
-    scene: &Scene,
-    problem: &CellProblem,
-    cutters: usize,
-) -> Option<(Vec<Kept>, i32)> {
+fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
-    let fates = scene.fates(cutters)?;
+    let fates = scene.fates()?;
     let labels = scene.labels(&fates)?;
     let place = |number: u32| operands.partition_point(|l| l.number < number);
     let scratch = &mut Vec::new();
@@ -114,7 +88,7 @@ mod tests {
         let scene = crossing();
         let left = |combined| {
             let expression = both(combined);
-            let node = GeneralPosition::LAST.solve(&scene.problem(&expression), &mut Vec::new());
+            let node = GeneralPosition.solve(&scene.problem(&expression), &mut Vec::new());
             counts(&node.expect("general position"))
         };
         assert_eq!(left(Term::And), (0, 4));
@@ -128,7 +102,7 @@ mod tests {
         let expression = both(Term::Or);
         let problem = scene.problem(&expression);
         let mut seen = Vec::new();
-        assert!(GeneralPosition::LAST.solve(&problem, &mut seen).is_none());
+        assert!(GeneralPosition.solve(&problem, &mut seen).is_none());
         assert!(seen.is_empty());
     }
 
@@ -145,7 +119,7 @@ mod tests {
         let expression = Expression::new(terms.collect()).expect("well formed");
         let mut seen = Vec::new();
         let problem = scene.problem(&expression);
-        assert!(GeneralPosition::LAST.solve(&problem, &mut seen).is_none());
+        assert!(GeneralPosition.solve(&problem, &mut seen).is_none());
         assert_eq!(seen, [2]);
     }
 }

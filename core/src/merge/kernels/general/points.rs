@@ -13,8 +13,6 @@ use crate::geometry::vertex::Vertex;
 pub(super) struct Points {
     /// By edge and by the number of the element that it crosses.
     on_edges: HashMap<(EdgeName, u32), Point>,
-    /// The common points of three elements, by their numbers.
-    of_three: HashMap<[u32; 3], Arc<Vertex>>,
 }
 
 struct Point {
@@ -71,20 +69,6 @@ impl Points {
             _planes: planes,
         };
         self.on_edges.insert(name, known);
-        Some(at)
-    }
-
-    /// The point that the planes of three elements, given with their numbers, have in common;
-    /// `None` if they have none or more.
-    pub(super) fn of_three(&mut self, elements: [(&Arc<Plane>, u32); 3]) -> Option<Arc<Vertex>> {
-        let mut name = elements.map(|e| e.1);
-        name.sort_unstable();
-        if let Some(known) = self.of_three.get(&name) {
-            return Some(Arc::clone(known));
-        }
-        let [a, b, c] = elements.map(|e| e.0);
-        let at = Arc::new(Vertex::meet(a, b, c)?);
-        self.of_three.insert(name, Arc::clone(&at));
         Some(at)
     }
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-use super::cutting::Face;
+use super::contact::Face;
 use super::Labels;
 use crate::arith::convert::as_double;
 use crate::arith::Filtered;
@@ -394,7 +394,7 @@ mod tests {
         // The three cut faces of the second tetrahedron; that of the first may meet the small one.
         let apart = |e: &&Element| e.is_apart();
         assert_eq!(scene.elements.iter().filter(apart).count(), 3);
-        let fates = scene.fates(usize::MAX).expect("general position");
+        let fates = scene.fates().expect("general position");
         let uncut = scene
             .elements
             .iter()

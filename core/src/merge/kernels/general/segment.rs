@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::cutting::{Cutter, Face, Special};
+use super::contact::{Face, Special};
 use super::points::Points;
 use super::Labels;
 use crate::arith::Sign;
@@ -12,17 +12,15 @@ use crate::geometry::polygon::{Carrier, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
+use crate::merge::division::Spot;
 
-/// A directed segment on an element, with the inside of another operand on its left.
+/// A segment on an element, directed so that the minus side of the other face is on its left.
 pub(super) struct Segment {
-    pub(super) from: End,
-    pub(super) to: End,
+    pub(super) ends: [End; 2],
     /// The other operand.
     pub(super) operand: usize,
     /// The plane of the face in which it lies.
     pub(super) plane: Arc<Plane>,
-    /// The number of that face.
-    pub(super) number: u32,
     /// True if that operand's inside is on the plus side of the plane.
     pub(super) plus: bool,
 }
@@ -31,8 +29,8 @@ pub(super) struct Segment {
 #[derive(Clone)]
 pub(super) struct End {
     pub(super) at: Arc<Vertex>,
-    /// The edge of the element on which it lies, if it lies on its border.
-    pub(super) edge: Option<usize>,
+    /// Where it lies on the element.
+    pub(super) spot: Spot,
 }
 
 /// A face of another operand that may cross an element.
@@ -56,17 +54,6 @@ impl Segment {
     }
 }
 
-impl<'a> Crosser<'a> {
-    /// The face as the autopartition sees it.
-    pub(super) fn cutter(&self) -> Cutter<'a> {
-        Cutter {
-            face: self.face,
-            operand: self.operand,
-            weight: self.weight,
-        }
-    }
-}
-
 /// An element that is crossed.
 pub(super) struct Crossed<'a> {
     pub(super) polygon: &'a Polygon,
@@ -75,21 +62,34 @@ pub(super) struct Crossed<'a> {
 
 impl Crossed<'_> {
     /// The segment in which a face crosses the element, if it does.
-    ///
-    /// Along the line in which the planes meet, with the face's minus side on the left, the element
-    /// reaches from x to x′ and the face from y to y′; the segment is what both have. Where both
-    /// borders meet in a point, it ends on the element's; what is no longer than a point is none.
     pub(super) fn segment(
         &self,
         other: &Crosser,
         points: &mut Points,
     ) -> Result<Option<Segment>, Special> {
-        if other.ours.contains(&Side::On) || other.theirs.contains(&Side::On) {
-            return Err(Special);
-        }
+        let has_corner = other.ours.contains(&Side::On) || other.theirs.contains(&Side::On);
+        let ends = if has_corner {
+            self.ends_by_order(other, points)?
+        } else {
+            self.ends(other, points)?
+        };
+        Ok(ends.map(|ends| Segment {
+            ends,
+            operand: other.operand,
+            plane: Arc::clone(other.face.polygon.support()),
+            plus: other.weight < 0,
+        }))
+    }
+
+    /// The ends of what both have of the line in which their planes meet, if no corner lies on it.
+    ///
+    /// Along the line, with the face's minus side on the left, the element reaches from x to x′ and
+    /// the face from y to y′. Where both borders meet in a point, the segment ends on the element's;
+    /// what is no longer than a point is none.
+    fn ends(&self, other: &Crosser, points: &mut Points) -> Result<Option<[End; 2]>, Special> {
         let face = &other.face.polygon;
-        let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?];
-        let [y, y_end] = [fall(&other.theirs)?, rise(&other.theirs)?];
+        let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?].map(|p| p.edge);
+        let [y, y_end] = [fall(&other.theirs)?, rise(&other.theirs)?].map(|p| p.edge);
         let mut inside = |edge: (usize, bool), rim: usize| self.inside(edge, other, rim, points);
         let no = |inside: Sign| inside != Sign::Positive;
         if no(inside((x_end, false), y)?) || no(inside((x, true), y_end)?) {
@@ -104,21 +104,46 @@ impl Crossed<'_> {
             } else {
                 points.at((face, theirs), (self.polygon.support(), self.number))
             };
-            let edge = here.then_some(own);
-            at.map(|at| End { at, edge }).ok_or(Special)
+            let spot = if here { Spot::Side(own) } else { Spot::Inside };
+            at.map(|at| End { at, spot }).ok_or(Special)
         };
-        let (from, to) = (end(starts_here, x, y)?, end(ends_here, x_end, y_end)?);
-        let plus = other.weight < 0;
-        let (from, to) = if plus { (to, from) } else { (from, to) };
-        let plane = Arc::clone(face.support());
-        Ok(Some(Segment {
-            from,
-            to,
-            operand: other.operand,
-            plane,
-            number: other.number,
-            plus,
-        }))
+        Ok(Some([
+            end(starts_here, x, y)?,
+            end(ends_here, x_end, y_end)?,
+        ]))
+    }
+
+    /// The same where corners may lie on the line.
+    fn ends_by_order(
+        &self,
+        other: &Crosser,
+        points: &mut Points,
+    ) -> Result<Option<[End; 2]>, Special> {
+        let ours = (self.polygon, self.number);
+        let theirs = (&*other.face.polygon, other.number);
+        let mut end = |change: Change, of: (&Polygon, u32), across: (&Polygon, u32)| {
+            let plane = (across.0.support(), across.1);
+            change.point(of.0, plane, points).ok_or(Special)
+        };
+        let (rises, falls) = (rise(&other.ours)?, fall(&other.ours)?);
+        let own = [end(rises, ours, theirs)?, end(falls, ours, theirs)?];
+        let (falls, rises) = (fall(&other.theirs)?, rise(&other.theirs)?);
+        let others = [end(falls, theirs, ours)?, end(rises, theirs, ours)?];
+        let axis = own[0].at.axis_to(&own[1].at);
+        let order = |p: &End, q: &End| p.at.compare_along(&q.at, axis);
+        let onward = order(&own[0], &own[1]);
+        let [x, x_end] = own;
+        let [y, y_end] = others.map(|end| End {
+            spot: Spot::Inside,
+            ..end
+        });
+        let from = if order(&x, &y) == onward { y } else { x };
+        let to = if order(&y_end, &x_end) == onward {
+            y_end
+        } else {
+            x_end
+        };
+        Ok((order(&from, &to) == onward).then_some([from, to]))
     }
 
     /// Return where the point in which an edge of the element, on its way to the face's plus side
@@ -146,20 +171,53 @@ impl Crossed<'_> {
     }
 }
 
-/// The edge on which a polygon with corners on these sides changes to the plus side.
-fn rise(sides: &[Side]) -> Result<usize, Special> {
+/// Where the border of a polygon changes from one side of a plane to the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Change {
+    /// The edge, or the one that leaves the corner.
+    edge: usize,
+    is_at_corner: bool,
+}
+
+impl Change {
+    fn point(
+        self,
+        polygon: &Polygon,
+        plane: (&Arc<Plane>, u32),
+        points: &mut Points,
+    ) -> Option<End> {
+        let edge = self.edge;
+        Some(if self.is_at_corner {
+            let at = Arc::clone(&polygon.corners()[edge].at);
+            let spot = Spot::Corner(edge);
+            End { at, spot }
+        } else {
+            let at = points.at((polygon, edge), plane)?;
+            let spot = Spot::Side(edge);
+            End { at, spot }
+        })
+    }
+}
+
+/// Where a polygon with corners on these sides changes to the plus side.
+fn rise(sides: &[Side]) -> Result<Change, Special> {
     change(sides, (Side::Minus, Side::Plus))
 }
 
-/// The edge on which it changes back.
-fn fall(sides: &[Side]) -> Result<usize, Special> {
+/// Where it changes back.
+fn fall(sides: &[Side]) -> Result<Change, Special> {
     change(sides, (Side::Plus, Side::Minus))
 }
 
-fn change(sides: &[Side], wanted: (Side, Side)) -> Result<usize, Special> {
+fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Special> {
     let n = sides.len();
-    let found = (0..n).find(|i| (sides[*i], sides[(i + 1) % n]) == wanted);
-    found.ok_or(Special)
+    let at = |edge: usize| {
+        let (here, next) = (sides[edge], sides[(edge + 1) % n]);
+        let is_at_corner = here == Side::On && sides[(edge + n - 1) % n] == from;
+        let changes = next == to && (here == from || is_at_corner);
+        changes.then_some(Change { edge, is_at_corner })
+    };
+    (0..n).find_map(at).ok_or(Special)
 }
 
 /// On which side of a directed edge another one passes: positive if it rises on its left.
@@ -170,7 +228,7 @@ fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cutting::{contact, Contact};
+    use super::super::contact::{contact, Contact};
     use super::*;
     use crate::merge::scenes::triangle;
     use std::borrow::Cow;
@@ -196,18 +254,23 @@ mod tests {
         };
         let found = element.segment(&crosser, &mut Points::default()).ok();
         let segment = found.flatten().expect("they cross");
-        let ends = [&segment.from, &segment.to];
+        let ends = segment.ends;
         // It begins on the face's own edge, inside the element, and ends on the element's border.
         let [inner, outer] = [[1, 1, 0], [1, 7, 0]].map(Vertex::lattice);
-        let at_outer = ends.map(|end| end.at.same(&outer));
+        let at_outer = ends.each_ref().map(|end| end.at.same(&outer));
         assert!(ends.iter().any(|end| end.at.same(&inner)) && at_outer.contains(&true));
-        assert_eq!(ends.map(|end| end.edge.is_some()), at_outer);
+        assert_eq!(ends.map(|end| end.spot != Spot::Inside), at_outer);
     }
 
     #[test]
     fn a_polygon_changes_sides_twice_or_is_special() {
+        let at = |edge: usize, is_at_corner: bool| Some(Change { edge, is_at_corner });
         let sides = [Side::Minus, Side::Plus, Side::Plus];
-        assert_eq!((rise(&sides).ok(), fall(&sides).ok()), (Some(0), Some(2)));
+        assert_eq!(rise(&sides).ok(), at(0, false));
+        assert_eq!(fall(&sides).ok(), at(2, false));
+        let sides = [Side::On, Side::Plus, Side::Minus];
+        assert_eq!(rise(&sides).ok(), at(0, true));
+        assert_eq!(fall(&sides).ok(), at(1, false));
         assert!(rise(&[Side::Plus; 3]).is_err());
     }
 }

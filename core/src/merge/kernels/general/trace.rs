@@ -1,26 +1,23 @@
 //! The trace of other operands on an element: where their surfaces cross it.
 //!
-//! The trace divides the element into parts inside and outside of these operands. Its walls and the
-//! arcs of the border between them are the outlines of the parts: nothing has to be cut. What is not
-//! certain is left to the autopartition of `cutting`: curves of one operand that may cross, ends that
-//! find no continuation, curves that do not agree about what lies between them.
+//! The segments in which faces cross the element divide it into cells. An operand is inside on one side
+//! of each of its segments and outside on the other, so that labels spread from cell to cell. Where
+//! segments contradict each other the operand overlaps itself, or something is special.
 
 use std::sync::Arc;
 
+use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::border::Border;
-use super::curves::Joints;
-use super::cutting::Special;
-use super::nesting::View;
+use super::contact::Special;
 use super::points::Points;
-use super::segment::{Crossed, Crosser, Segment};
-use super::stops::Stops;
-use super::walls::{Wall, Walls};
+use super::segment::{Crossed, Crosser, End, Segment};
 use super::Labels;
 use crate::geometry::outline::BareEdge;
-use crate::geometry::polygon::{Carrier, Polygon};
+use crate::geometry::polygon::Polygon;
+use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
+use crate::merge::division::{Defect, Division, Spot};
 
 /// An element divided by the surfaces of other operands.
 pub(super) struct Trace {
@@ -28,23 +25,57 @@ pub(super) struct Trace {
     pub(super) operands: Labels,
     /// Inside which of them the parts lie, ascending.
     pub(super) parts: SmallVec<[Labels; 2]>,
-    walls: Walls,
-    border: Border,
+    /// `None` if there are no segments.
+    divided: Option<Divided>,
+}
+
+/// An element divided into cells.
+struct Divided {
+    division: Division,
+    /// For each cell inside which of the operands it lies.
+    labels: Vec<Labels>,
 }
 
 impl Trace {
-    /// The trace of what may cross an element; `None` if it is not certain.
+    /// The trace of what may cross an element.
     pub(super) fn new(
         crossed: &Crossed,
         crossers: &[Crosser],
         points: &mut Points,
-    ) -> Option<Self> {
-        divided(crossed, crossers, points).ok()
+    ) -> Result<Self, Special> {
+        let mut segments = Vec::with_capacity(crossers.len());
+        for crosser in crossers {
+            poll();
+            segments.extend(crossed.segment(crosser, points)?);
+        }
+        if segments.is_empty() {
+            let parts = SmallVec::from_slice(&[0]);
+            return Ok(Self {
+                operands: 0,
+                parts,
+                divided: None,
+            });
+        }
+        let operands = segments.iter().fold(0, |all, s| all | s.bit());
+        let division = divided(crossed.polygon, &segments)?;
+        let labels = labels(&division, &segments)?;
+        let mut parts: SmallVec<[Labels; 2]> = SmallVec::from_slice(&labels);
+        parts.sort_unstable();
+        parts.dedup();
+        let divided = Some(Divided { division, labels });
+        Ok(Self {
+            operands,
+            parts,
+            divided,
+        })
     }
 
     /// The part that has a corner of the element.
     pub(super) fn part_at_corner(&self, corner: usize) -> Option<usize> {
-        self.part(self.border.corners[corner])
+        let Some(Divided { division, labels }) = &self.divided else {
+            return Some(0);
+        };
+        self.part(labels[division.cell_at_corner(corner)])
     }
 
     fn part(&self, labels: Labels) -> Option<usize> {
@@ -52,117 +83,89 @@ impl Trace {
     }
 
     /// The outline of some of the parts together.
-    pub(super) fn outline(&self, polygon: &Polygon, stays: &[bool]) -> Vec<BareEdge> {
-        let holds = |labels: Labels| self.part(labels).is_some_and(|i| stays[i]);
-        let mut edges = Vec::with_capacity(self.walls.segments.len() + 3);
-        self.add_walls(holds, &mut edges);
-        self.add_border(polygon, holds, &mut edges);
-        edges
-    }
-
-    /// Adds the walls that have some parts on one side, those that continue each other as one edge.
-    fn add_walls(&self, holds: impl Fn(Labels) -> bool, edges: &mut Vec<BareEdge>) {
-        let mut last = None;
-        for wall in self.walls.walls() {
-            let [left, right] = wall.sides.unwrap_or_default().map(&holds);
-            if left == right {
-                last = None;
-                continue;
-            }
-            let edge = self.walls.segments[wall.segment].bordering(&wall, left);
-            let current = Some((wall.segment, left));
-            add(edges, edge, last == current, left);
-            last = current;
-        }
-    }
-
-    /// Adds the arcs of the border at some parts, those that continue each other as one edge.
-    fn add_border(
-        &self,
-        polygon: &Polygon,
-        holds: impl Fn(Labels) -> bool,
-        edges: &mut Vec<BareEdge>,
-    ) {
-        let mut last = None;
-        for arc in self.border.arcs(polygon) {
-            if !holds(arc.labels) {
-                last = None;
-                continue;
-            }
-            let edge = BareEdge {
-                from: Arc::clone(arc.from),
-                to: Arc::clone(arc.to),
-                carrier: polygon.corners()[arc.edge].edge.clone(),
-            };
-            add(edges, edge, last == Some(arc.edge), true);
-            last = Some(arc.edge);
-        }
-    }
-}
-
-/// Adds an edge, or makes the last one longer by it, onward or backward.
-fn add(edges: &mut Vec<BareEdge>, edge: BareEdge, continues: bool, onward: bool) {
-    match edges.last_mut() {
-        Some(last) if continues && onward => last.to = edge.to,
-        Some(last) if continues => last.from = edge.from,
-        _ => edges.push(edge),
-    }
-}
-
-impl Segment {
-    /// A wall of it as an edge of a part on its left, or on its right.
-    fn bordering(&self, wall: &Wall, left: bool) -> BareEdge {
-        let (from, to) = if left {
-            (wall.from, wall.to)
-        } else {
-            (wall.to, wall.from)
+    pub(super) fn outline(&mut self, stays: &[bool]) -> Vec<BareEdge> {
+        let Some(Divided { division, labels }) = &mut self.divided else {
+            return Vec::new();
         };
-        BareEdge {
-            from: Arc::clone(from),
-            to: Arc::clone(to),
-            carrier: Carrier::Cut(Arc::clone(&self.plane), self.plus == left),
+        let parts = &self.parts;
+        let holds = |labels: &Labels| parts.binary_search(labels).is_ok_and(|i| stays[i]);
+        let holds: Vec<bool> = labels.iter().map(holds).collect();
+        division.outline(&holds)
+    }
+}
+
+impl From<Defect> for Special {
+    fn from(_: Defect) -> Self {
+        Self
+    }
+}
+
+/// An element divided by segments.
+fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Special> {
+    let corners = polygon.corners().iter();
+    let corners = corners.map(|c| (Arc::clone(&c.at), c.edge.clone()));
+    let mut division = Division::of(polygon.support(), corners)?;
+    let mut points: SmallVec<[(&Arc<Vertex>, Spot); 16]> = SmallVec::new();
+    let mut numbers: HashMap<*const Vertex, usize> = HashMap::default();
+    let number = |end: &'s End| {
+        let add = || {
+            points.push((&end.at, end.spot));
+            points.len() - 1
+        };
+        *numbers.entry(Arc::as_ptr(&end.at)).or_insert_with(add)
+    };
+    let ends = segments.iter().flat_map(|s| &s.ends).map(number);
+    let ends: SmallVec<[usize; 16]> = ends.collect();
+    let places = division.insert(&points)?;
+    for (segment, ends) in segments.iter().zip(ends.chunks_exact(2)) {
+        poll();
+        let plane = Arc::clone(&segment.plane);
+        division.cut_along([0, 1].map(|i| places[ends[i]]), plane)?;
+    }
+    Ok(division)
+}
+
+/// For each cell inside which of the operands it lies.
+fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Special> {
+    let change = |cell: usize, edge: usize| {
+        let along = division.along_edge(cell, edge);
+        along.fold(0, |all, (segment, _)| all ^ segments[segment].bit())
+    };
+    let mut labels = division.spread(0, |here, cell, edge| here ^ change(cell, edge));
+    let (mut known, mut inside_first): (Labels, Labels) = (0, 0);
+    for cell in 0..labels.len() {
+        for (edge, mate) in division.mates(cell) {
+            if labels[mate] != labels[cell] ^ change(cell, edge) {
+                return Err(Special);
+            }
+            for (segment, is_along) in division.along_edge(cell, edge) {
+                let segment = &segments[segment];
+                // The inside lies on the left, or on the right if it is on the plus side.
+                let is_inside = is_along != segment.plus;
+                let first =
+                    labels[cell] & segment.bit() ^ if is_inside { segment.bit() } else { 0 };
+                if known & segment.bit() == 0 {
+                    known |= segment.bit();
+                    inside_first |= first;
+                } else if inside_first & segment.bit() != first {
+                    return Err(Special);
+                }
+            }
         }
     }
-}
-
-fn divided(crossed: &Crossed, crossers: &[Crosser], points: &mut Points) -> Result<Trace, Special> {
-    let mut segments = Vec::with_capacity(crossers.len());
-    for crosser in crossers {
-        poll();
-        segments.extend(crossed.segment(crosser, points)?);
+    for all in &mut labels {
+        *all ^= inside_first;
     }
-    let (segments, joints) = Joints::of(&segments)?.joined(segments)?;
-    let mut border = Border::new(crossed.polygon, &segments)?;
-    let stops = Stops::of(crossed, &segments, points)?;
-    let operands = segments.iter().fold(0, |all, s| all | s.bit());
-    let mut walls = Walls::new(segments, joints, stops);
-    View::of(crossed.polygon).label(&mut walls, &mut border)?;
-    let parts = parts(&walls, &border);
-    Ok(Trace {
-        operands,
-        parts,
-        walls,
-        border,
-    })
-}
-
-/// The labels beside all walls and along the border, ascending.
-fn parts(walls: &Walls, border: &Border) -> SmallVec<[Labels; 2]> {
-    let sides = walls.walls().filter_map(|wall| wall.sides).flatten();
-    let mut parts: SmallVec<[Labels; 2]> = sides.chain(border.corners.iter().copied()).collect();
-    parts.sort_unstable();
-    parts.dedup();
-    parts
+    Ok(labels)
 }
 
 #[cfg(test)]
 mod tests {
     use std::borrow::Cow;
 
-    use super::super::cutting::{contact, Contact, Face};
+    use super::super::contact::{contact, Contact, Face};
     use super::*;
     use crate::geometry::plane::{Lattice, Plane};
-    use crate::geometry::vertex::Vertex;
 
     fn polygon(corners: &[Lattice; 3]) -> Polygon {
         let [a, b, c] = corners;
@@ -195,7 +198,7 @@ mod tests {
             polygon: crossed,
             number: 0,
         };
-        Trace::new(&element, &crossers, &mut Points::default())
+        Trace::new(&element, &crossers, &mut Points::default()).ok()
     }
 
     /// The edge of a wall goes through the border of a polygon: (4, 4, 0) lies on both.
@@ -207,25 +210,33 @@ mod tests {
             [[4, 4, 8], [4, 4, -8], [1, 9, 1]],
         ];
         let trace = trace(&crossed, wall).expect("one curve from border to border");
-        let corner = Vertex::lattice([4, 4, 0]);
-        assert_eq!(trace.walls.segments.len(), 1);
-        let arcs = trace.border.arcs(&crossed);
-        assert_eq!(arcs.len(), 5);
-        assert!(arcs
-            .iter()
-            .any(|arc| arc.edge == 2 && arc.from.same(&corner)));
         assert_ne!(trace.part_at_corner(0), trace.part_at_corner(1));
         assert_eq!(trace.part_at_corner(1), trace.part_at_corner(2));
     }
 
-    /// Both faces at the edge lie over the polygon: their curve only touches its border.
+    /// Both faces at the edge lie over the polygon: their curve touches its border.
     #[test]
-    fn a_curve_that_touches_the_border_is_in_doubt() {
+    fn a_curve_may_touch_the_border() {
         let crossed = polygon(&[[0, 0, 0], [8, 0, 0], [8, 8, 0]]);
         let wedge = [
             [[4, 4, -8], [4, 4, 8], [7, -3, 1]],
             [[4, 4, 8], [4, 4, -8], [9, 3, 1]],
         ];
-        assert!(trace(&crossed, wedge).is_none());
+        let trace = trace(&crossed, wedge).expect("one curve from border to border");
+        assert_eq!(trace.parts.len(), 2);
+        assert_eq!(trace.part_at_corner(0), trace.part_at_corner(2));
+        assert_ne!(trace.part_at_corner(0), trace.part_at_corner(1));
+    }
+
+    /// A corner of both faces lies in the polygon's plane.
+    #[test]
+    fn corners_in_the_plane_are_ends_of_segments() {
+        let crossed = polygon(&[[0, 0, 0], [80, 0, 0], [80, 80, 0]]);
+        let walls = [
+            [[40, 20, 0], [10, -30, 60], [30, -50, -40]],
+            [[40, 20, 0], [60, 90, -40], [10, -30, 60]],
+        ];
+        let trace = trace(&crossed, walls).expect("one curve from border to border");
+        assert_eq!(trace.parts.len(), 2);
     }
 }

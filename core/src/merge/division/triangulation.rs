@@ -1,6 +1,6 @@
-//! A triangulation of one face in which given points are vertices and given segments are edges.
+//! A triangulation of a convex polygon in which given points are vertices and given segments are edges.
 //!
-//! Points are inserted one by one, those of the face's border first; `segments` makes segments edges.
+//! Points are inserted one by one, those of the border first; `segments` makes segments edges.
 //! Decisions about orientation are exact; circles only choose among triangulations and are looked at in
 //! doubles.
 //!
@@ -14,22 +14,26 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use crate::arith::convert::{as_number, as_whole};
-use crate::arith::{Int, Sign};
+use crate::arith::{Filtered, Int, Sign};
 use crate::geometry::doubles::turn;
+use crate::geometry::plane::Plane;
 use crate::geometry::vertex::{Homogeneous, Vertex};
 use crate::interrupt::poll;
-use crate::merge::profile::Declined;
 
-/// No triangle: the border of the face.
-pub(super) const NONE: u32 = u32::MAX;
+/// A point or a segment leaves the polygon, or segments that cross have no point in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Defect;
+
+/// No triangle, or no side: beyond the border, and inside it.
+pub const NONE: u32 = u32::MAX;
 
 /// A triangle by the places of its corners, counterclockwise. Edge `i` runs from corner `i` to the next.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
+pub struct Cell {
     /// The corners.
-    pub(super) corners: [u32; 3],
+    pub corners: [u32; 3],
     /// The triangles across the edges.
-    pub(super) mates: [u32; 3],
+    pub mates: [u32; 3],
     /// For each edge the place of the last segment that runs along it among the runs, and one more;
     /// negative if the runs there are told as seen from across, 0 if there is none.
     marks: [i32; 3],
@@ -45,21 +49,21 @@ struct Run {
     before: i32,
 }
 
-/// A point of the face as seen along an axis.
+/// A point of the polygon as seen along an axis.
 #[derive(Clone, Debug)]
 struct Place {
     at: [f64; 2],
     /// By how much each coordinate may be off.
     error: f64,
-    /// The bits of the face's edges on which the point lies.
-    rims: u8,
+    /// The sides of the polygon on which the point lies.
+    sides: [u32; 2],
     vertex: Arc<Vertex>,
     exact: Option<Box<Homogeneous>>,
 }
 
-/// A triangulated face.
+/// A triangulated polygon.
 #[derive(Debug)]
-pub(super) struct Triangulation {
+pub struct Triangulation {
     axes: [usize; 2],
     places: Vec<Place>,
     /// A triangle at each point.
@@ -71,58 +75,74 @@ pub(super) struct Triangulation {
 }
 
 impl Triangulation {
-    /// The face alone; seen along two axes it must turn left.
-    pub(super) fn new(corners: [Arc<Vertex>; 3], axes: [usize; 2]) -> Self {
+    /// A polygon alone, by its strict corners; seen along two axes it must turn left.
+    pub fn new(corners: impl ExactSizeIterator<Item = Arc<Vertex>>, axes: [usize; 2]) -> Self {
+        let count = as_number(corners.len());
         let mut made = Self {
             axes,
-            places: Vec::with_capacity(8),
-            incident: vec![0; 3],
-            cells: Vec::with_capacity(8),
+            places: Vec::with_capacity(corners.len() + 5),
+            incident: Vec::with_capacity(corners.len() + 5),
+            cells: Vec::with_capacity(corners.len() + 5),
             runs: Vec::new(),
             last: 0,
             random: 1,
         };
-        for (vertex, rims) in corners.into_iter().zip([0b101, 0b011, 0b110]) {
-            made.places.push(Place::of(vertex, rims, axes));
+        for (side, vertex) in (0..).zip(corners) {
+            let before = if side == 0 { count - 1 } else { side - 1 };
+            made.add(vertex, [side, before]);
         }
-        made.cells.push(Cell {
-            corners: [0, 1, 2],
-            mates: [NONE; 3],
-            marks: [0; 3],
-        });
+        for k in 2..count {
+            let mate = |to: u32, first: u32| if to == count { NONE } else { to - first };
+            let before = if k == 2 { NONE } else { k - 3 };
+            let cell = Cell {
+                corners: [0, k - 1, k],
+                mates: [before, NONE, mate(k + 1, 2)],
+                marks: [0; 3],
+            };
+            made.put(k - 2, cell);
+        }
         made
     }
 
     /// The triangles.
-    pub(super) fn cells(&self) -> &[Cell] {
+    pub fn cells(&self) -> &[Cell] {
         &self.cells
     }
 
     /// A point.
-    pub(super) fn vertex(&self, place: u32) -> &Arc<Vertex> {
+    pub fn vertex(&self, place: u32) -> &Arc<Vertex> {
         &self.places[place as usize].vertex
     }
 
-    /// The edge of the face on which two points of its border lie.
-    pub(super) fn rim(&self, ends: [u32; 2]) -> usize {
-        let [a, b] = ends.map(|p| self.places[p as usize].rims);
-        (a & b).trailing_zeros() as usize
+    /// The side of the polygon on which two points of its border lie.
+    pub fn side(&self, ends: [u32; 2]) -> u32 {
+        let [a, b] = ends.map(|p| self.places[p as usize].sides);
+        if b.contains(&a[0]) {
+            a[0]
+        } else {
+            a[1]
+        }
     }
 
     /// The ends of an edge of a triangle.
-    pub(super) fn ends(&self, (cell, edge): (u32, usize)) -> (u32, u32) {
+    pub fn ends(&self, (cell, edge): (u32, usize)) -> (u32, u32) {
         let corners = self.cells[cell as usize].corners;
         (corners[edge], corners[(edge + 1) % 3])
     }
 
     /// An edge of a triangle as its neighbour has it.
-    pub(super) fn across(&self, (cell, edge): (u32, usize)) -> (u32, usize) {
+    pub fn across(&self, (cell, edge): (u32, usize)) -> (u32, usize) {
         let mate = self.cells[cell as usize].mates[edge];
-        (mate, self.edge_to(mate, cell))
+        let back = if mate == NONE {
+            0
+        } else {
+            self.edge_to(mate, cell)
+        };
+        (mate, back)
     }
 
     /// Twice the area of a triangle, about.
-    pub(super) fn size(&self, cell: u32) -> f64 {
+    pub fn size(&self, cell: u32) -> f64 {
         let [a, b, c] = self.cells[cell as usize]
             .corners
             .map(|i| &self.places[i as usize]);
@@ -132,7 +152,7 @@ impl Triangulation {
 
     /// The half step of the lattice next to the weighted mean of a triangle's corners, doubled, in the order
     /// of the axes.
-    pub(super) fn mean(&self, cell: u32, weights: [f64; 3]) -> [i64; 2] {
+    pub fn mean(&self, cell: u32, weights: [f64; 3]) -> [i64; 2] {
         let corners = self.cells[cell as usize].corners;
         let at = |i: usize| {
             let terms = (0..3).map(|k| weights[k] * self.places[corners[k] as usize].at[i]);
@@ -147,9 +167,9 @@ impl Triangulation {
     }
 
     /// Return whether a point lies strictly inside a triangle.
-    pub(super) fn holds(&mut self, cell: u32, vertex: Arc<Vertex>) -> bool {
+    pub fn holds(&mut self, cell: u32, vertex: Arc<Vertex>) -> bool {
         let [a, b, c] = self.cells[cell as usize].corners;
-        let point = self.add(vertex, 0);
+        let point = self.add(vertex, [NONE; 2]);
         let is_left = |(p, q)| self.turn([p, q, point]) == Sign::Positive;
         let is_inside = [(a, b), (b, c), (c, a)].into_iter().all(is_left);
         self.places.pop();
@@ -158,12 +178,12 @@ impl Triangulation {
     }
 
     /// A triangle at a point.
-    pub(super) fn cell_at(&self, place: u32) -> u32 {
+    pub fn cell_at(&self, place: u32) -> u32 {
         self.incident[place as usize]
     }
 
-    fn add(&mut self, vertex: Arc<Vertex>, rims: u8) -> u32 {
-        self.places.push(Place::of(vertex, rims, self.axes));
+    fn add(&mut self, vertex: Arc<Vertex>, sides: [u32; 2]) -> u32 {
+        self.places.push(Place::of(vertex, sides, self.axes));
         self.incident.push(NONE);
         as_number(self.places.len() - 1)
     }
@@ -196,23 +216,41 @@ impl Triangulation {
     }
 
     /// Sign of the turn at three points, positive to the left; exact.
-    pub(super) fn turn(&mut self, [a, b, c]: [u32; 3]) -> Sign {
-        let [p, q, r] = [a, b, c].map(|i| &self.places[i as usize]);
-        if p.rims & q.rims & r.rims != 0 {
-            return Sign::Zero;
+    pub fn turn(&mut self, points: [u32; 3]) -> Sign {
+        match self.near_turn(points) {
+            Filtered::Certain(sign) => sign,
+            Filtered::Doubtful => self.exact_turn(points),
         }
+    }
+
+    /// The same for two points of a plane that has what lies on the left of the way from one to the other
+    /// on its minus side.
+    fn turn_beside(&self, cut: &Plane, points: [u32; 3]) -> Sign {
+        match self.near_turn(points) {
+            Filtered::Certain(sign) => sign,
+            Filtered::Doubtful => -self.vertex(points[2]).side_of(cut).sign(),
+        }
+    }
+
+    /// The turn at three points, where doubles or their places on the border tell it.
+    fn near_turn(&self, points: [u32; 3]) -> Filtered<Sign> {
+        let [p, q, r] = points.map(|i| &self.places[i as usize]);
         let ([ux, uy], [vx, vy]) = (p.to(q), p.to(r));
         let (left, right) = (ux * vy, uy * vx);
         let (value, off) = (left - right, p.error + q.error + r.error);
         let span = ux.abs() + uy.abs() + vx.abs() + vy.abs();
         let rounding = 4.0 * f64::EPSILON * (left.abs() + right.abs());
         if value.abs() > rounding + 2.0 * off * (span + 4.0 * off) {
-            return Sign::of(value);
+            return Filtered::Certain(Sign::of(value));
+        }
+        let is_common = |side: &u32| q.sides.contains(side) && r.sides.contains(side);
+        if p.sides[0] != NONE && p.sides.iter().any(is_common) {
+            return Filtered::Certain(Sign::Zero);
         }
         if off == 0.0 {
-            return turn([p.at, q.at, r.at]);
+            return Filtered::Certain(turn([p.at, q.at, r.at]));
         }
-        self.exact_turn([a, b, c])
+        Filtered::Doubtful
     }
 
     #[cold]
@@ -232,37 +270,48 @@ impl Triangulation {
     }
 
     /// The triangles at a point, each with the place of the point among its corners.
-    fn fan(&self, point: u32) -> SmallVec<[(u32, usize); 8]> {
+    fn fan(&self, point: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
+        let place = move |cell: &Cell| cell.corners.iter().position(|c| *c == point).unwrap_or(0);
         let first = self.incident[point as usize];
-        let mut fan = SmallVec::new();
-        for back in [false, true] {
-            let mut at = first;
-            while at != NONE {
-                let cell = &self.cells[at as usize];
-                let k = cell.corners.iter().position(|c| *c == point).unwrap_or(0);
-                if !(back && at == first) {
-                    fan.push((at, k));
-                }
-                at = cell.mates[if back { k } else { (k + 2) % 3 }];
-                if at == first {
-                    return fan;
-                }
+        let (mut at, mut is_back) = (first, false);
+        std::iter::from_fn(move || {
+            if at == NONE && !is_back {
+                is_back = true;
+                let cell = &self.cells[first as usize];
+                at = cell.mates[place(cell)];
             }
-        }
-        fan
+            let here = at;
+            let cell = self.cells.get(here as usize)?;
+            let k = place(cell);
+            at = cell.mates[if is_back { k } else { (k + 2) % 3 }];
+            if at == first {
+                (at, is_back) = (NONE, true);
+            }
+            Some((here, k))
+        })
     }
 
     /// The edge from one point to another, as a triangle's.
     fn edge_between(&self, from: u32, to: u32) -> Option<(u32, usize)> {
         let leads =
             |(cell, k): &(u32, usize)| self.cells[*cell as usize].corners[(k + 1) % 3] == to;
-        self.fan(from).into_iter().find(leads)
+        self.fan(from).find(leads)
+    }
+
+    /// The edge between two points, as the triangles on both sides have it.
+    fn edges_between(&self, from: u32, to: u32) -> Option<[Option<(u32, usize)>; 2]> {
+        let across = |at| Some(self.across(at)).filter(|(mate, _)| *mate != NONE);
+        if let Some(at) = self.edge_between(from, to) {
+            return Some([Some(at), across(at)]);
+        }
+        let back = self.edge_between(to, from)?;
+        Some([None, Some(back)])
     }
 
     /// Divides the border between two points of it that follow each other; returns the new point.
-    pub(super) fn divide_border(&mut self, ends: [u32; 2], vertex: Arc<Vertex>) -> u32 {
-        let rims = 1 << self.rim(ends);
-        let point = self.add(vertex, rims);
+    pub fn divide_border(&mut self, ends: [u32; 2], vertex: Arc<Vertex>) -> u32 {
+        let side = self.side(ends);
+        let point = self.add(vertex, [side; 2]);
         if let Some((cell, edge)) = self.edge_between(ends[0], ends[1]) {
             let changed = self.split_edge(cell, edge, point);
             self.legalize(point, changed);
@@ -270,12 +319,12 @@ impl Triangulation {
         point
     }
 
-    /// Adds a point of the face; returns its number, or that of the point that is there.
+    /// Adds a point of the polygon; returns its number, or that of the point that is there.
     ///
     /// # Errors
     /// `Defect` if it lies outside.
-    pub(super) fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Declined> {
-        let point = self.add(vertex, 0);
+    pub fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Defect> {
+        let point = self.add(vertex, [NONE; 2]);
         let (cell, on) = self.locate(point)?;
         self.last = cell;
         let Cell { corners, mates, .. } = self.cells[cell as usize];
@@ -283,8 +332,8 @@ impl Triangulation {
             [] => self.split_cell(cell, point),
             [edge] => {
                 if mates[edge] == NONE {
-                    let rim = self.rim([corners[edge], corners[(edge + 1) % 3]]);
-                    self.places[point as usize].rims = 1 << rim;
+                    let side = self.side([corners[edge], corners[(edge + 1) % 3]]);
+                    self.places[point as usize].sides = [side; 2];
                 }
                 self.split_edge(cell, edge, point)
             }
@@ -302,7 +351,7 @@ impl Triangulation {
     /// The triangle that holds a point, and the edges on which it lies.
     ///
     /// A walk may go in circles if it tries edges in the same order each time.
-    fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Declined> {
+    fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Defect> {
         let mut at = self.last;
         'walk: loop {
             poll();
@@ -317,7 +366,7 @@ impl Triangulation {
                 let [a, b] = [cell.corners[i], cell.corners[(i + 1) % 3]];
                 match self.turn([a, b, point]) {
                     Sign::Positive => {}
-                    Sign::Negative if cell.mates[i] == NONE => return Err(Declined::Defect),
+                    Sign::Negative if cell.mates[i] == NONE => return Err(Defect),
                     Sign::Negative => {
                         at = cell.mates[i];
                         continue 'walk;
@@ -486,7 +535,7 @@ impl Triangulation {
 }
 
 impl Place {
-    fn of(vertex: Arc<Vertex>, rims: u8, axes: [usize; 2]) -> Self {
+    fn of(vertex: Arc<Vertex>, sides: [u32; 2], axes: [usize; 2]) -> Self {
         let near = vertex.approx();
         let at = axes.map(|i| near[i]);
         let error = match vertex.as_lattice() {
@@ -496,7 +545,7 @@ impl Place {
         Self {
             at,
             error,
-            rims,
+            sides,
             vertex,
             exact: None,
         }
@@ -529,7 +578,7 @@ mod tests {
     }
 
     pub(super) fn face() -> Triangulation {
-        Triangulation::new([[0, 0], [64, 0], [0, 64]].map(vertex), [0, 1])
+        Triangulation::new([[0, 0], [64, 0], [0, 64]].map(vertex).into_iter(), [0, 1])
     }
 
     pub(super) fn at(cells: &Triangulation, place: u32) -> [f64; 2] {
@@ -568,8 +617,8 @@ mod tests {
         assert_eq!(cells.insert(vertex([20, 0])), Ok(rim));
         assert_eq!(cells.insert(vertex([64, 0])), Ok(1));
         let on_border = cells.insert(vertex([32, 32])).expect("on the border");
-        assert_eq!(cells.rim([on_border, 2]), 1);
-        assert_eq!(cells.insert(vertex([40, 40])), Err(Declined::Defect));
+        assert_eq!(cells.side([on_border, 2]), 1);
+        assert_eq!(cells.insert(vertex([40, 40])), Err(Defect));
         assert!((area(&cells) - 4096.0).abs() < 1e-9);
     }
 }

@@ -6,11 +6,11 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::{Place, Run, Triangulation, NONE};
+use super::{Defect, Place, Run, Triangulation, NONE};
 use crate::arith::Sign;
+use crate::geometry::plane::Plane;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::profile::Declined;
 
 /// The first stretch of a way.
 enum Way {
@@ -29,17 +29,17 @@ enum Start {
 }
 
 impl Triangulation {
-    /// Makes a segment a chain of edges. Where it crosses another segment is a new point, which `meet`
-    /// gives by the other segment's number.
+    /// Makes a segment a chain of edges, of which what lies on the left is on the minus side of a plane.
+    /// Where it crosses another segment is a new point, which `meet` gives by the other one's number.
     ///
     /// # Errors
-    /// `Defect` if it leaves the face.
-    pub(in super::super) fn constrain(
+    /// If it leaves the polygon, or there is no such point.
+    pub fn constrain(
         &mut self,
         [from, to]: [u32; 2],
-        segment: u32,
-        meet: impl Fn(u32) -> Arc<Vertex>,
-    ) -> Result<(), Declined> {
+        (segment, cut): (u32, &Plane),
+        meet: impl Fn(u32) -> Option<Arc<Vertex>>,
+    ) -> Result<(), Defect> {
         let (mut at, mut goals) = (from, vec![to]);
         while let Some(goal) = goals.last().copied() {
             poll();
@@ -47,16 +47,22 @@ impl Triangulation {
                 goals.pop();
                 continue;
             }
-            match self.way(at, goal)? {
+            if let Some(edges) = self.edges_between(at, goal) {
+                self.mark(edges, segment)?;
+                at = goal;
+                continue;
+            }
+            match self.way(at, goal, cut)? {
                 Way::Free(end, crossed) => {
-                    self.remove(crossed, at, end);
-                    self.mark(at, end, segment)?;
+                    self.remove(crossed, [at, end], cut);
+                    let edges = self.edges_between(at, end).ok_or(Defect)?;
+                    self.mark(edges, segment)?;
                     at = end;
                 }
                 Way::Blocked(cell, edge) => {
                     let mark = self.cells[cell as usize].marks[edge];
-                    let (other, _) = self.along(mark).next().ok_or(Declined::Defect)?;
-                    let point = self.add(meet(other), 0);
+                    let (other, _) = self.along(mark).next().ok_or(Defect)?;
+                    let point = self.add(meet(other).ok_or(Defect)?, [NONE; 2]);
                     self.split_edge(cell, edge, point);
                     goals.push(point);
                 }
@@ -77,17 +83,12 @@ impl Triangulation {
     }
 
     /// The segments along an edge of a triangle, each with whether it runs the way of the edge.
-    pub(in super::super) fn along_edge(
-        &self,
-        cell: u32,
-        edge: usize,
-    ) -> impl Iterator<Item = (u32, bool)> + '_ {
+    pub fn along_edge(&self, cell: u32, edge: usize) -> impl Iterator<Item = (u32, bool)> + '_ {
         self.along(self.cells[cell as usize].marks[edge])
     }
 
-    /// Marks an edge as a part of a segment.
-    fn mark(&mut self, from: u32, to: u32, segment: u32) -> Result<(), Declined> {
-        let edges = [self.edge_between(from, to), self.edge_between(to, from)];
+    /// Marks an edge, as the triangles on both sides have it, as a part of a segment.
+    fn mark(&mut self, edges: [Option<(u32, usize)>; 2], segment: u32) -> Result<(), Defect> {
         let known = |at: &Option<(u32, usize)>| at.map(|(c, e)| self.cells[c as usize].marks[e]);
         let before = known(&edges[0])
             .or_else(|| known(&edges[1]).map(|m| -m))
@@ -98,7 +99,7 @@ impl Triangulation {
             before,
         });
         let sign = if before < 0 { -1 } else { 1 };
-        let mark = i32::try_from(self.runs.len()).map_err(|_| Declined::Defect)? * sign;
+        let mark = i32::try_from(self.runs.len()).map_err(|_| Defect)? * sign;
         for (at, mark) in edges.into_iter().zip([mark, -mark]) {
             if let Some((cell, edge)) = at {
                 self.cells[cell as usize].marks[edge] = mark;
@@ -107,12 +108,9 @@ impl Triangulation {
         Ok(())
     }
 
-    /// The first stretch of the way from a point to another one.
-    fn way(&mut self, from: u32, to: u32) -> Result<Way, Declined> {
-        if self.edge_between(from, to).is_some() || self.edge_between(to, from).is_some() {
-            return Ok(Way::Free(to, Vec::new()));
-        }
-        let (mut at, mut edge) = match self.first_crossed(from, to)? {
+    /// The first stretch of the way from a point to another one, if that is not an edge.
+    fn way(&self, from: u32, to: u32, cut: &Plane) -> Result<Way, Defect> {
+        let (mut at, mut edge) = match self.first_crossed(from, to, cut)? {
             Start::Edge(cell, edge) => (cell, edge),
             Start::Along(point) => return Ok(Way::Free(point, Vec::new())),
         };
@@ -125,7 +123,7 @@ impl Triangulation {
             }
             let across = cell.mates[edge];
             if across == NONE {
-                return Err(Declined::Defect);
+                return Err(Defect);
             }
             crossed.push([cell.corners[edge], cell.corners[(edge + 1) % 3]]);
             let back = self.edge_to(across, at);
@@ -134,7 +132,7 @@ impl Triangulation {
                 return Ok(Way::Free(to, crossed));
             }
             at = across;
-            edge = match self.turn([from, to, next]) {
+            edge = match self.turn_beside(cut, [from, to, next]) {
                 Sign::Zero => return Ok(Way::Free(next, crossed)),
                 Sign::Positive => (back + 1) % 3,
                 Sign::Negative => (back + 2) % 3,
@@ -143,11 +141,11 @@ impl Triangulation {
     }
 
     /// The first edge that the way from a point to another one crosses, or runs along.
-    fn first_crossed(&mut self, from: u32, to: u32) -> Result<Start, Declined> {
+    fn first_crossed(&self, from: u32, to: u32, cut: &Plane) -> Result<Start, Defect> {
         for (number, k) in self.fan(from) {
             let corners = self.cells[number as usize].corners;
             let [right, left] = [1, 2].map(|i| corners[(k + i) % 3]);
-            let sides = [right, left].map(|corner| self.turn([from, to, corner]));
+            let sides = [right, left].map(|corner| self.turn_beside(cut, [from, to, corner]));
             for (corner, side) in [right, left].into_iter().zip(sides) {
                 if side == Sign::Zero && self.is_ahead(from, to, corner) {
                     return Ok(Start::Along(corner));
@@ -157,20 +155,19 @@ impl Triangulation {
                 return Ok(Start::Edge(number, (k + 1) % 3));
             }
         }
-        Err(Declined::Defect)
+        Err(Defect)
     }
 
     /// Return whether a point of the line through two others lies on the second one's side of the first.
     fn is_ahead(&self, from: u32, to: u32, point: u32) -> bool {
         let [from, to, point] = [from, to, point].map(|p| &self.places[p as usize]);
-        let width = |i: usize| (to.at[i] - from.at[i]).abs();
-        let axis = self.axes[usize::from(width(1) > width(0))];
+        let axis = from.vertex.axis_to(&to.vertex);
         let order = |p: &Place| from.vertex.compare_along(&p.vertex, axis);
         order(point) == order(to)
     }
 
     /// Flips edges until none crosses a segment.
-    fn remove(&mut self, crossed: Vec<[u32; 2]>, from: u32, to: u32) {
+    fn remove(&mut self, crossed: Vec<[u32; 2]>, [from, to]: [u32; 2], cut: &Plane) {
         let mut open = VecDeque::from(crossed);
         while let Some([a, b]) = open.pop_front() {
             poll();
@@ -188,7 +185,7 @@ impl Triangulation {
             if is_end(apex) || is_end(other) {
                 continue;
             }
-            let sides = [apex, other].map(|p| self.turn([from, to, p]));
+            let sides = [apex, other].map(|p| self.turn_beside(cut, [from, to, p]));
             if sides[0] != sides[1] {
                 open.push_back([apex, other]);
             }
@@ -201,7 +198,6 @@ mod tests {
     use super::super::tests::{area, at, face, vertex};
     use super::*;
     use crate::arith::convert::as_number;
-    use crate::geometry::plane::Plane;
 
     /// Adds all segments between points, one after the other.
     fn constrain_all(cells: &mut Triangulation, segments: &[[u32; 2]]) {
@@ -214,10 +210,10 @@ mod tests {
         for (number, ends) in (0..).zip(segments) {
             let meet = |other: u32| {
                 let [p, q] = [number, other].map(|i| &planes[i as usize]);
-                Arc::new(Vertex::meet(&floor, p, q).expect("they cross"))
+                Vertex::meet(&floor, p, q).map(Arc::new)
             };
             cells
-                .constrain(*ends, number, meet)
+                .constrain(*ends, (number, &planes[number as usize]), meet)
                 .expect("inside the face");
         }
     }

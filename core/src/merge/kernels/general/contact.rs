@@ -1,0 +1,126 @@
+//! How the faces of elements may meet: whether they cross, and what is left to the local trees.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+
+use crate::arith::Filtered;
+use crate::geometry::plane::{Lattice, Plane};
+use crate::geometry::polygon::{straddle, Corner, Polygon, Sides};
+use crate::geometry::side::Side;
+use crate::geometry::vertex::Vertex;
+use crate::geometry::winding::path::polygon_on_path;
+
+/// A convex polygon and the planes that bound it within its own, once somebody asks for them.
+#[derive(Debug)]
+pub struct Face<'a> {
+    /// The polygon.
+    pub polygon: Cow<'a, Polygon>,
+    rims: OnceCell<Vec<Plane>>,
+}
+
+impl<'a> Face<'a> {
+    /// A face.
+    pub fn new(polygon: Cow<'a, Polygon>) -> Self {
+        let rims = OnceCell::new();
+        Self { polygon, rims }
+    }
+
+    /// The planes of its border, the face on their minus sides.
+    pub fn rims(&self) -> &[Plane] {
+        let rim = |c: &Corner| c.edge.rim(self.polygon.support());
+        self.rims
+            .get_or_init(|| self.polygon.corners().iter().map(rim).collect())
+    }
+
+    /// The change of the winding number across the face along a path; see `geometry::winding::path`.
+    pub fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+        polygon_on_path(self.polygon.support(), || self.rims(), from, to)
+    }
+
+    /// Return whether a point in the plane of the face lies in it or on its border.
+    fn holds(&self, point: &Vertex) -> bool {
+        self.rims()
+            .iter()
+            .all(|rim| point.side_of(rim) != Side::Plus)
+    }
+}
+
+/// A special position, for which there is no rule here: a face touches another one, or what lies between
+/// segments contradicts itself.
+///
+/// This is exact, unlike `Filtered::Doubtful`, and about places rather than a solid, unlike
+/// `Simplicity`: no further digits settle it, only a way that needs no rule.
+pub(super) struct Special;
+
+/// The ways in which a face may meet a polygon.
+#[derive(Debug)]
+pub enum Contact {
+    /// Not in a way that matters.
+    None,
+    /// It may cross it: the sides of its plane on which the polygon's corners lie, and of the
+    /// polygon's plane on which its own do.
+    Crossing(Sides, Sides),
+    /// Its position is special.
+    Special,
+}
+
+/// Return how a face may meet a polygon whose bounds it shares.
+pub fn contact(polygon: &Polygon, face: &Face<'_>) -> Contact {
+    let theirs = face.polygon.sides(polygon.support());
+    let crossed = straddle(&theirs) == (true, true);
+    let ours = polygon.sides(face.polygon.support());
+    if !crossed && theirs.iter().filter(|s| **s == Side::On).count() > 1 {
+        let apart = straddle(&ours) != (true, true) && !ours.contains(&Side::On);
+        let flat = theirs.iter().all(|s| *s == Side::On);
+        return if apart || flat && lie_apart(polygon, &face.polygon) {
+            Contact::None
+        } else {
+            Contact::Special
+        };
+    }
+    let mut corners = ours.iter().zip(polygon.corners());
+    if corners.any(|(side, corner)| *side == Side::On && face.holds(&corner.at)) {
+        return Contact::Special;
+    }
+    if crossed && straddle(&ours) == (true, true) {
+        return Contact::Crossing(ours, theirs);
+    }
+    Contact::None
+}
+
+/// Return whether an edge of one polygon has the other strictly beyond it; both lie in one plane.
+fn lie_apart(polygon: &Polygon, other: &Polygon) -> bool {
+    let beyond_an_edge = |a: &Polygon, b: &Polygon| {
+        let rims = a.corners().iter().map(|c| c.edge.rim(a.support()));
+        let beyond = |rim: Plane| b.corners().iter().all(|c| c.at.side_of(&rim) == Side::Plus);
+        rims.into_iter().any(beyond)
+    };
+    beyond_an_edge(polygon, other) || beyond_an_edge(other, polygon)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::merge::scenes::triangle;
+
+    #[test]
+    fn a_face_in_the_plane_of_the_polygon_is_special() {
+        let polygon = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let flat = Face::new(Cow::Owned(triangle([[1, 1, 0], [2, 1, 0], [1, 2, 0]])));
+        assert!(matches!(contact(&polygon, &flat), Contact::Special));
+    }
+
+    #[test]
+    fn faces_in_the_plane_of_the_polygon_that_lie_apart_from_it_are_none() {
+        let polygon = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let meets = |corners| contact(&polygon, &Face::new(Cow::Owned(triangle(corners))));
+        let flat = [[9, 1, 0], [12, 1, 0], [9, 4, 0]];
+        assert!(matches!(meets(flat), Contact::None));
+        let touching = [[8, 0, 0], [12, 1, 0], [9, 4, 0]];
+        assert!(matches!(meets(touching), Contact::Special));
+        let upright = [[9, 1, 0], [9, 4, 0], [9, 2, 5]];
+        assert!(matches!(meets(upright), Contact::None));
+        let across = [[4, -1, 0], [4, 2, 0], [4, 1, 5]];
+        assert!(matches!(meets(across), Contact::Special));
+    }
+}
