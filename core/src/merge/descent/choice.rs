@@ -1,7 +1,6 @@
 //! The choice of cells: some are for a kernel, and others are halved.
 
 use super::state::{within, State, States};
-use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -20,10 +19,6 @@ const GENERAL: usize = 64;
 ///
 /// More are halved, to be shared among threads.
 const FRESH: usize = 1 << 13;
-
-/// The same, where nothing was halved yet: with one halving more, two threads share what they would
-/// else not, which on one costs no more than a kernel for all.
-const WHOLE: usize = 1 << 10;
 
 /// The same, for results of groups of operands in one place: the only step that takes one of them
 /// apart is the one that combines it with the other. Where they were halved, walls that both have
@@ -70,13 +65,6 @@ pub const TOGETHER: usize = 8;
 /// of a group's boundaries is less than all of them, and all of them cross each other.
 const GROUPS_FROM: usize = 16;
 
-/// The least share of a cell's elements that should lie in small parts in which several operands
-/// have some: others cost the kernel for general position little more than halving costs.
-const MIXED: f64 = 0.25;
-
-/// Parts of a cell that tell whether several operands have elements there are about this small.
-const SAMPLE: usize = 16;
-
 /// The element count in the current round of three halvings.
 #[derive(Clone, Copy)]
 pub struct Round {
@@ -107,10 +95,6 @@ impl Round {
         groups: true,
         ..Self::START
     };
-
-    fn is_first(&self) -> bool {
-        self.depth == 0 && self.start == Self::START.start
-    }
 
     /// After a halving of a cell with so many elements that may separate them.
     #[must_use]
@@ -196,16 +180,12 @@ impl Round {
     }
 
     /// Return whether a cell of so many elements is for the kernel for general position.
-    ///
-    /// That looks at all elements, halving only at where they are: so a share of at least `MIXED`
-    /// should lie in small parts of the cell where several operands have some.
-    pub fn suits_general_position(&self, cell: &Cell, states: &States, total: usize) -> bool {
+    pub fn suits_general_position(&self, states: &States, total: usize) -> bool {
         if states.len() > MAX_OPERANDS || total > self.refused / RETRY {
             return false;
         }
         if states.iter().all(|s| s.1.is_given()) {
-            let most = if self.is_first() { WHOLE } else { FRESH };
-            return total <= most && mixed(cell, states, total) >= MIXED;
+            return total <= FRESH;
         }
         if self.groups {
             return total <= GROUPS && states.iter().all(|s| s.1.is_undivided());
@@ -258,25 +238,6 @@ pub fn is_crowded(cell: &Cell, states: &States) -> bool {
     overlaps * 6 > boxes.len() * (boxes.len() - 1)
 }
 
-/// About what share of the elements lies in small parts of the cell where several operands have
-/// some.
-fn mixed(cell: &Cell, states: &States, total: usize) -> f64 {
-    let mut open = vec![(*cell, total)];
-    let (mut mixed, mut all) = (0, 0);
-    while let Some((part, most)) = open.pop() {
-        let counts = states.iter().map(|s| s.1.count_in(&part));
-        let (present, sum) = counts.fold((0, 0), |(k, n), c| (k + usize::from(c > 0), n + c));
-        // Parts of what has elements of one operand have no others.
-        if let Some(cut) = part.cut().filter(|_| most > SAMPLE && present > 1) {
-            open.extend(Half::BOTH.map(|half| (part.half(cut, half), most / 2)));
-            continue;
-        }
-        all += sum;
-        mixed += if present > 1 { sum } else { 0 };
-    }
-    as_double(mixed) / as_double(all.max(1))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -324,25 +285,10 @@ mod tests {
         let scene = crossing();
         let listed = scene.lists.iter().cloned().map(State::List);
         let states: States = (0..).zip(listed).collect();
-        let suits = |round: Round| round.suits_general_position(&scene.cell, &states, 8);
+        let suits = |round: Round| round.suits_general_position(&states, 8);
         let mut round = Round::START;
         assert!(suits(round));
         round.refused(8);
         assert!(!suits(round));
-    }
-
-    #[test]
-    fn a_large_cell_is_halved_once_before_a_kernel_takes_it() {
-        let scene = crossing();
-        let listed = scene.lists.iter().cloned().map(State::List);
-        let states: States = (0..).zip(listed).collect();
-        let suits = |round: Round, total| round.suits_general_position(&scene.cell, &states, total);
-        assert!(suits(Round::START, WHOLE));
-        assert!(!suits(Round::START, WHOLE + 1));
-        let later = (0..ROUND).map(|n| (0..=n).fold(Round::START, |r, _| r.next(WHOLE)));
-        assert!(later
-            .into_iter()
-            .all(|round| suits(round, WHOLE + 1) && suits(round, FRESH)));
-        assert!(!suits(Round::START.next(FRESH), FRESH + 1));
     }
 }

@@ -278,7 +278,7 @@ impl<'a> Descent<'a> {
         }
         // No level of bins suited these faces, so halving will not separate them either.
         let long = listed && opening >= BINS_FROM;
-        if long || listed && stuck || round.suits_general_position(&cell, &states, total) {
+        if long || listed && stuck || round.suits_general_position(&states, total) {
             if let Some(branch) =
                 self.solved(cell, &expression, &states, total, &[&GeneralPosition])?
             {

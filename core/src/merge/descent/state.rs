@@ -118,14 +118,6 @@ impl State {
         }
     }
 
-    /// About how many it has in a part of the cell.
-    pub fn count_in(&self, part: &Cell) -> usize {
-        match self {
-            Self::Tree(branch) if !branch.cell.meets(part) => 0,
-            state => state.len_in(part),
-        }
-    }
-
     /// A box around its boundary in the cell.
     pub fn bounds(&self, cell: &Cell) -> [Lattice; 2] {
         match self {
