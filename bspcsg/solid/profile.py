@@ -4,6 +4,16 @@ from dataclasses import dataclass
 
 from .._core import Tree
 
+#: The stages, and what each counts: faces that may meet, segments in which they do, whole and cut
+#: faces of the result, cells visited, faces of an operand that overlaps itself.
+COUNTED = {
+    "candidates": "faces",
+    "contacts": "segments",
+    "faces": "elements",
+    "descent": "cells",
+    "uniting": "faces",
+}
+
 
 @dataclass(frozen=True)
 class Stage:
@@ -12,9 +22,7 @@ class Stage:
     Parameters
     ----------
     name : str
-        "candidates" (faces that may meet), "contacts" (segments in which they do), "faces" (what
-        is left, counted as elements of the result), "descent" (cells visited) or "uniting" (faces
-        of an operand that overlaps itself).
+        A key of `COUNTED`, which says what the stage counts.
     seconds : float
     count : int
         The number of things that the stage found, made or visited.
@@ -47,10 +55,10 @@ class Profile:
 
     def lines(self) -> list[str]:
         """Return a line for each stage, and one for the reason."""
-        lines = [f"{s.name}: {s.seconds:.4f} s, {s.count}" for s in self.stages]
-        return (
-            lines if self.handed_on is None else [*lines, f"to the descent, for {self.handed_on}"]
-        )
+        lines = [f"{s.name}: {s.seconds:.4f} s, {s.count} {COUNTED[s.name]}" for s in self.stages]
+        if self.handed_on is None:
+            return lines
+        return [*lines, f"left to the descent: {self.handed_on}"]
 
     def __str__(self) -> str:
         """Return the lines as one text."""
