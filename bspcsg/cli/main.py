@@ -50,7 +50,6 @@ _VERBS = {
     "hull": ("model", "hull"),
     "simplify": ("model", "simplify"),
     "split": ("split", "split"),
-    "explode": ("explode", "explode"),
     "slice": ("slice", "section"),
     "project": ("project", "project"),
     "clash": ("clash", "clash"),
@@ -69,10 +68,10 @@ _VERBS = {
 }
 
 #: Other names of verbs, which the help leaves out.
-_ALIASES = {"cut": "difference", "validate": "crosscheck"}
+_ALIASES = {"cut": "difference", "explode": "split", "validate": "crosscheck"}
 
 #: Those of them that verbs had before, which are to go.
-_FORMER = frozenset({"validate"})
+_FORMER = frozenset({"explode", "validate"})
 
 #: The errors of writing to a file or stream that is full, broken or closed.
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO, errno.EBADF)

@@ -42,23 +42,33 @@ def test_a_shadow(folder: Path, capsys: Capture, name: str) -> None:
 
 def test_parts_of_several_files(folder: Path, capsys: Capture) -> None:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
-    code, out, _ = ran(capsys, "explode", "two.off", "a.off", "-o", "part-%.stl")
+    code, out, _ = ran(capsys, "split", "two.off", "a.off", "-o", "part-%.stl")
     assert code == 0 and [line.split()[0] for line in out.splitlines()] == [
         "part-two-1.stl",
         "part-two-2.stl",
         "part-a-1.stl",
     ]
     assert [b.load(f"part-two-{k}.stl").volume for k in (1, 2)] == [8, 1]
-    code, out, _ = ran(capsys, "explode", "two.off", "-o", "%.ply", "--json")
-    document = json.loads(out)
-    assert code == 0 and [part["volume"] for part in document["parts"]] == [8, 1]
+    code, out, _ = ran(
+        capsys, "split", "two.off", "a.off", "--plane", "z,0.5", "-o", "%.ply", "--json"
+    )
+    parts = json.loads(out)["parts"]
+    assert code == 0 and [part["volume"] for part in parts] == [2.5, 6.5, 2, 6]
+    assert [part["file"] for part in parts] == ["two.off"] * 2 + ["a.off"] * 2
 
 
-# Found: `explode` and `split` wrote parts over their inputs.
+def test_the_former_name_of_split_keeps_its_names_of_files(folder: Path, capsys: Capture) -> None:
+    put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
+    code, out, err = ran(capsys, "explode", "two.off", "-o", "%.ply", "--json")
+    assert code == 0 and err == "note: explode is called split now; the old name goes later.\n"
+    assert [part["output"] for part in json.loads(out)["parts"]] == ["two-1.ply", "two-2.ply"]
+
+
+# Found: `split` wrote parts over their inputs.
 def test_parts_do_not_replace_inputs(folder: Path, capsys: Capture) -> None:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
     put("two-2.off", cuboid((0, 0, 0), (3, 1, 1)))
-    code, out, err = ran(capsys, "explode", "two.off", "two-2.off", "-o", "%.off")
+    code, out, err = ran(capsys, "split", "two.off", "two-2.off", "-o", "%.off")
     assert (code, out) == (2, "") and not Path("two-1.off").exists()
     assert "part 2 of two.off would be written to two-2.off, which is an input, too." in err
     code, out, err = ran(capsys, "split", "two-2.off", "-o", "two-%.off", "--plane", "x,1")
@@ -69,7 +79,7 @@ def test_parts_do_not_replace_inputs(folder: Path, capsys: Capture) -> None:
 
 def test_nothing_is_written_if_a_file_has_no_parts(folder: Path, capsys: Capture) -> None:
     Path("none.off").write_text("OFF\n0 0 0\n")
-    code, out, err = ran(capsys, "explode", "a.off", "none.off", "-o", "x-%.stl")
+    code, out, err = ran(capsys, "split", "a.off", "none.off", "-o", "x-%.stl")
     assert code == 4 and out == "" and "none.off" in err and not list(Path().glob("x-*"))
 
 

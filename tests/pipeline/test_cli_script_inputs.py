@@ -56,7 +56,7 @@ def test_scripts_become_meshes(folder: Path, capsys: Capture, line: str, volume:
         "slice plate.csg --z 1 -o x.svg",
         "project plug.py -o x.svg",
         "split plate.csg --plane 0,0,1,2 -o x-%.ply",
-        "explode plate.csg -o x-%.ply",
+        "split plate.csg -o x-%.ply",
         "clash plate.csg plug.py",
         "render plug.py -o x.svg",
         "view plate.csg -o x.html",

@@ -40,7 +40,7 @@ def at_terminal(monkeypatch: pytest.MonkeyPatch, columns: int) -> None:
         "convert a.off",
         "convert a.off c.stl --to obj",
         "split a.off",
-        "explode a.off c.stl",
+        "split a.off c.stl",
         "repair a.off",
         "simplify a.off --tolerance 0.1",
         "render a.off",

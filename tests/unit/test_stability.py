@@ -35,7 +35,6 @@ COMMANDS = {
     "check": "check a.stl",
     "convert": "convert a.stl -o a.ply",
     "split": "split two.stl -o part.stl",
-    "explode": "explode two.stl -o part.stl",
     "repair": "repair a.stl -o c.stl",
     "compare": "compare a.stl b.stl --samples 10",
     "slice": "slice a.stl --z 1 -o a.svg",

@@ -1,6 +1,7 @@
-"""The verb that takes a solid apart: split."""
+"""The verb that takes solids apart: split."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -9,9 +10,9 @@ import click
 from ...errors import Finding
 from ..console import output
 from ..console.output import Output
-from ..inputs.files import Inputs, Target, expanded, refuse_inputs, shown
+from ..inputs.files import Inputs, Target, expanded, is_dropped, refuse_inputs, shown
 from ..job import mesh_values, summary
-from ..options.patterns import file_argument
+from ..options.patterns import files_argument
 from ..options.shared import (
     PATH,
     SIMPLIFY,
@@ -31,17 +32,21 @@ if TYPE_CHECKING:
 _EPILOG = """\b
 Examples:
   bspcsg split plates.stl -o 'plate-%.stl'
+  bspcsg split plates.stl lids.3mf -o 'parts/%.stl'
   bspcsg split part.stl --plane 0,0,1,2.5 -o 'half-%.ply'
   bspcsg split part.stl --by cutter.stl -o 'side-%.ply'
 """
 
+#: The former verb that named the parts of one file as those of several.
+_FORMER = "explode"
+
 
 @verb(
     "split",
-    short_help="Write the connected parts of a solid, or both sides of a cut.",
+    short_help="Write the connected parts of solids, or both sides of a cut.",
     epilog=_EPILOG,
 )
-@file_argument()
+@files_argument("FILE [...]")
 @click.option(
     "-o",
     "--output",
@@ -49,7 +54,7 @@ Examples:
     required=True,
     metavar="FILE",
     type=PATH,
-    help="Files to write; % stands for the number of each, else it goes before the suffix.",
+    help="Files to write; % stands for the number of each part, after the name of several files.",
 )
 @click.option(
     "--plane",
@@ -66,108 +71,143 @@ Examples:
 @reading
 @sets
 @common
-def split(file: Path, target: Path, **given: Any) -> int:
-    """Write each connected component of a solid to a file of its own, the largest first.
+@click.pass_context
+def split(context: click.Context, files: tuple[Path, ...], target: Path, **given: Any) -> int:
+    """Write each connected component of solids to a file of its own, the largest first.
 
     With --plane, number 1 is the side with nx x + ny y + nz z below d, number 2 the other. With
     --by, number 1 is what is outside the other solid, number 2 what is inside. A cut closes both
     sides, and together they are the whole again, exactly.
+
+    The parts of one file are 1, 2 and so on; those of several are called plates-1, plates-2 after
+    plates.stl. Without a % in it, -o gets this before its suffix.
     """
     if given["plane"] and given["cutter"]:
         raise click.UsageError("--plane and --by exclude each other.")
-    return _Splitting(file, target, **given).run()
+    if str(target) == "-":
+        raise click.UsageError("several files cannot go to standard output; give -o a name.")
+    by_name = len(files) > 1 or context.info_name == _FORMER
+    return _Splitting(files, target, by_name, given).run()
+
+
+@dataclass
+class _Parts:
+    """The parts of a file, and manifold3d's verdict on each if there is one."""
+
+    file: Path
+    meshes: "list[Mesh]"
+    verdicts: list[str] = field(default_factory=list)
 
 
 class _Splitting:
-    """One solid, and the files for its parts."""
+    """Solids, and the files for their parts."""
 
-    def __init__(self, file: Path, target: Path, **settings: Any) -> None:
-        self._file = file
-        self._pattern = target
+    def __init__(
+        self, files: tuple[Path, ...], pattern: Path, by_name: bool, settings: dict[str, Any]
+    ) -> None:
+        self._files = files
+        self._pattern = pattern
+        self._by_name = by_name
         self._settings = settings
         self._out = Output.of(settings)
         self._inputs = Inputs.of(self._out, settings)
-        if str(target) == "-":
-            raise click.UsageError("several files cannot go to standard output; give -o a name.")
 
     def run(self) -> int:
+        """Do it, and return the exit code."""
         from ...parameters import set_threads
 
         set_threads(self._settings["threads"])
-        self._target("1").refuse_early()
-        self._inputs.refuse_early(self._read())
-        solid = self._inputs.solid(self._file)
-        meshes, verdicts = self._parts(solid)
-        if "subject failed" in verdicts:
-            self._out.result(f"{shown(self._file)}: not written; check: subject failed", {})
+        self._refuse_early()
+        found = [self._parts(file) for file in self._files]
+        failed = [one.file for one in found if "subject failed" in one.verdicts]
+        for file in failed:
+            self._out.result(f"{shown(file)}: not written; check: subject failed", {})
+        if failed:
             return output.FOUND
-        self._write(meshes, verdicts)
+        self._write(found)
+        verdicts = [verdict for one in found for verdict in one.verdicts]
         return output.FOUND if "DISAGREE" in verdicts else output.DONE
 
     def _read(self) -> list[Path]:
         """Return the files that are read."""
         cutter = self._settings["cutter"]
-        return [self._file, cutter] if cutter else [self._file]
+        return [*self._files, cutter] if cutter else list(self._files)
 
-    def _parts(self, solid: "Solid") -> tuple[list["Mesh"], list[str]]:
-        """Return the parts, and manifold3d's verdict on each if there is one."""
+    def _refuse_early(self) -> None:
+        names = [self._target(file, 1).path for file in self._files]
+        if len(set(names)) < len(names) and not is_dropped(self._pattern):
+            raise click.UsageError("two of the files have one name, and so would their parts.")
+        for file in self._files:
+            self._target(file, 1).refuse_early()
+        self._inputs.refuse_early(self._read())
+
+    def _parts(self, file: Path) -> _Parts:
         from ...operations.parts import connected_parts, sides_of_plane
 
+        solid = self._inputs.solid(file)
         plane, cutter = self._settings["plane"], self._settings["cutter"]
         if not plane and not cutter:
-            meshes = connected_parts(self._simplified(solid))
-            self._refuse_less_than(1, meshes)
-            return meshes, []
+            meshes = connected_parts(self._simplified(file, solid))
+            self._refuse_less_than(1, file, meshes)
+            return _Parts(file, meshes)
         if plane:
             sides: Sequence[Solid] = sides_of_plane(solid, plane[:3], plane[3])
-            self._tell_of_plane(sides[0])
+            self._tell_of_plane(file, sides[0])
         else:
             other = self._inputs.solid(cutter)
             sides = (solid - other, solid & other)
-        meshes = [self._simplified(side).normalized().to_mesh() for side in sides]
-        self._refuse_less_than(2, [mesh for mesh in meshes if len(mesh.faces)])
+        meshes = [self._simplified(file, side).normalized().to_mesh() for side in sides]
+        self._refuse_less_than(2, file, [mesh for mesh in meshes if len(mesh.faces)])
         depth = self._settings["check"]
         checked = sides if depth != "off" else ()
-        return meshes, [str(side.validate(depth=depth).verdict) for side in checked]
+        return _Parts(file, meshes, [str(s.validate(depth=depth).verdict) for s in checked])
 
-    def _simplified(self, solid: "Solid") -> "Solid":
+    def _simplified(self, file: Path, solid: "Solid") -> "Solid":
         """Return a solid without short edges and slivers, if that is asked for."""
         tolerance = self._settings["tolerance"]
         simple = solid.simplify(tolerance) if tolerance else solid
         if simple is not solid:
-            self._inputs.tell(self._file, simple.normalized().findings)
+            self._inputs.tell(file, simple.normalized().findings)
         return simple
 
-    def _tell_of_plane(self, side: "Solid") -> None:
+    def _tell_of_plane(self, file: Path, side: "Solid") -> None:
         """Say whether the plane is another one than was asked for."""
         found = [Finding.from_core(finding) for finding in side.tree.findings]
-        self._inputs.tell(self._file, [one for one in found if one not in self._inputs.noticed])
+        self._inputs.tell(file, [one for one in found if one not in self._inputs.noticed])
 
-    def _refuse_less_than(self, least: int, meshes: list["Mesh"]) -> None:
+    def _refuse_less_than(self, least: int, file: Path, meshes: "list[Mesh]") -> None:
         if len(meshes) >= least:
             return
         what = "there is nothing in it" if least == 1 else "all of it lies on one side"
-        message = f"{shown(self._file)}: {what}, so nothing was split and nothing was written."
+        message = f"{shown(file)}: {what}, so nothing was split and nothing was written."
         raise output.EmptyResultError(message, "empty_result")
 
-    def _write(self, meshes: list["Mesh"], verdicts: list[str]) -> None:
-        documents = []
-        targets = (self._target(str(number)).path for number in range(1, len(meshes) + 1))
-        refuse_inputs(self._file, targets, self._read())
-        for number, mesh in enumerate(meshes, 1):
-            target = self._target(str(number))
+    def _write(self, found: list[_Parts]) -> None:
+        for one in found:
+            numbers_of = range(1, len(one.meshes) + 1)
+            targets = (self._target(one.file, number).path for number in numbers_of)
+            refuse_inputs(one.file, targets, self._read())
+        documents = [document for one in found for document in self._written(one)]
+        files = [str(file) for file in self._files]
+        whole = {"file": files[0]} if len(files) == 1 else {}
+        self._out.result("", {**whole, "files": files, "parts": documents})
+
+    def _written(self, parts: _Parts) -> Iterator[dict[str, Any]]:
+        """Write the parts of a file, and say what was written."""
+        for number, mesh in enumerate(parts.meshes, 1):
+            target = self._target(parts.file, number)
             lost = target.write(mesh)
             for finding in lost:
                 self._out.finding(shown(target.path), finding)
-            verdict = verdicts[number - 1] if verdicts else None
+            verdict = parts.verdicts[number - 1] if parts.verdicts else None
             line = summary(shown(target.path), mesh, False)
             line += f"\n  check: {verdict}" if verdict else ""
-            document = {"output": str(target.path), **mesh_values(mesh), "check": verdict}
-            documents.append({**document, "findings": output.finding_values(lost)})
             if not self._out.as_json:
                 self._out.result(line, {})
-        if self._out.as_json:
-            self._out.result("", {"file": str(self._file), "parts": documents})
+            document = {"file": str(parts.file), "output": str(target.path), **mesh_values(mesh)}
+            yield {**document, "check": verdict, "findings": output.finding_values(lost)}
 
-    def _target(self, number: str) -> Target:
-        return Target.of(expanded(self._pattern, number), self._settings)
+    def _target(self, file: Path, number: int) -> Target:
+        stem = "input" if str(file) == "-" else file.stem
+        name = f"{stem}-{number}" if self._by_name else str(number)
+        return Target.of(expanded(self._pattern, name), self._settings)
