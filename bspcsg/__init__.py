@@ -27,7 +27,6 @@ with _Quietly():
 
     import sys as _sys
 
-    from .conveniences import attach as _attach
     from .meant import no_attribute as _no_attribute
 
 if TYPE_CHECKING:
@@ -141,8 +140,6 @@ __all__ = [
     "validate",
     "xor",
 ]
-
-_attach()
 
 #: The module of each name; it is imported when the name is first asked for, so that the command
 #: line starts without numpy.

@@ -9,7 +9,6 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from .._types import FloatArray, Scalar
-from ..above import above
 from ..attributes.colours import AnyColor, color_of
 from ..errors import Finding, invalid_parameter, warn_of_losses
 from ..geometry.transform import Factors
@@ -178,12 +177,15 @@ class Assembly(Movable):
 
     def show(self) -> None:
         """Show the parts in a notebook or in a browser (see `bspcsg.show`)."""
-        above("show")(self)
+        from ..script.run import show
+
+        show(self)
 
     def _repr_html_(self) -> str | None:
         """Return what a notebook shows: an interactive view of the union."""
-        page: str | None = above("solid_html")(self.to_solid())
-        return page
+        from ..report.viewer.notebook import solid_html
+
+        return solid_html(self.to_solid())
 
     # Transforms
 
@@ -278,7 +280,9 @@ class Assembly(Movable):
         LossWarning
             As for `bspcsg.save`.
         """
-        findings: tuple[Finding, ...] = above("save_assembly")(self, path)
+        from .files import save
+
+        findings = save(self, path)
         warn_of_losses(findings)
         return findings
 
@@ -301,8 +305,9 @@ class Assembly(Movable):
         FormatError, InvalidMeshError
             As for `bspcsg.load`.
         """
-        assembly: Assembly = above("load_assembly")(path, **options)
-        return assembly
+        from .files import load
+
+        return load(path, **options)
 
 
 def moved(solid: Solid, factors: Factors) -> Solid:

@@ -20,7 +20,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
 
-from ..above import above
 from ..errors import BspcsgError, FormatError, invalid_parameter, unreadable, words_of
 from ..geometry.chain import FactorChain
 from ..operations.setops import union
@@ -76,7 +75,9 @@ def show(*solids: Any) -> None:
         If one is empty.
     """
     if _shown is None:
-        above("show_here")(*solids)
+        from ..report.viewer.showing import show as show_here
+
+        show_here(*solids)
     else:
         _shown.extend(Solid.from_mesh(solid) for solid in solids)
 

@@ -7,7 +7,6 @@ from typing import TypeAlias
 import numpy as np
 
 from .._types import FloatArray, IndexArray
-from ..above import above
 from ..errors import InvalidParameterError, invalid_parameter
 from ..geometry.polygon import directed_edges, runs_clockwise, triangulate
 from ..geometry.transform import cos_sin
@@ -88,8 +87,9 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     """
     lean, lost = _lean(contours, rise.inset)
     if lost is not None and rise.only_leans:
-        solid: Solid = above("leaning")(contours, rise.height, rise.inset)
-        return solid.translate(0, 0, rise.base)
+        from ..modelling.making.leaning import leaning
+
+        return leaning(contours, rise.height, rise.inset).translate(0, 0, rise.base)
     if lost is not None:
         raise _no_room(*lost, "the edge that begins there vanishes")
     points = np.concatenate(contours)

@@ -1,10 +1,9 @@
 """Files, other libraries, drawings and checks of a solid, as methods."""
 
 import os
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 from .._types import Scalar, Vector
-from ..above import above
 from ..errors import deprecated
 from ..mesh import leaving
 from .counting import uncounted
@@ -15,6 +14,7 @@ if TYPE_CHECKING:
     import trimesh
 
     from ..bsp import Region
+    from ..verify.check import CheckReport
     from .solid import Solid
 
 
@@ -54,22 +54,28 @@ class Convertible(Measured):
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
-        above("save")(self, path, **options)
+        from ..io import save
+
+        save(cast("Solid", self), path, **options)
 
     def show(self) -> None:
         """Show the solid in a notebook or in a browser (see `bspcsg.show`)."""
-        above("show")(self)
+        from ..script.run import show
+
+        show(cast("Solid", self))
 
     def to_csg(self, *, flat: bool = False) -> str:
         """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
-        text: str = above("dumps")(self, flat=flat)
-        return text
+        from ..csg.loading import dumps
+
+        return dumps(cast("Solid", self), flat=flat)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
         """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
-        solid: Solid = above("load")(path, **options)
-        return solid
+        from ..io import load
+
+        return load(path, **options)
 
     @overload
     def slice(
@@ -115,8 +121,9 @@ class Convertible(Measured):
         A face in the plane lies above it: the section is the limit from the minus side, that of a
         box standing on z = 0 is empty at 0 and full at its top.
         """
-        region: Region | list[Region] = above("slice_solid")(self, offset, normal, origin=origin)
-        return region
+        from ..bsp.sets.slicing import slice_solid
+
+        return slice_solid(cast("Solid", self), offset, normal, origin=origin)
 
     @uncounted
     def project(self) -> "Region":
@@ -139,30 +146,36 @@ class Convertible(Measured):
         >>> csg.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
         [[-4.0, -1.0], [4.0, 1.0]]
         """
-        region: Region = above("shadow")(self)
-        return region
+        from ..modelling.planar.shadows import shadow
+
+        return shadow(cast("Solid", self))
 
     @uncounted
-    def validate(self, **options: Any) -> Any:
+    def validate(self, **options: Any) -> "CheckReport":
         """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
-        return above("validate")(self, **options)
+        from ..verify.check import check_result
 
-    def check(self, **options: Any) -> Any:
+        return check_result(cast("Solid", self), **options)
+
+    def check(self, **options: Any) -> "CheckReport":
         """Do as `validate` does; deprecated."""
         deprecated("Solid.check", "validate")
         return self.validate(**options)
 
     def _repr_html_(self) -> str | None:
         """Return what a notebook shows: an interactive view, or why there is none."""
-        page: str | None = above("solid_html")(self)
-        return page
+        from ..report.viewer.notebook import solid_html
+
+        return solid_html(cast("Solid", self))
 
     def _repr_svg_(self) -> str | None:
         """Return a picture, for notebooks that show neither HTML nor pixels."""
-        picture: str | None = above("solid_svg")(self)
-        return picture
+        from ..report.viewer.notebook import solid_svg
+
+        return solid_svg(cast("Solid", self))
 
     def _repr_png_(self) -> bytes | None:
         """Return a picture, for notebooks that show pixels only; None without Pillow."""
-        picture: bytes | None = above("solid_png")(self)
-        return picture
+        from ..report.viewer.notebook import solid_png
+
+        return solid_png(cast("Solid", self))

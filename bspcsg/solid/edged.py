@@ -1,9 +1,8 @@
 """The edges of a solid, what replaces them, and the holes in its faces, as methods."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from .._types import Scalar
-from ..above import above
 from ..parameters import SEGMENTS
 from .counting import counted, uncounted
 
@@ -46,8 +45,9 @@ class Edged:
         >>> len(part.edges().parallel("z")), len(part.edges(all=True).parallel("z"))
         (4, 36)
         """
-        edges: EdgeSelection = above("edges")(self, all=all, angle=angle)
-        return edges
+        from ..modelling.making.edges import edges_of
+
+        return edges_of(cast("Solid", self), all=all, angle=angle)
 
     @counted
     def chamfer(self, edges: "EdgeSelection", size: Scalar) -> "Solid":
@@ -81,8 +81,9 @@ class Edged:
         >>> part.chamfer(part.edges().parallel("z"), 1).volume
         980.0
         """
-        solid: Solid = above("chamfer")(self, edges, size)
-        return solid
+        from ..modelling.making.blends import chamfer
+
+        return chamfer(cast("Solid", self), edges, size)
 
     @counted
     def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = SEGMENTS) -> "Solid":
@@ -118,8 +119,9 @@ class Edged:
         >>> part.fillet(part.edges(), 0.5) == csg.rounded_box((4, 3, 2), 0.5)
         True
         """
-        solid: Solid = above("fillet")(self, edges, radius, segments)
-        return solid
+        from ..modelling.making.blends import fillet
+
+        return fillet(cast("Solid", self), edges, radius, segments)
 
     @counted
     def hole(
@@ -163,8 +165,9 @@ class Edged:
         >>> plate.hole(top, r=4, depth=2, segments=4).volume
         2936.0
         """
-        solid: Solid = above("hole")(self, face, at, d=d, r=r, depth=depth, segments=segments)
-        return solid
+        from ..modelling.making.drilling import hole
+
+        return hole(cast("Solid", self), face, at, d=d, r=r, depth=depth, segments=segments)
 
     @counted
     def counterbore(
@@ -209,8 +212,10 @@ class Edged:
         >>> screwed.genus, len(screwed.faces())
         (1, 9)
         """
-        solid: Solid = above("counterbore")(
-            self,
+        from ..modelling.making.drilling import counterbore
+
+        return counterbore(
+            cast("Solid", self),
             face,
             at,
             d=d,
@@ -221,7 +226,6 @@ class Edged:
             depth=depth,
             segments=segments,
         )
-        return solid
 
     @counted
     def countersink(
@@ -266,8 +270,10 @@ class Edged:
         >>> screwed.genus, len(screwed.faces())
         (2, 10)
         """
-        solid: Solid = above("countersink")(
-            self,
+        from ..modelling.making.drilling import countersink
+
+        return countersink(
+            cast("Solid", self),
             face,
             at,
             d=d,
@@ -278,4 +284,3 @@ class Edged:
             depth=depth,
             segments=segments,
         )
-        return solid

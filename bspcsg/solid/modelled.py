@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast, overload
 
 from .._types import FloatArray, Scalar, Vector, WindingRule
-from ..above import above
 from ..parameters import SEGMENTS
 from .components import Components
 
@@ -57,8 +56,9 @@ class Modelled:
         >>> inside.volume, outside.volume
         (1.0, 7.0)
         """
-        halves: tuple[Solid, Solid] = above("split")(self, normal, offset)
-        return halves
+        from ..modelling.bodies.parts import split
+
+        return split(cast("Solid", self), normal, offset)
 
     def trim(self, normal: str | Vector, offset: Scalar = 0.0) -> "Solid":
         """Return what lies on the side of a plane where its normal points: the second of `split`.
@@ -81,8 +81,9 @@ class Modelled:
         >>> csg.cube(2).trim((0, 0, 1), 0.5).bounds[0].tolist()
         [0.0, 0.0, 0.5]
         """
-        rest: Solid = above("trim")(self, normal, offset)
-        return rest
+        from ..modelling.bodies.parts import trim
+
+        return trim(cast("Solid", self), normal, offset)
 
     def decompose(self) -> "list[Solid]":
         """Return the connected parts, the largest volume first; none for the empty set.
@@ -108,8 +109,9 @@ class Modelled:
         >>> [part.volume for part in pair.decompose()]
         [8.0, 1.0]
         """
-        parts: list[Solid] = above("decompose")(self)
-        return parts
+        from ..modelling.bodies.parts import decompose
+
+        return decompose(cast("Solid", self))
 
     @property
     def components(self) -> "tuple[Solid, ...]":
@@ -149,8 +151,9 @@ class Modelled:
         >>> csg.cube(1).min_gap(csg.cube(1).translate(4, 5, 0))
         5.0
         """
-        gap: float = above("min_gap")(self, other)
-        return gap
+        from ..modelling.bodies.gaps import min_gap
+
+        return min_gap(cast("Solid", self), other)
 
     def closest_points(self, other: "Solid") -> tuple[FloatArray, FloatArray]:
         """Return a point of this solid and one of the other that are nearest, (3,) float64 each.
@@ -172,8 +175,9 @@ class Modelled:
         >>> p.tolist(), q.tolist()
         ([1.0, 1.0, 1.0], [2.0, 3.0, 4.0])
         """
-        pair: tuple[FloatArray, FloatArray] = above("closest_points")(self, other)
-        return pair
+        from ..modelling.bodies.gaps import closest_points
+
+        return closest_points(cast("Solid", self), other)
 
     def intersects(self, other: "Solid") -> bool:
         """Say whether the solids have a point in common; a common point of their surfaces will do.
@@ -192,8 +196,9 @@ class Modelled:
         >>> csg.cube(1).intersects(side), csg.cube(1).isdisjoint(side)
         (True, True)
         """
-        found: bool = above("intersects")(self, other)
-        return found
+        from ..modelling.bodies.gaps import intersects
+
+        return intersects(cast("Solid", self), other)
 
     def refine(self, n: int | None = None, *, edge_length: Scalar | None = None) -> "Solid":
         """Return the solid with smaller triangles, for `warp` and for what works corner by corner.
@@ -224,8 +229,9 @@ class Modelled:
         >>> len(fine.faces), fine == csg.cube(1)
         (192, True)
         """
-        finer: Solid = above("refine")(self, n, edge_length)
-        return finer
+        from ..modelling.bodies.refining import refine
+
+        return refine(cast("Solid", self), n, edge_length)
 
     def warp(
         self, f: Callable[[FloatArray], Any], *, winding: WindingRule | None = None
@@ -257,8 +263,9 @@ class Modelled:
         >>> wedge.volume, len(wedge.faces)
         (4.0, 12)
         """
-        moved: Solid = above("warp")(self, f, winding)
-        return moved
+        from ..modelling.bodies.warping import warp
+
+        return warp(cast("Solid", self), f, winding)
 
     def smooth(self, n: int, *, sharp_angle: Scalar = 60.0) -> "Solid":
         """Return the solid with faces bent smoothly through its corners, each in n² triangles.
@@ -291,8 +298,9 @@ class Modelled:
         >>> round(can.volume, 2), round(can.smooth(8).volume, 1)
         (5.66, 6.2)
         """
-        bent: Solid = above("smooth")(self, n, sharp_angle)
-        return bent
+        from ..modelling.bodies.smoothing import smooth
+
+        return smooth(cast("Solid", self), n, sharp_angle)
 
     def offset(self, r: Scalar, *, segments: int = SEGMENTS) -> "Solid":
         """Return the solid thickened by a ball, or made thinner if `r` is negative.
@@ -326,8 +334,9 @@ class Modelled:
         >>> csg.cube(2).offset(1).bounds.tolist()
         [[-1.0, -1.0, -1.0], [3.0, 3.0, 3.0]]
         """
-        moved: Solid = above("offset")(self, r, segments)
-        return moved
+        from ..modelling.bodies.offsetting import offset
+
+        return offset(cast("Solid", self), r, segments)
 
     def rounded(self, r: Scalar, *, segments: int = SEGMENTS, inside: bool = False) -> "Solid":
         """Return the solid with its edges rounded: what a ball that stays inside can reach.
@@ -348,8 +357,9 @@ class Modelled:
         >>> die.bounds.tolist(), die < csg.cube(10)
         ([[0.0, 0.0, 0.0], [10.0, 10.0, 10.0]], True)
         """
-        smooth: Solid = above("rounded")(self, r, segments, inside)
-        return smooth
+        from ..modelling.bodies.offsetting import rounded
+
+        return rounded(cast("Solid", self), r, segments, inside)
 
     def align(
         self,
@@ -384,8 +394,9 @@ class Modelled:
         >>> lamp.align(x="center", z=("min", "max"), to=table).bounds[0].tolist()
         [3.0, 0.0, 1.0]
         """
-        moved: Solid = above("align")(self, {"x": x, "y": y, "z": z}, to)
-        return moved
+        from ..modelling.bodies.placing import align
+
+        return align(cast("Solid", self), {"x": x, "y": y, "z": z}, to)
 
     def normals(self, sharp_angle: Scalar = 30.0) -> FloatArray:
         """Return unit normals for shading, one for each corner of each triangle.
@@ -412,8 +423,9 @@ class Modelled:
         >>> csg.cube(1).normals().shape
         (12, 3, 3)
         """
-        found: FloatArray = above("normals")(self, sharp_angle)
-        return found
+        from ..modelling.bodies.shading import normals
+
+        return normals(cast("Solid", self), sharp_angle)
 
     def curvature(self) -> tuple[FloatArray, FloatArray]:
         """Return the Gaussian and the mean curvature at each vertex, (n,) float64 each.
@@ -434,14 +446,15 @@ class Modelled:
         >>> round(float(mean.mean()), 1)
         0.5
         """
-        pair: tuple[FloatArray, FloatArray] = above("curvature")(self)
-        return pair
+        from ..modelling.bodies.shading import curvature
+
+        return curvature(cast("Solid", self))
 
     @overload
     def ray_cast(self, origin: Vector, direction: Vector) -> "Hits": ...
     @overload
     def ray_cast(self, origin: FloatArray, direction: Any) -> "Hits | HitLists": ...
-    def ray_cast(self, origin: Any, direction: Any) -> Any:
+    def ray_cast(self, origin: Any, direction: Any) -> "Hits | HitLists":
         """Return where rays meet the surface, nearest first, each point once.
 
         Parameters
@@ -471,4 +484,6 @@ class Modelled:
         >>> csg.cube(2).ray_cast((1, 0.5, -1), (0, 0, 1)).t
         array([1., 3.])
         """
-        return above("ray_cast")(self, origin, direction)
+        from ..modelling.bodies.casting import ray_cast
+
+        return ray_cast(cast("Solid", self), origin, direction)

@@ -7,16 +7,13 @@ does not belong to the set, such as its tree, its lattice or how it was made. Al
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self
 
 from .._types import SideArray
-from ..above import above
 from ..errors import invalid_parameter
 from ..meant import no_attribute
 from ..parameters import shown
 from .counting import uncounted
-
-_Set = TypeVar("_Set", bound="PointSet")
 
 
 class PointSet(ABC):
@@ -57,19 +54,27 @@ class PointSet(ABC):
 
     def union(self, *others: Self | Iterable[Self]) -> Self:
         """Return what is inside this set or one of the others; ``|`` does it with one."""
-        return _combined("union", self, others)
+        from ..operations.setops import union
+
+        return union(self, *others)
 
     def intersection(self, *others: Self | Iterable[Self]) -> Self:
         """Return what is inside this set and all others; ``&`` does it with one."""
-        return _combined("intersection", self, others)
+        from ..operations.setops import intersection
+
+        return intersection(self, *others)
 
     def difference(self, *others: Self | Iterable[Self]) -> Self:
         """Return what is inside this set and none of the others; ``-`` does it with one."""
-        return _combined("difference", self, others)
+        from ..operations.setops import difference
+
+        return difference(self, *others)
 
     def symmetric_difference(self, *others: Self | Iterable[Self]) -> Self:
         """Return what is inside an odd number of the sets; ``^`` does it with one."""
-        return _combined("symmetric_difference", self, others)
+        from ..operations.setops import xor
+
+        return xor(self, *others)
 
     def __eq__(self, other: object) -> bool:
         """Say whether both are the same set of points, exactly."""
@@ -124,12 +129,3 @@ class PointSet(ABC):
     def __bool__(self) -> bool:
         """Say whether the set is not empty; this evaluates it."""
         return not self.is_empty
-
-
-def _combined(
-    operation: Literal["union", "intersection", "difference", "symmetric_difference"],
-    first: _Set,
-    others: Iterable[Any],
-) -> _Set:
-    made: _Set = above(operation)(first, *others)
-    return made

@@ -15,7 +15,6 @@ from typing import Any
 
 from .._core import Tree
 from .._types import ProgramLine, WindingRule
-from ..above import above
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
 from ..errors import BspcsgError, core_errors
@@ -226,9 +225,10 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             whole: Solid = mesh if isinstance(mesh, Solid) else mesh.to_solid()
             return whole
         if isinstance(mesh, (bytes, bytearray, memoryview)) or hasattr(mesh, "readable"):
+            from ..io import loads
+
             suffix = None if format is None else of_kind(str, format, "format")
-            solid: Solid = above("loads")(mesh, suffix, **options)
-            return solid
+            return loads(mesh, suffix, **options)
         arrays = interop.arrays_from(mesh, positive(tolerance, "tolerance"))
         if interop.are_empty(arrays):
             return cls.empty()

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .._types import IndexArray, Scalar
-from ..above import above
 from ..errors import invalid_parameter
 
 if TYPE_CHECKING:
@@ -51,8 +50,9 @@ class Triangles(_Array):
         """
         if self._solid is None:
             raise invalid_parameter("This array is no solid's any more; ask solid.faces().")
-        faces: FaceSelection = above("faces")(self._solid, all=all, angle=angle)
-        return faces
+        from ..modelling.making.faces import faces_of
+
+        return faces_of(self._solid, all=all, angle=angle)
 
 
 def triangles_of(solid: Any, triangles: IndexArray) -> Triangles:

@@ -2,17 +2,14 @@
 
 from collections.abc import Callable
 from fractions import Fraction
-from importlib import import_module
 from random import Random
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 import pytest
 
 import bspcsg as b
 from bspcsg._types import FloatArray, IndexArray
-from bspcsg.above import Convenience
-from bspcsg.conveniences import _HOMES
 from bspcsg.modelling.bodies import touching
 from bspcsg.modelling.bodies.hulls import hull_of
 from bspcsg.modelling.bodies.polyhedra import in_steps, in_units, polyhedron_of
@@ -415,14 +412,6 @@ def test_offsets_refuse(verb: Callable[[b.Solid], Any]) -> None:
         b.cube(1).offset(1, segments=1 << 20)
     with pytest.raises(b.UnboundedError):
         b.half_space((0, 0, 1)).offset(1)
-
-
-# Found: hulls, sums, offsets, twists were for scripts only.
-def test_all_that_methods_ask_for_is_there() -> None:
-    for home in _HOMES.values():
-        module, name = home.split(":")
-        assert callable(getattr(import_module(f"bspcsg.{module}"), name))
-    assert set(_HOMES) == set(get_args(Convenience))
 
 
 # Found: sums and offsets filled small holes of large bodies in silence.

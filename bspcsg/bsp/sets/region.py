@@ -9,7 +9,6 @@ import numpy as np
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, Vector, WindingRule
-from ...above import above
 from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
 from ...geometry.arrays import doubles
@@ -243,14 +242,16 @@ class Region(PlaneQueries):
     @classmethod
     def from_svg(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
         """Read the filled shapes of an SVG file (see `bspcsg.bsp.load_svg`)."""
-        region: Region = above("load_svg")(path, **options)
-        return region
+        from ..drawings.svg import load_svg
+
+        return load_svg(path, **options)
 
     @classmethod
     def from_dxf(cls, path: str | os.PathLike[str], **options: Any) -> "Region":
         """Read the closed outlines of a DXF file (see `bspcsg.bsp.load_dxf`)."""
-        region: Region = above("load_dxf")(path, **options)
-        return region
+        from ..drawings.dxf import load_dxf
+
+        return load_dxf(path, **options)
 
     @classmethod
     def compose(cls, regions: Iterable["Region"]) -> "Region":
@@ -459,10 +460,9 @@ class Region(PlaneQueries):
         >>> Region.rectangle(4, 2).offset(-1).is_empty
         True
         """
-        region: Region = above("offset_region")(
-            self, delta, join, segments=segments, miter_limit=miter_limit
-        )
-        return region
+        from ...modelling.planar.offsetting import offset_region
+
+        return offset_region(self, delta, join, segments=segments, miter_limit=miter_limit)
 
     def fillet(
         self,
@@ -500,8 +500,9 @@ class Region(PlaneQueries):
         >>> plate.fillet(2, lambda p: p[:, 0] > 0, segments=4).area
         20.0
         """
-        region: Region = above("fillet_region")(self, r, corners, segments)
-        return region
+        from ...modelling.planar.corners import fillet_region
+
+        return fillet_region(self, r, corners, segments)
 
     def chamfer(
         self, size: Scalar, corners: "Callable[[FloatArray], Any] | None" = None
@@ -527,8 +528,9 @@ class Region(PlaneQueries):
         >>> Region.rectangle(6, 4).chamfer(1).area
         22.0
         """
-        region: Region = above("chamfer_region")(self, size, corners)
-        return region
+        from ...modelling.planar.corners import chamfer_region
+
+        return chamfer_region(self, size, corners)
 
     def hull(self) -> "Region":
         """Return the convex hull, exactly.
@@ -539,8 +541,9 @@ class Region(PlaneQueries):
         >>> (Region.rectangle(4, 4) - Region.rectangle(4, 4).translate(2, 2)).hull().area
         14.0
         """
-        region: Region = above("hull_of_region")(self)
-        return region
+        from ...modelling.planar.hulls import hull_of_region
+
+        return hull_of_region(self)
 
     def simplify(self, tolerance: Scalar) -> "Region":
         """Return the region with fewer corners.
@@ -567,8 +570,9 @@ class Region(PlaneQueries):
         >>> len(Region.circle(10, 360).simplify(0.1).outlines[0].points)
         32
         """
-        region: Region = above("simplify_region")(self, tolerance)
-        return region
+        from ...modelling.planar.simplifying import simplify_region
+
+        return simplify_region(self, tolerance)
 
     def warp(self, function: Callable[[FloatArray], Any]) -> "Region":
         """Return what the region becomes if each of its corners moves.
@@ -642,15 +646,21 @@ class Region(PlaneQueries):
 
     def to_svg(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write an SVG file (see `bspcsg.bsp.save_svg`)."""
-        above("save_svg")(self, path, **options)
+        from ..drawings.svg import save_svg
+
+        save_svg(self, path, **options)
 
     def to_dxf(self, path: str | os.PathLike[str]) -> None:
         """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
-        above("save_dxf")(self, path)
+        from ..drawings.dxf import save_dxf
+
+        save_dxf(self, path)
 
     def show(self) -> None:
         """Show the region in a notebook, or as a slab in a browser (see `bspcsg.show`)."""
-        above("show")(self)
+        from ...script.run import show
+
+        show(self)
 
     def to_shapely(self) -> Any:
         """Return a ``shapely.MultiPolygon``; shapely must be installed."""
@@ -659,13 +669,15 @@ class Region(PlaneQueries):
 
     def _repr_svg_(self) -> str | None:
         """Return a picture for notebooks; None if there is no outline to show."""
-        picture: str | None = above("region_svg")(self)
-        return picture
+        from ...report.viewer.notebook import region_svg
+
+        return region_svg(self)
 
     def _repr_png_(self) -> bytes | None:
         """Return a picture, for notebooks that show pixels only; None without Pillow, too."""
-        picture: bytes | None = above("region_png")(self)
-        return picture
+        from ...report.viewer.notebook import region_png
+
+        return region_png(self)
 
     def __repr__(self) -> str:
         """Say how large it is, as far as that is cheap."""
