@@ -1,9 +1,8 @@
 //! A convex polygon divided along segments into cells.
 //!
-//! Both ways to evaluate an expression divide faces here: the arrangement whole faces, the kernel for
-//! general position what lies of an element in a cell. The cells are triangles, so that nothing has to
-//! know how segments hang together: what changes across a segment spreads from cell to cell, and the
-//! outline of some cells is what is left of their edges.
+//! The arrangement divides whole faces here, and the kernel for general position divides the parts of
+//! elements inside a cell. Cells are triangles, so no caller has to know how segments are connected: values
+//! that change across segments spread from cell to cell, and the outline of a set of cells is its border.
 
 mod triangulation;
 
@@ -23,11 +22,11 @@ pub use triangulation::{Defect, Triangulation, NONE};
 /// Where a point of a polygon is known to lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spot {
-    /// It is the corner with this number.
+    /// At the corner with this number.
     Corner(usize),
     /// Between the ends of the side with this number.
     Side(usize),
-    /// Inside, or on the border.
+    /// Inside or on the border.
     Inside,
 }
 
@@ -35,18 +34,18 @@ pub enum Spot {
 #[derive(Debug)]
 pub struct Division {
     support: Arc<Plane>,
-    /// What carries the polygon's sides.
+    /// The carriers of the polygon's sides.
     sides: SmallVec<[Carrier; 3]>,
     triangulation: Triangulation,
-    /// For each segment the plane that has what is on its left on the minus side.
+    /// For each segment a plane through it; the left of the segment is on the minus side.
     cuts: Vec<Arc<Plane>>,
 }
 
 impl Division {
-    /// A polygon that nothing divides.
+    /// An undivided polygon.
     ///
     /// # Errors
-    /// If three corners that follow each other lie on one line.
+    /// If three consecutive corners lie on one line.
     pub fn of(
         support: &Arc<Plane>,
         corners: impl ExactSizeIterator<Item = (Arc<Vertex>, Carrier)>,
@@ -130,10 +129,10 @@ impl Division {
         }
     }
 
-    /// Divides along a segment between two places, of which the left is on the minus side of a plane.
+    /// Divides along the segment between two places. It lies in a plane; its left is on the minus side.
     ///
     /// # Errors
-    /// If it leaves the polygon.
+    /// If the segment leaves the polygon.
     pub fn cut_along(&mut self, ends: [u32; 2], cut: Arc<Plane>) -> Result<(), Defect> {
         let number = as_number(self.cuts.len());
         self.cuts.push(cut);
@@ -169,13 +168,13 @@ impl Division {
         self.triangulation.cell_at(as_number(corner)) as usize
     }
 
-    /// The segments along an edge of a cell, each with whether it runs the way of the edge.
+    /// The segments along an edge of a cell; true for those that have the direction of the edge.
     pub fn along_edge(&self, cell: usize, edge: usize) -> impl Iterator<Item = (usize, bool)> + '_ {
         let along = self.triangulation.along_edge(as_number(cell), edge);
         along.map(|(segment, is_along)| (segment as usize, is_along))
     }
 
-    /// A value for each cell, given that of the first one and how it changes across an edge.
+    /// A value for each cell, given the value of the first cell and the change across an edge.
     pub fn spread<T: Copy>(&self, first: T, across: impl Fn(T, usize, usize) -> T) -> Vec<T> {
         let cells = self.triangulation.cells();
         let mut values = vec![first; cells.len()];
@@ -193,7 +192,7 @@ impl Division {
         values
     }
 
-    /// The outline of some cells; no two of its edges continue each other.
+    /// The border of a set of cells. Collinear edges are merged.
     pub fn outline(&mut self, holds: &[bool]) -> Vec<BareEdge> {
         let is_border = |this: &Self, (cell, edge): (u32, usize)| {
             let mate = this.triangulation.cells()[cell as usize].mates[edge];
@@ -223,7 +222,7 @@ impl Division {
         edges
     }
 
-    /// Adds a loop of borders, those that continue each other as one.
+    /// Adds a closed loop of border edges; merges collinear ones.
     fn add_ring(&mut self, ring: &[(u32, usize)], edges: &mut Vec<BareEdge>) {
         let turns = |this: &mut Self, i: usize| {
             let before = ring[(i + ring.len() - 1) % ring.len()];
@@ -250,8 +249,7 @@ impl Division {
         }
     }
 
-    /// Return whether two edges of cells lie in one plane that cuts the polygon; may return false
-    /// negatives.
+    /// Return whether two edges of cells lie in the plane of one segment; may return false negatives.
     fn have_one_cut(&self, first: (u32, usize), second: (u32, usize)) -> bool {
         let cut = |(cell, edge)| self.triangulation.along_edge(cell, edge).next();
         let cuts = cut(first).zip(cut(second));
@@ -274,7 +272,7 @@ impl Division {
     }
 }
 
-/// The axes along which a polygon turns left.
+/// The two axes along which a polygon is seen counterclockwise.
 pub fn axes(support: &Plane) -> [usize; 2] {
     let axis = support.main_axis();
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];

@@ -1,8 +1,7 @@
-//! A triangulation of a convex polygon in which given points are vertices and given segments are edges.
+//! A constrained triangulation of a convex polygon: given points are vertices, given segments are edges.
 //!
-//! Points are inserted one by one, those of the border first; `segments` makes segments edges.
-//! Decisions about orientation are exact; circles only choose among triangulations and are looked at in
-//! doubles.
+//! Points are inserted one by one, border points first; `segments` inserts the segments. Orientation tests
+//! are exact. Circle tests only improve the shape of triangles, so doubles are enough.
 //!
 //! # Source
 //! Lawson 1977 (insertion and flips).
@@ -24,18 +23,18 @@ use crate::interrupt::poll;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Defect;
 
-/// No triangle, or no side: beyond the border, and inside it.
+/// No triangle: beyond the border. No side: inside the polygon.
 pub const NONE: u32 = u32::MAX;
 
-/// A triangle by the places of its corners, counterclockwise. Edge `i` runs from corner `i` to the next.
+/// A triangle: its corners counterclockwise. Edge `i` runs from corner `i` to the next one.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
     /// The corners.
     pub corners: [u32; 3],
     /// The triangles across the edges.
     pub mates: [u32; 3],
-    /// For each edge the place of the last segment that runs along it among the runs, and one more;
-    /// negative if the runs there are told as seen from across, 0 if there is none.
+    /// For each edge one more than the index of its last run; 0 without a run, negative if the runs have
+    /// the directions that the triangle across sees.
     marks: [i32; 3],
 }
 
@@ -43,17 +42,17 @@ pub struct Cell {
 #[derive(Clone, Copy, Debug)]
 struct Run {
     segment: u32,
-    /// True if the segment has the direction of the edge, as the mark is positive there.
+    /// True if the segment has the direction of the edge in the triangle with the positive mark.
     is_forward: bool,
-    /// The mark of the segments that ran there before.
+    /// The mark before this run was added.
     before: i32,
 }
 
-/// A point of the polygon as seen along an axis.
+/// A point of the polygon, projected along an axis.
 #[derive(Clone, Debug)]
 struct Place {
     at: [f64; 2],
-    /// By how much each coordinate may be off.
+    /// A bound on the error of each coordinate.
     error: f64,
     /// The sides of the polygon on which the point lies.
     sides: [u32; 2],
@@ -75,7 +74,7 @@ pub struct Triangulation {
 }
 
 impl Triangulation {
-    /// A polygon alone, by its strict corners; seen along two axes it must turn left.
+    /// A fan of triangles; the corners are strictly convex and counterclockwise along the axes.
     pub fn new(corners: impl ExactSizeIterator<Item = Arc<Vertex>>, axes: [usize; 2]) -> Self {
         let count = as_number(corners.len());
         let mut made = Self {
@@ -114,7 +113,7 @@ impl Triangulation {
         &self.places[place as usize].vertex
     }
 
-    /// The side of the polygon on which two points of its border lie.
+    /// The common side of two border points.
     pub fn side(&self, ends: [u32; 2]) -> u32 {
         let [a, b] = ends.map(|p| self.places[p as usize].sides);
         if b.contains(&a[0]) {
@@ -130,7 +129,7 @@ impl Triangulation {
         (corners[edge], corners[(edge + 1) % 3])
     }
 
-    /// An edge of a triangle as its neighbour has it.
+    /// The same edge in the neighbouring triangle.
     pub fn across(&self, (cell, edge): (u32, usize)) -> (u32, usize) {
         let mate = self.cells[cell as usize].mates[edge];
         let back = if mate == NONE {
@@ -141,7 +140,7 @@ impl Triangulation {
         (mate, back)
     }
 
-    /// Twice the area of a triangle, about.
+    /// Approximately twice the area of a triangle.
     pub fn size(&self, cell: u32) -> f64 {
         let [a, b, c] = self.cells[cell as usize]
             .corners
@@ -150,8 +149,8 @@ impl Triangulation {
         ux * vy - uy * vx
     }
 
-    /// The half step of the lattice next to the weighted mean of a triangle's corners, doubled, in the order
-    /// of the axes.
+    /// The weighted mean of a triangle's corners, rounded to half lattice steps and doubled, in the order of
+    /// the axes.
     pub fn mean(&self, cell: u32, weights: [f64; 3]) -> [i64; 2] {
         let corners = self.cells[cell as usize].corners;
         let at = |i: usize| {
@@ -199,7 +198,7 @@ impl Triangulation {
         }
     }
 
-    /// Makes a triangle's neighbour point to another triangle.
+    /// Replaces one mate of a triangle by another.
     fn relink(&mut self, neighbour: u32, from: u32, to: u32) {
         if neighbour != NONE {
             let mates = &mut self.cells[neighbour as usize].mates;
@@ -223,8 +222,8 @@ impl Triangulation {
         }
     }
 
-    /// The same for two points of a plane that has what lies on the left of the way from one to the other
-    /// on its minus side.
+    /// The same if the first two points lie in a plane whose minus side is on their left. Exact, and
+    /// cheaper than comparing three constructed points.
     fn turn_beside(&self, cut: &Plane, points: [u32; 3]) -> Sign {
         match self.near_turn(points) {
             Filtered::Certain(sign) => sign,
@@ -232,7 +231,7 @@ impl Triangulation {
         }
     }
 
-    /// The turn at three points, where doubles or their places on the border tell it.
+    /// The turn if doubles, or a common side of the polygon, decide it.
     fn near_turn(&self, points: [u32; 3]) -> Filtered<Sign> {
         let [p, q, r] = points.map(|i| &self.places[i as usize]);
         let ([ux, uy], [vx, vy]) = (p.to(q), p.to(r));
@@ -269,7 +268,7 @@ impl Triangulation {
         }
     }
 
-    /// The triangles at a point, each with the place of the point among its corners.
+    /// The triangles at a point, each with the index of the point among its corners.
     fn fan(&self, point: u32) -> impl Iterator<Item = (u32, usize)> + '_ {
         let place = move |cell: &Cell| cell.corners.iter().position(|c| *c == point).unwrap_or(0);
         let first = self.incident[point as usize];
@@ -291,14 +290,14 @@ impl Triangulation {
         })
     }
 
-    /// The edge from one point to another, as a triangle's.
+    /// The triangle and the edge from one point to another, if there is one.
     fn edge_between(&self, from: u32, to: u32) -> Option<(u32, usize)> {
         let leads =
             |(cell, k): &(u32, usize)| self.cells[*cell as usize].corners[(k + 1) % 3] == to;
         self.fan(from).find(leads)
     }
 
-    /// The edge between two points, as the triangles on both sides have it.
+    /// The edge between two points in the triangles on both sides, if there is one.
     fn edges_between(&self, from: u32, to: u32) -> Option<[Option<(u32, usize)>; 2]> {
         let across = |at| Some(self.across(at)).filter(|(mate, _)| *mate != NONE);
         if let Some(at) = self.edge_between(from, to) {
@@ -308,7 +307,7 @@ impl Triangulation {
         Some([None, Some(back)])
     }
 
-    /// Divides the border between two points of it that follow each other; returns the new point.
+    /// Adds a border point between two consecutive ones; returns its number.
     pub fn divide_border(&mut self, ends: [u32; 2], vertex: Arc<Vertex>) -> u32 {
         let side = self.side(ends);
         let point = self.add(vertex, [side; 2]);
@@ -319,10 +318,10 @@ impl Triangulation {
         point
     }
 
-    /// Adds a point of the polygon; returns its number, or that of the point that is there.
+    /// Adds a point; returns its number, or the number of an equal point.
     ///
     /// # Errors
-    /// `Defect` if it lies outside.
+    /// If it lies outside.
     pub fn insert(&mut self, vertex: Arc<Vertex>) -> Result<u32, Defect> {
         let point = self.add(vertex, [NONE; 2]);
         let (cell, on) = self.locate(point)?;
@@ -350,7 +349,7 @@ impl Triangulation {
 
     /// The triangle that holds a point, and the edges on which it lies.
     ///
-    /// A walk may go in circles if it tries edges in the same order each time.
+    /// Tries edges in random order: with a fixed order a walk may not end.
     fn locate(&mut self, point: u32) -> Result<(u32, SmallVec<[usize; 3]>), Defect> {
         let mut at = self.last;
         'walk: loop {
@@ -378,7 +377,7 @@ impl Triangulation {
         }
     }
 
-    /// Divides a triangle at a point inside it; returns the triangles there.
+    /// Divides a triangle at an inner point; returns the triangles at it.
     fn split_cell(&mut self, number: u32, m: u32) -> SmallVec<[u32; 4]> {
         let Cell {
             corners: [a, b, c],
@@ -399,7 +398,7 @@ impl Triangulation {
         SmallVec::from_slice(&[number, second, third])
     }
 
-    /// Divides an edge; returns the triangles there.
+    /// Divides an edge at a point; returns the triangles at it.
     fn split_edge(&mut self, number: u32, edge: usize, m: u32) -> SmallVec<[u32; 4]> {
         let across = self.cells[number as usize].mates[edge];
         let second = as_number(self.cells.len());
@@ -478,7 +477,7 @@ impl Triangulation {
         self.relink(t.mates[t1], number, across);
     }
 
-    /// Flips edges opposite to a new point until no circle around a triangle there holds another point.
+    /// Flips edges opposite to a new point until its triangles are locally Delaunay.
     fn legalize(&mut self, point: u32, mut open: SmallVec<[u32; 4]>) {
         while let Some(number) = open.pop() {
             poll();
@@ -501,7 +500,7 @@ impl Triangulation {
         self.is_in_circle([a, b, apex], other) && self.is_convex([a, b, apex, other])
     }
 
-    /// The ends of an edge, the corner opposite to it, and the one across.
+    /// The ends of an edge and the corners opposite to it on both sides.
     fn around(&self, number: u32, edge: usize) -> [u32; 4] {
         let t = &self.cells[number as usize];
         let across = t.mates[edge];
@@ -519,7 +518,7 @@ impl Triangulation {
 
     /// Return whether a point lies clearly inside the circle through three others; in doubles.
     fn is_in_circle(&self, corners: [u32; 3], point: u32) -> bool {
-        /// Rounding must not choose: rows of a grid have four points on a circle.
+        /// Rounding must not decide: four points of a grid often lie on one circle.
         const CLEAR: f64 = 1e-9;
         let at = |i: u32| self.places[i as usize].at;
         let origin = at(point);
@@ -556,10 +555,10 @@ impl Place {
     }
 }
 
-/// Sign of the turn at three points as seen along two axes.
+/// Sign of the turn at three points, projected on two axes.
 ///
 /// # Bits
-/// Of three points on edges at most 604, of any 1086 (`arith::bounds`).
+/// At most 604 for three points on edges, 1086 for any points (`arith::bounds`).
 fn turn_of([a, b, c]: [&Homogeneous; 3], [u, v]: [usize; 2]) -> Sign {
     let minor = |p: &Homogeneous, q: &Homogeneous| -> Int<12> {
         let product = |i: usize, j: usize| -> Int<12> { p.x[i].mul(&q.x[j]) };

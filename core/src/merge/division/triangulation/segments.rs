@@ -1,4 +1,4 @@
-//! Segments become edges of a triangulation, by flips of the edges that they cross.
+//! Inserts segments into a triangulation by flipping the edges that they cross.
 //!
 //! # Source
 //! Sloan 1993.
@@ -14,9 +14,9 @@ use crate::interrupt::poll;
 
 /// The first stretch of a way.
 enum Way {
-    /// It leads to a point, across edges that no segment runs along.
+    /// It ends in a point and crosses only free edges.
     Free(u32, Vec<[u32; 2]>),
-    /// It meets an edge of a triangle that segments run along.
+    /// It meets an edge that is part of a segment.
     Blocked(u32, usize),
 }
 
@@ -29,11 +29,11 @@ enum Start {
 }
 
 impl Triangulation {
-    /// Makes a segment a chain of edges, of which what lies on the left is on the minus side of a plane.
-    /// Where it crosses another segment is a new point, which `meet` gives by the other one's number.
+    /// Inserts a segment that lies in a plane with the segment's left on the minus side. It becomes a chain
+    /// of edges; `meet` makes the point in which it crosses another segment, given by number.
     ///
     /// # Errors
-    /// If it leaves the polygon, or there is no such point.
+    /// If it leaves the polygon, or `meet` finds no point.
     pub fn constrain(
         &mut self,
         [from, to]: [u32; 2],
@@ -71,7 +71,7 @@ impl Triangulation {
         Ok(())
     }
 
-    /// The segments with a mark, each with whether it runs the way of the edge.
+    /// The segments with a mark; true for those that have the direction of the edge.
     fn along(&self, mark: i32) -> impl Iterator<Item = (u32, bool)> + '_ {
         let is_turned = mark < 0;
         let mut next = mark.unsigned_abs();
@@ -82,12 +82,12 @@ impl Triangulation {
         })
     }
 
-    /// The segments along an edge of a triangle, each with whether it runs the way of the edge.
+    /// The segments along an edge of a triangle; true for those that have its direction.
     pub fn along_edge(&self, cell: u32, edge: usize) -> impl Iterator<Item = (u32, bool)> + '_ {
         self.along(self.cells[cell as usize].marks[edge])
     }
 
-    /// Marks an edge, as the triangles on both sides have it, as a part of a segment.
+    /// Marks an edge, given in the triangles on both sides, as part of a segment.
     fn mark(&mut self, edges: [Option<(u32, usize)>; 2], segment: u32) -> Result<(), Defect> {
         let known = |at: &Option<(u32, usize)>| at.map(|(c, e)| self.cells[c as usize].marks[e]);
         let before = known(&edges[0])
@@ -108,7 +108,7 @@ impl Triangulation {
         Ok(())
     }
 
-    /// The first stretch of the way from a point to another one, if that is not an edge.
+    /// The first stretch of the way between two points that no edge connects.
     fn way(&self, from: u32, to: u32, cut: &Plane) -> Result<Way, Defect> {
         let (mut at, mut edge) = match self.first_crossed(from, to, cut)? {
             Start::Edge(cell, edge) => (cell, edge),
@@ -140,7 +140,7 @@ impl Triangulation {
         }
     }
 
-    /// The first edge that the way from a point to another one crosses, or runs along.
+    /// The first edge that the way between two points crosses or follows.
     fn first_crossed(&self, from: u32, to: u32, cut: &Plane) -> Result<Start, Defect> {
         for (number, k) in self.fan(from) {
             let corners = self.cells[number as usize].corners;
@@ -158,7 +158,7 @@ impl Triangulation {
         Err(Defect)
     }
 
-    /// Return whether a point of the line through two others lies on the second one's side of the first.
+    /// Return whether a point of a line lies on the same side of `from` as `to`.
     fn is_ahead(&self, from: u32, to: u32, point: u32) -> bool {
         let [from, to, point] = [from, to, point].map(|p| &self.places[p as usize]);
         let axis = from.vertex.axis_to(&to.vertex);
@@ -166,7 +166,7 @@ impl Triangulation {
         order(point) == order(to)
     }
 
-    /// Flips edges until none crosses a segment.
+    /// Flips edges until none crosses the segment.
     fn remove(&mut self, crossed: Vec<[u32; 2]>, [from, to]: [u32; 2], cut: &Plane) {
         let mut open = VecDeque::from(crossed);
         while let Some([a, b]) = open.pop_front() {

@@ -1,4 +1,4 @@
-//! How the faces of elements may meet: whether they cross, and what is left to the local trees.
+//! Contacts of faces: whether two faces cross, or meet in a special way.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -10,7 +10,7 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::polygon_on_path;
 
-/// A convex polygon and the planes that bound it within its own, once somebody asks for them.
+/// A convex polygon and, made at first use, the planes through its sides.
 #[derive(Debug)]
 pub struct Face<'a> {
     /// The polygon.
@@ -45,8 +45,8 @@ impl<'a> Face<'a> {
     }
 }
 
-/// A special position, for which there is no rule here: a face touches another one, or what lies between
-/// segments contradicts itself.
+/// A special position: a face touches another one, or segments contradict each other. Local trees decide
+/// these.
 ///
 /// This is exact, unlike `Filtered::Doubtful`, and about places rather than a solid, unlike
 /// `Simplicity`: no further digits settle it, only a way that needs no rule.

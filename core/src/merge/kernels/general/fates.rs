@@ -1,4 +1,4 @@
-//! The fates of elements: those that faces of other operands cross are divided.
+//! The fates of elements: an element is divided if faces of other operands cross it.
 
 use std::sync::Arc;
 
@@ -20,17 +20,17 @@ use crate::merge::pairs::{pairs, shift_of, Boxed};
 /// Elements that may meet another one, by number: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
 
-/// The number of the first pair that is looked at as soon as it is found; then that of twice the number
-/// each time. Where many meet in a special way, the others need not be found.
+/// Pair 16, 32, 64 and so on are compared as soon as they are found: if many pairs are special, the search
+/// ends early.
 const FIRST_PAIR_LOOKED_AT: usize = 16;
 
 /// The fate of an element.
 pub(super) enum Fate {
     /// It does not meet the cell.
     Absent,
-    /// A whole face near which there is no other, and of which a vertex lies in the cell.
+    /// A whole face without neighbours and with a vertex in the cell.
     Untouched,
-    /// Nothing crosses it, and it has these anchors, at least one.
+    /// Nothing crosses it; it has at least one anchor.
     Uncut(Vec<Anchor>),
     /// It was divided.
     Cut(Box<Cut>),

@@ -81,11 +81,11 @@ impl Crossed<'_> {
         }))
     }
 
-    /// The ends of what both have of the line in which their planes meet, if no corner lies on it.
+    /// The ends of the segment if no corner lies on the line in which the planes meet.
     ///
-    /// Along the line, with the face's minus side on the left, the element reaches from x to x′ and
-    /// the face from y to y′. Where both borders meet in a point, the segment ends on the element's;
-    /// what is no longer than a point is none.
+    /// Along that line, with the face's minus side on the left, the element reaches from x to x′ and
+    /// the face from y to y′. Where the borders meet in a point, the segment ends on the element's
+    /// border. A single point is no segment.
     fn ends(&self, other: &Crosser, points: &mut Points) -> Result<Option<[End; 2]>, Special> {
         let face = &other.face.polygon;
         let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?].map(|p| p.edge);
@@ -113,7 +113,7 @@ impl Crossed<'_> {
         ]))
     }
 
-    /// The same where corners may lie on the line.
+    /// The same if corners may lie on the line.
     fn ends_by_order(
         &self,
         other: &Crosser,

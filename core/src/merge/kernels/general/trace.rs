@@ -1,8 +1,8 @@
 //! The trace of other operands on an element: where their surfaces cross it.
 //!
-//! The segments in which faces cross the element divide it into cells. An operand is inside on one side
-//! of each of its segments and outside on the other, so that labels spread from cell to cell. Where
-//! segments contradict each other the operand overlaps itself, or something is special.
+//! The segments in which faces cross the element divide it into cells. Each segment has its operand's
+//! inside on one side and its outside on the other, so labels spread from cell to cell. If segments
+//! contradict each other, the operand overlaps itself or something is special.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ use crate::merge::division::{Defect, Division, Spot};
 pub(super) struct Trace {
     /// The bits of these operands.
     pub(super) operands: Labels,
-    /// Inside which of them the parts lie, ascending.
+    /// The labels of the parts, ascending.
     pub(super) parts: SmallVec<[Labels; 2]>,
     /// `None` if there are no segments.
     divided: Option<Divided>,
@@ -32,12 +32,12 @@ pub(super) struct Trace {
 /// An element divided into cells.
 struct Divided {
     division: Division,
-    /// For each cell inside which of the operands it lies.
+    /// The labels of the cells.
     labels: Vec<Labels>,
 }
 
 impl Trace {
-    /// The trace of what may cross an element.
+    /// The trace of the faces that may cross an element.
     pub(super) fn new(
         crossed: &Crossed,
         crossers: &[Crosser],
@@ -125,7 +125,7 @@ fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, S
     Ok(division)
 }
 
-/// For each cell inside which of the operands it lies.
+/// The labels of the cells.
 fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Special> {
     let change = |cell: usize, edge: usize| {
         let along = division.along_edge(cell, edge);
