@@ -1,8 +1,7 @@
-//! Many fragments in one place of a plane: the plane is partitioned by their edges.
+//! Partitions a plane by the edges of the fragments in it.
 //!
-//! To carve them out of each other one by one costs their number times that of the pieces they
-//! make. Here an edge is followed only through the cells that it crosses: what covers a cell is a
-//! number there.
+//! Each edge is followed only through the cells that it crosses, and each cell has one number for all that
+//! covers it. To cut overlapping fragments out of each other would cost the square.
 
 use std::sync::Arc;
 
