@@ -23,7 +23,7 @@ from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
 from ..once import Last, Once
-from ..parameters import MOST_PITCH
+from ..parameters import MAX_PITCH
 from .extent import EXTENTS, Extent
 from .moving import SaidMesh
 from .program import COMPLEMENT
@@ -544,7 +544,7 @@ def _on_one_lattice(
 def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
     """Return the finest pitch at which every leaf of a coarser one stays on the lattice."""
     finest = _common_pitch(leaves)
-    coarser = range(finest, MOST_PITCH)
+    coarser = range(finest, MAX_PITCH)
     held = (pitch for pitch in coarser if all(_is_held(leaf, pitch, extent) for leaf in leaves))
     return next(held, finest)
 

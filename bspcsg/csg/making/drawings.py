@@ -10,7 +10,7 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
-from ...bsp.drawings.dxf_curves import MOST_IN_BLOCKS, inserted
+from ...bsp.drawings.dxf_curves import MAX_BLOCK_ENTITIES, inserted
 from ...bsp.drawings.dxf_layouts import ANY_LAYER, WINDOW, drawn_layout
 from ...bsp.drawings.left_out import LeftOut
 from ...errors import format_errors
@@ -130,7 +130,7 @@ def _walk(
 def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
     """Yield entities, and those of inserted blocks in the place of these."""
     waiting: list[Iterator[tuple[Any, bool]]] = [((entity, True) for entity in entities)]
-    left = MOST_IN_BLOCKS
+    left = MAX_BLOCK_ENTITIES
     while waiting:
         entity, is_placed = next(waiting[-1], (None, False))
         left -= len(waiting) > 1

@@ -4,7 +4,7 @@ import math
 from typing import Any, TypeGuard
 
 from ...errors import FormatError
-from ...parameters import MOST_CORNERS, MOST_SEGMENTS
+from ...parameters import MAX_CORNERS, MAX_SEGMENTS
 from .source import error_at
 from .tree import Node, Value
 from .writer import value_text
@@ -124,15 +124,15 @@ class Arguments:
 
     def limited(self, count: float, what: str) -> int:
         """Return a number of corners, or raise an error if it would not fit into memory."""
-        if not count <= MOST_CORNERS:
-            message = f"{what} would take more than {MOST_CORNERS:,} corners."
+        if not count <= MAX_CORNERS:
+            message = f"{what} would take more than {MAX_CORNERS:,} corners."
             raise self.error(message, "too_large")
         return int(count)
 
     def sides(self, count: float, what: str) -> int:
         """Return a number of sides around, or raise an error if it is absurd."""
-        if not count <= MOST_SEGMENTS:
-            message = f"{what} would have more than {MOST_SEGMENTS:,} sides."
+        if not count <= MAX_SEGMENTS:
+            message = f"{what} would have more than {MAX_SEGMENTS:,} sides."
             raise self.error(message, "too_large")
         return int(count)
 
