@@ -218,8 +218,8 @@ class Column:
 #: The columns of meshes that went to manifold3d, by the numbers that it tells their faces apart by.
 _LAYOUTS: dict[int, tuple[Column, ...]] = {}
 
-#: More meshes than these are not remembered.
-_MOST_LAYOUTS = 1 << 16
+#: The largest number of meshes whose columns are remembered; the oldest are forgotten first.
+_MAX_LAYOUTS = 1 << 16
 
 
 def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
@@ -285,7 +285,7 @@ def _with_properties(
         np.array([0, len(corners)], dtype=np.uint64),
         np.array([original], dtype=np.uint32),
     )
-    while len(_LAYOUTS) >= _MOST_LAYOUTS:
+    while len(_LAYOUTS) >= _MAX_LAYOUTS:
         _LAYOUTS.pop(next(iter(_LAYOUTS)), None)
     _LAYOUTS[original] = columns
     return manifold3d.Manifold(made)

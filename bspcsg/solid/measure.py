@@ -23,8 +23,9 @@ _PRIMES = (2**61 - 1, 2**61 - 31)
 #: Fractions of more digits take more than about a second to bring to lowest terms.
 LONGEST_VOLUME = 200_000
 
-#: No machine holds a number of more digits; the core counts its bits in 64.
-_MOST_DIGITS = 10**15
+#: The largest bound on decimal digits that the core gets, which counts bits in 64-bit integers. No
+#: machine holds a number with more digits.
+_MAX_DIGITS = 10**15
 
 #: Volumes below this part of what they are summed from may be rounding.
 _ROUNDING = 1e-9
@@ -156,7 +157,7 @@ class Measured(ABC):
         LimitError
             If they might have more; the message says how many.
         """
-        digits = min(at_least(1, most_digits, "most_digits"), _MOST_DIGITS)
+        digits = min(at_least(1, most_digits, "most_digits"), _MAX_DIGITS)
         bits = math.ceil(digits * math.log2(10))
         with core_errors():
             return Fraction(*self.normalized().tree.volume6_exact(bits))

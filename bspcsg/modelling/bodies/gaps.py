@@ -20,9 +20,9 @@ _NOISE = 1e-14
 #: Rounded meshes lie within this of the solids, relative to the size of the coordinates: by far.
 _ROUNDING = 1e-9
 
-#: Most pairs of triangles that are compared in fractions because doubles cannot tell them apart;
-#: each takes about a millisecond.
-_MOST_EXACT = 64
+#: The largest number of pairs of triangles whose distances are compared in fractions because
+#: doubles cannot tell which is less. Each takes about a millisecond.
+_MAX_EXACT_PAIRS = 64
 
 #: Pairs of triangles that are compared together, which bounds the memory to some 100 MB.
 _CHUNK = 1 << 16
@@ -123,7 +123,7 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
                 found.append((gaps[kept], i[kept], j[kept]))
     gaps, i, j = (np.concatenate(column) for column in zip(*found, strict=True))
     order = np.lexsort((j, i, gaps))
-    order = order[gaps[order] <= _bounded(best, scale)][:_MOST_EXACT]
+    order = order[gaps[order] <= _bounded(best, scale)][:_MAX_EXACT_PAIRS]
     return i[order], j[order]
 
 

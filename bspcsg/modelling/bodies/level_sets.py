@@ -18,8 +18,9 @@ from ...solid.solid import Solid
 #: A function of many points at once: (n, 3) float64 to (n,).
 Field: TypeAlias = Callable[[FloatArray], Any]
 
-#: Points at which a function is asked; they and what is made of them take some 100 bytes each.
-_MOST_POINTS = 50_000_000
+#: The largest number of points at which a function is sampled. Each takes some 100 bytes, with what
+#: is made of it.
+_MAX_SAMPLE_POINTS = 50_000_000
 
 #: Points of one call of the function.
 _AT_ONCE = 1 << 20
@@ -121,10 +122,10 @@ class _Grid:
             # A whole number of cubes stays one where the quotient was rounded up.
             counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-12)), 1.0)
             points = 2 * float(np.prod(counts + 5))
-        if points > _MOST_POINTS:
+        if points > _MAX_SAMPLE_POINTS:
             message = (
-                f"edge_length asks for {points:.3g} points, and {_MOST_POINTS:,} are the most."
-                " Choose a longer one."
+                f"edge_length asks for {points:.3g} points, and {_MAX_SAMPLE_POINTS:,} are the"
+                " most. Choose a longer one."
             )
             raise LimitError(message, "too_large")
         return cls(low, (high - low) / counts, counts.astype(np.int64))

@@ -27,8 +27,8 @@ ConvexParts: TypeAlias = list[FloatArray]
 #: By how much of its volume, and by how many steps a corner, rounding makes a convex solid another.
 _LARGER, _MOVED = 1e-9, 4
 
-#: More pairs of faces of two solids, neither of which is convex, would take hours.
-_MOST_PAIRS = 4_000_000
+#: The largest number of pairs of faces of two solids that are not convex: more would take hours.
+_MAX_FACE_PAIRS = 4_000_000
 
 #: So many sums are united at once: the result has less surface than all of them.
 _AT_ONCE = 64
@@ -166,10 +166,10 @@ def _swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
 
 def _refuse_many(solid: Solid, tool: Solid) -> None:
     pairs = _face_count(solid) * _face_count(tool)
-    if pairs > _MOST_PAIRS and not is_convex(tool):
+    if pairs > _MAX_FACE_PAIRS and not is_convex(tool):
         message = (
             f"neither solid is convex, and they have {_face_count(solid):,} and"
-            f" {_face_count(tool):,} faces; the most pairs of two are {_MOST_PAIRS:,}."
+            f" {_face_count(tool):,} faces; the most pairs of two are {_MAX_FACE_PAIRS:,}."
         )
         raise LimitError(message, "too_large")
 

@@ -18,8 +18,8 @@ from ...solid.solid import Solid, given_pitch, solid_with
 #: A function of all corners at once: (n, 3) float64 to the same shape.
 PointMap: TypeAlias = Callable[[FloatArray], Any]
 
-#: Faces that an error names.
-_FEW = 20
+#: The largest number of points, or of pairs of faces, that an error lists.
+_MAX_PLACES_LISTED = 20
 
 #: Of the largest coordinate: a mended vertex moves by a few roundings, 2**-53 each.
 _ROUNDING = 2.0**-40
@@ -79,7 +79,7 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
         message = (
             f"f returned numbers that are not finite for {len(bad)} points, first for {place}."
         )
-        raise InvalidMeshError(message, "non_finite", bad[:_FEW].tolist())
+        raise InvalidMeshError(message, "non_finite", bad[:_MAX_PLACES_LISTED].tolist())
     return moved + 0.0
 
 
@@ -99,4 +99,6 @@ def _refusal(
         f"{when}, pairs of faces cross or overlap ({least}{len(found.pairs)}), one near {first}."
         " Refine the solid first; warp can let winding numbers decide what is inside."
     )
-    return InvalidMeshError(message, "self_crossing", np.unique(found.pairs[:_FEW]).tolist())
+    return InvalidMeshError(
+        message, "self_crossing", np.unique(found.pairs[:_MAX_PLACES_LISTED]).tolist()
+    )

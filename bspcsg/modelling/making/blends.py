@@ -31,8 +31,8 @@ from .rooms import has_room, no_room, refuse_no_room
 from .skeleton import Skeleton, flatness, skeleton_of
 from .stages import carried, ready, refused
 
-#: Edges of one call: each is a mesh and four half-spaces of one expression.
-_MOST_EDGES = 10_000
+#: The largest number of edges in one call. Each adds a mesh and four half-spaces to one expression.
+_MAX_EDGES = 10_000
 
 #: A share of the size; stations that are nearer to each other do not tell the edge's direction.
 _SHORTEST = 1e-6
@@ -379,8 +379,8 @@ def _selected(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
     if not isinstance(edges, EdgeSelection):
         raise invalid_parameter("Edges are those of a selection: solid.edges().")
     skeleton, chosen = selection(edges)
-    if len(chosen) > _MOST_EDGES:
-        message = f"{len(chosen)} edges are chosen, and {_MOST_EDGES} are the most."
+    if len(chosen) > _MAX_EDGES:
+        message = f"{len(chosen)} edges are chosen, and {_MAX_EDGES} are the most."
         raise LimitError(f"{message} Choose fewer by where().", "too_many")
     return skeleton, chosen
 
