@@ -18,8 +18,8 @@ _ASIDE = 0.02
 #: Visible parts of fewer pixels come from looking aside, at the ends of hidden edges.
 _SHORTEST = 0.2
 
-#: Pairs of an edge and a polygon near it above which the answer would take seconds.
-_MOST_PAIRS = 4_000_000
+#: The largest number of pairs of an edge and a polygon near it: more would take seconds.
+_MAX_NEAR_PAIRS = 4_000_000
 
 #: Width of the squares, in pixels, by which pairs are found.
 _SQUARE = 12.0
@@ -73,7 +73,7 @@ def _near_pairs(
     squares, members = squares[order], members[order]
     asked, segments = _squares(ends.min(axis=1), ends.max(axis=1))
     first, last = (np.searchsorted(squares, asked, side) for side in ("left", "right"))
-    if (last - first).sum() > _MOST_PAIRS:
+    if (last - first).sum() > _MAX_NEAR_PAIRS:
         return None
     segment = np.repeat(segments, last - first)
     polygon = members[ranges(first, last)]

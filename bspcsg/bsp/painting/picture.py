@@ -24,22 +24,23 @@ from .png import canvas_size, line_samples, png, png_of_samples
 from .raster import Triangles, in_front, raster
 from .svg import svg
 
-#: Facets up to which the tree of a picture cuts as few as it can.
-_FEW = 3000
+#: The tree of a picture of at most this many facets is built so that it cuts as few as it can,
+#: which takes long for more.
+_MAX_FACETS_LEAST_SPLITS = 3000
 
-#: Polygons up to which a notebook shows a picture as SVG, above as PNG.
-_MOST_IN_SVG = 5000
+#: The largest number of polygons of a picture that a notebook shows as SVG; it shows more as PNG.
+_MAX_SVG_POLYGONS = 5000
 
-#: Triangles up to which a tree orders them for PNG, above which a z-buffer finds what is seen: the
-#: tree takes 2.3 s of processor for as many and the buffer 0.6 s; thirteen times as many take 47 s
-#: and 3.5 s.
-_MOST_ORDERED = 100_000
+#: The largest number of triangles that a tree orders for a PNG. For more a z-buffer finds what is
+#: seen. The tree takes 2.3 s of processor time for this many and the buffer 0.6 s; thirteen times
+#: as many take 47 s and 3.5 s.
+_MAX_TRIANGLES_ORDERED = 100_000
 
-#: The largest lattice of a tree ends well below this coordinate.
-_FARTHEST = 1e60
+#: The largest coordinate. The coarsest lattice of a tree ends well below it.
+_MAX_COORDINATE = 1e60
 
-#: Pixels along a side above which a picture is refused.
-_LARGEST = 16384
+#: The largest number of pixels along a side of a picture.
+_MAX_SIDE_PIXELS = 16384
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,7 @@ class Picture:
 
     @property
     def _is_large(self) -> bool:
-        return self.polygons > _MOST_IN_SVG
+        return self.polygons > _MAX_SVG_POLYGONS
 
     def __repr__(self) -> str:
         """Say how large the picture is."""
@@ -318,7 +319,7 @@ def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
     vertices, faces = mesh_of(scene)
     facets = _facets((vertices, faces))
     _check_coordinates(facets.corners.reshape(-1, 3, 3))
-    if len(facets) <= _MOST_ORDERED:
+    if len(facets) <= _MAX_TRIANGLES_ORDERED:
         return facets, None
     points, same = welded(vertices)
     used, renumbered = compacted(same[faces])
@@ -337,14 +338,14 @@ def _check_coordinates(triangles: FloatArray) -> None:
         where = np.flatnonzero(~finite)[:10].tolist()
         message = f"Face {where[0]} has a coordinate that is not a finite number."
         raise InvalidMeshError(message, "non_finite", where)
-    if len(triangles) and np.abs(triangles).max() > _FARTHEST:
-        message = f"Coordinates beyond {_FARTHEST:g} do not fit any lattice; scale the mesh."
+    if len(triangles) and np.abs(triangles).max() > _MAX_COORDINATE:
+        message = f"Coordinates beyond {_MAX_COORDINATE:g} do not fit any lattice; scale the mesh."
         raise LimitError(message, "too_large")
 
 
 def _tree(facets: Facets) -> PartitionTree:
     triangles = facets.corners.reshape(-1, 3, 3)
-    if len(facets) <= _FEW:
+    if len(facets) <= _MAX_FACETS_LEAST_SPLITS:
         return PartitionTree(triangles, "least-splits", degenerate="drop")
     return PartitionTree(triangles, "random", top=16, degenerate="drop")
 
@@ -376,8 +377,8 @@ def checked_size(size: Any) -> tuple[int, int]:
     except (TypeError, ValueError) as error:
         raise invalid_parameter("The size must be a width and a height in pixels.") from error
     frame = at_least(1, width, "width"), at_least(1, height, "height")
-    if max(frame) > _LARGEST:
+    if max(frame) > _MAX_SIDE_PIXELS:
         raise invalid_parameter(
-            f"A picture has at most {_LARGEST} pixels a side, not {max(frame)}."
+            f"A picture has at most {_MAX_SIDE_PIXELS} pixels a side, not {max(frame)}."
         )
     return frame
