@@ -27,8 +27,9 @@ from .tree import Part
 _Any = TypeVar("_Any")
 _Number = TypeVar("_Number", int, float)
 
-#: Names of patches that become one object, of which so many are told.
-_AND, _FEW = " + ", 3
+#: What separates the names of patches that become one object, and the largest number of names that
+#: are shown.
+_NAME_SEPARATOR, _MAX_NAMES_SHOWN = " + ", 3
 
 #: From the worst verdict to the best.
 _VERDICTS = ("refused", "not closed", "empty", "inside out", "solid")
@@ -104,9 +105,11 @@ def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
     found = []
     for one in dict.fromkeys(group.tolist()):
         members = np.flatnonzero(group == one)
-        called = [names[member] for member in members[:_FEW].tolist()]
-        more = [f"{len(members) - _FEW} more"] if len(members) > _FEW else []
-        found.append((_AND.join([*called, *more]), np.flatnonzero(group[owner] == one)))
+        called = [names[member] for member in members[:_MAX_NAMES_SHOWN].tolist()]
+        more = (
+            [f"{len(members) - _MAX_NAMES_SHOWN} more"] if len(members) > _MAX_NAMES_SHOWN else []
+        )
+        found.append((_NAME_SEPARATOR.join([*called, *more]), np.flatnonzero(group[owner] == one)))
     return found
 
 

@@ -20,8 +20,8 @@ _DIGITS = 6
 #: Its grid for plane figures, in units.
 _PLANE_GRID = 2.0**-16
 
-#: Triangles up to which it is asked: its exact engine takes minutes for more.
-_MOST = 3000
+#: OpenSCAD is not asked about more triangles than this: its exact engine takes minutes for them.
+_MAX_TRIANGLES = 3000
 
 #: Seconds in which it says its version.
 _PATIENCE = 30
@@ -36,7 +36,7 @@ def ask_openscad(question: Question) -> EngineAnswer:
         If it is not installed, fails or takes too long, or the operands are too large for it.
     """
     count = sum(len(mesh.faces) for mesh in question.operands)
-    if count > _MOST:
+    if count > _MAX_TRIANGLES:
         raise NoOpinionError(f"{count} triangles are too many for its exact engine")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         script = Path(name, "question.csg")
