@@ -35,8 +35,8 @@ PATIENCE = 10
 #: Longer inputs are no other scenes.
 LONGEST = 2000
 
-#: After so many findings in one run a target is left alone.
-ENOUGH = 5
+#: A run of a target ends after this many findings.
+MAX_FINDINGS = 5
 
 _COVERAGE = re.compile(r"cov: (\d+) ft:")
 _COUNT = re.compile(r"stat::number_of_executed_units: (\d+)")
@@ -58,7 +58,7 @@ class Guided:
         """Run until a moment of the monotonic clock, again after each finding."""
         total, clock = Outcome(), CpuClock()
         ended = 0
-        while ended < ENOUGH and until - time.monotonic() > 1:
+        while ended < MAX_FINDINGS and until - time.monotonic() > 1:
             one = self._once(seed + 100 * ended, until)
             ended += 1
             total.executions += one.executions

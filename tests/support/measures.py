@@ -37,8 +37,8 @@ SAID_IN_SINGLE = frozenset({"crossing_in_single"})
 #: The codes of findings that name vertices in one place.
 CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact", "given_contact"})
 
-#: The largest share of meshes that may cross, though a finding says so.
-MOST_SAID = 0.01
+#: The largest share of meshes that may cross even if a finding reports it.
+MAX_REPORTED_SHARE = 0.01
 
 
 def crossings(rounds: int) -> Measured:
@@ -74,7 +74,7 @@ def crossings(rounds: int) -> Measured:
             if crosses and not is_said:
                 failed.append(Failure(seed, f"a crossing {place} that nothing tells of"))
     for what, count in counts.items():
-        if what.endswith("said") and count > MOST_SAID * counts["meshes"]:
+        if what.endswith("said") and count > MAX_REPORTED_SHARE * counts["meshes"]:
             failed.append(Failure(rounds, f"{count} meshes of {counts['meshes']} cross {what}"))
     return failed, dict(counts)
 
