@@ -17,8 +17,8 @@ from ...errors import format_errors
 from ..syntax.arguments import Arguments
 from .tessellation import Fineness
 
-#: Blocks in blocks in blocks: deeper ones are left out.
-_DEEPEST_BLOCK = 16
+#: The largest number of blocks inside one another; deeper ones are left out.
+_MAX_BLOCK_DEPTH = 16
 
 #: Ends of lines closer than this are one corner.
 _JOINED = 2.0**-10
@@ -138,7 +138,7 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
             raise ValueError("its blocks hold too much")
         if entity is None:
             waiting.pop()
-        elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _DEEPEST_BLOCK):
+        elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _MAX_BLOCK_DEPTH):
             lost.add(entity.dxftype())
         elif entity.dxftype() == "INSERT":
             # OpenSCAD knows no rows of them.
