@@ -21,8 +21,8 @@ from .viewer.layer import Layer, drawn_points
 from .viewer.still import camera_for, rings, still
 from .wording import NOTHING, number, vector, whole
 
-#: Characters of a page above which browsers take seconds to open it.
-_PAGE = 20_000_000
+#: The largest number of characters of a page: browsers take seconds to open a longer one.
+_MAX_PAGE_CHARACTERS = 20_000_000
 
 _FILES = ("page.css", "report.css", "loader.js", "table.js")
 
@@ -101,7 +101,7 @@ class CheckPage:
 
     def __init__(self, files: int, thin: float | None = None) -> None:
         spent = len(bundle()) + sum(len(asset(name)) for name in _FILES)
-        self._purse = Purse(files, spent, _PAGE)
+        self._purse = Purse(files, spent, _MAX_PAGE_CHARACTERS)
         self._thin = thin
         self._sheets: list[Sheet] = []
 

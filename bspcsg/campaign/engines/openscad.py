@@ -23,8 +23,8 @@ _PLANE_GRID = 2.0**-16
 #: OpenSCAD is not asked about more triangles than this: its exact engine takes minutes for them.
 _MAX_TRIANGLES = 3000
 
-#: Seconds in which it says its version.
-_PATIENCE = 30
+#: The longest time for OpenSCAD to print its version, in seconds.
+_VERSION_TIMEOUT = 30
 
 
 def ask_openscad(question: Question) -> EngineAnswer:
@@ -66,7 +66,7 @@ def _polyhedron(mesh: Mesh) -> str:
 def _scad_version() -> str:
     if shutil.which("openscad") is None:
         raise NoOpinionError("openscad is not on the PATH")
-    done = _ran(["openscad", "--version"], _PATIENCE)
+    done = _ran(["openscad", "--version"], _VERSION_TIMEOUT)
     return (done.stderr or done.stdout).strip().rpartition(" ")[2]
 
 

@@ -29,8 +29,8 @@ _IDLE_TIMEOUT = 30
 #: The largest number of files that are watched for changes.
 _MAX_FILES_WATCHED = 2000
 
-#: Seconds between two looks at whether the server has to end.
-_LOOK = 0.2
+#: The time between two checks of whether the server has to end, in seconds.
+_POLL_INTERVAL = 0.2
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class LiveServer(ThreadingHTTPServer):
     def serve(self) -> None:
         """Answer until Ctrl-C."""
         with contextlib.suppress(KeyboardInterrupt):
-            self.serve_forever(_LOOK)
+            self.serve_forever(_POLL_INTERVAL)
         self.server_close()
 
 
