@@ -28,11 +28,11 @@ def listed(values: npt.NDArray[Any]) -> Iterator[Any]:
         yield from values[block].tolist()
 
 
-#: Lines of text that are handed on together: some hundred thousand bytes.
-_LINES = 1 << 12
+#: The number of lines of text that are handed on together: some hundred thousand bytes.
+_LINES_PER_CHUNK = 1 << 12
 
 
 def encoded_lines(lines: Iterator[str]) -> Iterator[bytes]:
     """Yield lines of text, many at a time."""
-    while together := "".join(itertools.islice(lines, _LINES)):
+    while together := "".join(itertools.islice(lines, _LINES_PER_CHUNK)):
         yield together.encode()

@@ -188,11 +188,11 @@ def size_of(file: BinaryIO) -> int:
     return file.seek(0, os.SEEK_END)
 
 
-#: More bytes than the lines between two blocks of numbers have.
-_LINES = 1 << 12
+#: The lines between two blocks of numbers have fewer bytes than this.
+_MAX_LINE_BYTES = 1 << 12
 
 
-def text_at(file: BinaryIO, start: int, count: int = _LINES) -> bytes:
+def text_at(file: BinaryIO, start: int, count: int = _MAX_LINE_BYTES) -> bytes:
     """Return bytes of a file: unless told, enough for all lines before the next numbers."""
     file.seek(start)
     return file.read(count)

@@ -24,11 +24,11 @@ def archive(file: BinaryIO) -> list[Held]:
 def _read(archive: zipfile.ZipFile, name: str) -> bytes:
     """Return a part, whose sum is checked; by pieces, so that a signal is heard between them."""
     with archive.open(name) as part:
-        return b"".join(iter(lambda: part.read(_PIECE), b""))
+        return b"".join(iter(lambda: part.read(_CHUNK_BYTES), b""))
 
 
-#: Bytes that are unpacked at once.
-_PIECE = 1 << 20
+#: The number of bytes that are unpacked at a time.
+_CHUNK_BYTES = 1 << 20
 
 
 def _objects(model: bytes) -> Iterator[Held]:
