@@ -44,14 +44,14 @@ MAX_SECONDS = 10**6
 #: The highest dimension: trees divide lines, planes and spaces.
 _MAX_DIMENSION = 3
 
-#: Messages do not spell out larger numbers.
-_COUNTABLE = 10**15
+#: Messages show all digits of smaller numbers than this.
+_MAX_COUNT_SHOWN = 10**15
 
-#: Letters of a value that a message repeats.
-_LONGEST = 80
+#: The largest number of characters of a value that a message quotes.
+_MAX_VALUE_CHARACTERS = 80
 
 #: Seeds are taken modulo this.
-_SEEDS = 2**64
+_SEED_MODULUS = 2**64
 
 _Kind = TypeVar("_Kind")
 
@@ -148,7 +148,7 @@ def sides_around(least: int, value: Any, name: str) -> int:
 def refuse_many_corners(count: float, what: str) -> None:
     """Raise `LimitError` if a body would have more than `MAX_CORNERS` corners."""
     if count > MAX_CORNERS:
-        amount = f"{count:.0f}" if count < _COUNTABLE else "far too many"
+        amount = f"{count:.0f}" if count < _MAX_COUNT_SHOWN else "far too many"
         message = f"{what} would have {amount} corners, and {MAX_CORNERS} are the most."
         raise LimitError(f"{message} Choose fewer sides.", "too_many")
 
@@ -315,7 +315,7 @@ def set_threads(n: int) -> None:
 
 def seed_number(value: Any) -> int:
     """Return what names a random order: a whole number from 0 on, below 2**64."""
-    return at_least(0, value, "seed") % _SEEDS
+    return at_least(0, value, "seed") % _SEED_MODULUS
 
 
 def winding_rule(value: Any) -> "WindingRule":
@@ -344,7 +344,11 @@ def shown(value: Any) -> str:
         text = repr(value)
     except ValueError:  # an integer of thousands of digits
         return "a number of thousands of digits"
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST // 2]}...{text[-_LONGEST // 2 :]}"
+    return (
+        text
+        if len(text) <= _MAX_VALUE_CHARACTERS
+        else f"{text[: _MAX_VALUE_CHARACTERS // 2]}...{text[-_MAX_VALUE_CHARACTERS // 2 :]}"
+    )
 
 
 def _is_truth_value(value: Any) -> bool:

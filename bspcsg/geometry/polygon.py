@@ -263,15 +263,15 @@ def _contains(outer: FloatArray, inner: FloatArray) -> bool:
     is_near = ((probes >= outer.min(axis=0)) & (probes <= outer.max(axis=0))).all(axis=1)
     if 2 * is_near.sum() <= len(probes):
         return False
-    together = max(1, _PAIRS // len(outer))
+    together = max(1, _PAIRS_PER_BATCH // len(outer))
     near = probes[is_near]
     parts = [near[start : start + together] for start in range(0, len(near), together)]
     inside = sum(int((_crossings(outer, part) % 2).sum()) for part in parts)
     return 2 * inside > len(probes)
 
 
-#: Pairs of a point and an edge that are looked at together.
-_PAIRS = 1 << 16
+#: The number of pairs of a point and an edge that are computed together, which bounds the memory.
+_PAIRS_PER_BATCH = 1 << 16
 
 
 def _crossings(contour: FloatArray, points: FloatArray) -> IndexArray:

@@ -52,8 +52,9 @@ class Pitches(Last[int, Tree]):
             return self.keep(pitch, tree.refined(pitch))
 
 
-#: The fewest steps across a mesh that may be rounded for others: import takes no fewer, either.
-_FEWEST_STEPS = 10**6
+#: The smallest number of lattice steps across a mesh whose corners may be rounded to the lattice of
+#: other operands. Import uses no fewer either.
+_MIN_STEPS_ACROSS = 10**6
 
 
 class MeshLeaf:
@@ -142,7 +143,7 @@ class MeshLeaf:
         """
         vertices, faces = self.arrays()
         is_exact = np.array_equal(np.round(vertices, -pitch), vertices)
-        if not is_exact and np.ptp(vertices, axis=0).max() < _FEWEST_STEPS * 10.0**pitch:
+        if not is_exact and np.ptp(vertices, axis=0).max() < _MIN_STEPS_ACROSS * 10.0**pitch:
             return None
         leaf = MeshLeaf(vertices, faces, pitch, False, self._winding)
         leaf._content = replace(self._settled(), arrays=(vertices, faces))

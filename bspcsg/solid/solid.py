@@ -57,8 +57,9 @@ from .profile import Profile
 from .program import Operator
 from .sayings import Sayings, later_attributes, said_of
 
-#: Faces of results whose mesh is made for `repr`: that takes some hundredths of a second.
-_SMALL = 20_000
+#: The largest number of faces of a result whose mesh is made for `repr`, which takes some
+#: hundredths of a second.
+_MAX_FACES_FOR_REPR = 20_000
 
 
 @owning
@@ -502,7 +503,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             return self._mesh
         stats = leaf.result.stats()
         # What was moved or read back has no record of the kernels.
-        if stats["elements"] + stats.get("kernel_elements", 0) > _SMALL:
+        if stats["elements"] + stats.get("kernel_elements", 0) > _MAX_FACES_FOR_REPR:
             return None
         try:
             return self.to_mesh()

@@ -18,8 +18,8 @@ _Points: TypeAlias = np.ndarray[Any, Any]
 #: The largest number of chords of a curve.
 _MAX_CHORDS = 1 << 12
 
-#: Points that are looked at together.
-_TOGETHER = 1 << 16
+#: The number of points that are computed together, which bounds the memory.
+_POINTS_PER_BATCH = 1 << 16
 
 
 class Cubics(NamedTuple):
@@ -136,7 +136,7 @@ def _shares(count: int) -> FloatArray:
 
 def _some(which: IndexArray, points: int) -> Iterator[IndexArray]:
     """Yield as many of some curves as are looked at together, each with so many points."""
-    size = max(1, _TOGETHER // points)
+    size = max(1, _POINTS_PER_BATCH // points)
     return (which[start : start + size] for start in range(0, len(which), size))
 
 

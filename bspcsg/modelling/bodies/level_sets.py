@@ -22,8 +22,8 @@ Field: TypeAlias = Callable[[FloatArray], Any]
 #: is made of it.
 _MAX_SAMPLE_POINTS = 50_000_000
 
-#: Points of one call of the function.
-_AT_ONCE = 1 << 20
+#: The number of points in one call of the function.
+_POINTS_PER_CALL = 1 << 20
 
 #: Corners of the quadrilateral between two middles along each axis, as steps from a corner.
 _AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
@@ -142,8 +142,8 @@ class _Grid:
         """Return the function at all points; beyond the box that of the nearest point in it."""
         total = self._first_middle + int(np.prod(self._middles))
         found = np.empty(total)
-        for start in range(0, total, _AT_ONCE):
-            numbers = np.arange(start, min(start + _AT_ONCE, total))
+        for start in range(0, total, _POINTS_PER_CALL):
+            numbers = np.arange(start, min(start + _POINTS_PER_CALL, total))
             points = np.clip(self.points(numbers), low, high)
             found[numbers] = _asked(f, points)
         return found

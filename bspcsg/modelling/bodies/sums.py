@@ -30,8 +30,9 @@ _LARGER, _MOVED = 1e-9, 4
 #: The largest number of pairs of faces of two solids that are not convex: more would take hours.
 _MAX_FACE_PAIRS = 4_000_000
 
-#: So many sums are united at once: the result has less surface than all of them.
-_AT_ONCE = 64
+#: The number of sums that are united together: the result has less surface than all of them, so
+#: this bounds the memory.
+_SUMS_PER_UNION = 64
 
 
 @overload
@@ -158,8 +159,8 @@ def _swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
     combined = setops.intersection if is_inside else setops.union
     hulls = (hull_of(part, tool.pitch) for part in convex_parts(tool))
     sums = (swept(solid, hull, is_inside) for hull in hulls if not hull.is_empty)
-    found = combined(islice(sums, _AT_ONCE))
-    while more := list(islice(sums, _AT_ONCE)):
+    found = combined(islice(sums, _SUMS_PER_UNION))
+    while more := list(islice(sums, _SUMS_PER_UNION)):
         found = combined(found.normalized(), *more)
     return found
 

@@ -34,8 +34,9 @@ from .stages import carried, ready, refused
 #: The largest number of edges in one call. Each adds a mesh and four half-spaces to one expression.
 _MAX_EDGES = 10_000
 
-#: A share of the size; stations that are nearer to each other do not tell the edge's direction.
-_SHORTEST = 1e-6
+#: The smallest distance between two stations, as a share of the size of the blend: nearer ones do
+#: not show the direction of the edge.
+_MIN_STATION_GAP = 1e-6
 
 #: The least sine between an edge and a plane at its end: the cutter must reach a hundred times as
 #: far beyond the end as it is wide.
@@ -262,7 +263,7 @@ class _Blend:
     def _prism(self, edge: int) -> Solid:
         arcs = [self._snapped(self._station(edge, place)) for place in (0, 1)]
         rings = np.array([self._ring(edge, arc) for arc in arcs])
-        if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _SHORTEST * self.profile.size:
+        if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _MIN_STATION_GAP * self.profile.size:
             # Nothing is left between the balls at both ends.
             rings[1] = rings[0] + self.profile.size * self.skeleton.directions[edge]
         step = rings[1] - rings[0]
