@@ -97,7 +97,9 @@ def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
             seen |= inner
             waiting.extend(inner)
             continue
-        names.update(name for said in content.sayings if said is not None for name in said.names)
+        names.update(
+            name for said in content.source_attributes if said is not None for name in said.names
+        )
     if not names:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(names))

@@ -12,7 +12,7 @@ from ...mesh.crossing import Crossings, crossings
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
 from ...solid.counting import counted
-from ...solid.moving import SaidMesh
+from ...solid.moving import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 
 #: A function of all corners at once: (n, 3) float64 to the same shape.
@@ -35,7 +35,7 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     if len(mesh.faces) == 0:
         return solid
     said = None if mesh.carried is None else mesh.attributes.without(NORMALS)
-    moved = SaidMesh(_moved(f, mesh.vertices), mesh.faces, said)
+    moved = AttributedMesh(_moved(f, mesh.vertices), mesh.faces, said)
     if rule is None:
         moved = _uncrossed(moved, mesh.vertices, given_pitch(solid))
     pitch = moved.held_pitch(given_pitch(solid))
@@ -44,7 +44,7 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     )
 
 
-def _uncrossed(moved: SaidMesh, before: FloatArray, given: int | None) -> SaidMesh:
+def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> AttributedMesh:
     """Return a mesh that does not cross itself, given its vertices before they were moved.
 
     Surfaces that touched are mended where rounding makes them cross; more is refused.
