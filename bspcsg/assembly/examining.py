@@ -101,7 +101,7 @@ def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
         return []
     owner = np.repeat(np.arange(len(parts)), counts)
     group = _surfaces(raw, owner, len(parts))
-    names = _told_apart([name or f"part {number}" for number, (name, _) in enumerate(parts, 1)])
+    names = _with_numbers([name or f"part {number}" for number, (name, _) in enumerate(parts, 1)])
     found = []
     for one in dict.fromkeys(group.tolist()):
         members = np.flatnonzero(group == one)
@@ -127,13 +127,14 @@ def _surfaces(raw: RawMesh, owner: IndexArray, count: int) -> IndexArray:
     return surfaces_of(np.concatenate([alone, links])[:, [0, 1, 1]], count)[:count]
 
 
-def _told_apart(names: Sequence[str]) -> list[str]:
+def _with_numbers(names: Sequence[str]) -> list[str]:
+    """Return the names; one that repeats an earlier name gets a number."""
     seen: Counter[str] = Counter()
-    told = []
+    numbered = []
     for name in names:
         seen[name] += 1
-        told.append(f"{name} ({seen[name]})" if seen[name] > 1 else name)
-    return told
+        numbered.append(f"{name} ({seen[name]})" if seen[name] > 1 else name)
+    return numbered
 
 
 def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> Iterator[Finding]:

@@ -13,7 +13,7 @@ from ..blocks import OF_FILE, blocks
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class StoredMesh:
     """One object as it stands in a file.
 
     Parameters
@@ -40,7 +40,7 @@ class Held:
             return False
         return bool((self.faces == faces).all() and (self.vertices == vertices).all())
 
-    def loaded(self) -> "Held":
+    def loaded(self) -> "StoredMesh":
         """Return it with all of its numbers in memory, where they are."""
         return self
 
@@ -133,7 +133,7 @@ class Rows:
 
 
 @dataclass(frozen=True, eq=False)
-class HeldRows:
+class StoredRows:
     """One object whose numbers are still in the file.
 
     Parameters
@@ -162,11 +162,11 @@ class HeldRows:
         self.check_end()
         return found
 
-    def loaded(self) -> Held:
+    def loaded(self) -> StoredMesh:
         """Return it with all of its numbers in memory."""
         vertices, faces = self.vertices.everything(), self.faces.everything()
         self.check_end()
-        return Held(vertices, faces, self.name)
+        return StoredMesh(vertices, faces, self.name)
 
     def check_end(self) -> None:
         """Refuse a file that goes on where it should end."""

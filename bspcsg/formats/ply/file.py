@@ -79,7 +79,9 @@ def read(source: Source) -> RawMesh:
         raise source.error("this PLY has no vertices with x, y and z.", line=header.lines)
     if found.polygons is None or found.polygon_error is None:
         raise source.error("this PLY has no face lists.", line=header.lines)
-    faces, said = _said(found, found.polygons, found.vertices, found.polygon_error)
+    faces, said = _triangles_and_attributes(
+        found, found.polygons, found.vertices, found.polygon_error
+    )
     dropped = (*_more_than_a_shape(header, said, found.element), *found.polygons.dropped)
     told = (*_no_statements(header), *rest)
     return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=said)
@@ -92,7 +94,7 @@ def _no_statements(header: Header) -> tuple[Finding, ...]:
     return (Finding("ignored", "warning", message, header.unknown[:1], len(header.unknown)),)
 
 
-def _said(
+def _triangles_and_attributes(
     found: _Found,
     polygons: IndexPolygons,
     vertices: FloatArray,

@@ -147,7 +147,7 @@ class Objects:
 
     def _evaluated(self, path: str, item: str) -> RawMesh:
         here = PlacedObject("", item, np.eye(4, 3))
-        with self._told(item):
+        with self._errors_with_name(item):
             mesh = self._solid(path, here, 0)[0].normalized().to_mesh()
         is_nothing = len(mesh.faces) == 0
         return RawMesh(mesh.vertices, mesh.faces, attributes=said_of(mesh), is_empty_set=is_nothing)
@@ -170,7 +170,7 @@ class Objects:
 
     def _combined(self, path: str, item: str, depth: int) -> tuple[Solid, int]:
         shape = held(self._package.part(path).objects[item].shape, "the shape")
-        with self._told(item):
+        with self._errors_with_name(item):
             parts = [self._solid(path, one, depth + 1) for one in (shape.base, *shape.operands)]
         triangles = sum(count for _, count in parts)
         if triangles > _MAX_BOOLEAN_TRIANGLES:
@@ -185,11 +185,11 @@ class Objects:
 
     def _meshed(self, path: str, item: str, _: int) -> tuple[Solid, int]:
         mesh = self.mesh(path, item)
-        with self._told(item):
+        with self._errors_with_name(item):
             return solid_with(mesh.vertices, mesh.faces, mesh.attributes), len(mesh.faces)
 
     @contextmanager
-    def _told(self, item: str) -> Iterator[None]:
+    def _errors_with_name(self, item: str) -> Iterator[None]:
         """Let errors about the shape of an object name the file and the object."""
         try:
             yield

@@ -89,7 +89,7 @@ class Package:
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False
-        with _damage_told(self.source), self._archive.open(entry) as stream:
+        with _damage_as_error(self.source), self._archive.open(entry) as stream:
             return stream.read(len(NOTHING) + 1) == NOTHING
 
     def named(self, pattern: re.Pattern[str]) -> list[str]:
@@ -126,7 +126,7 @@ class Package:
 
     def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
         """Yield the bytes of a part, which may be others than the directory promises."""
-        with _damage_told(self.source), self._archive.open(entry) as stream:
+        with _damage_as_error(self.source), self._archive.open(entry) as stream:
             while chunk := stream.read(_CHUNK_BYTES):
                 self._left -= len(chunk)
                 if self._left < 0:
@@ -154,14 +154,14 @@ def opened(source: Source) -> Iterator[Package]:
     if source.data.count(_ENTRY) > _MAX_PARTS:
         message = f"the archive has more than {_MAX_PARTS:,} parts."
         raise source.error(message, "too_large")
-    with _damage_told(source):
+    with _damage_as_error(source):
         archive = zipfile.ZipFile(io.BytesIO(source.data))
     with archive:
         yield Package(source, archive)
 
 
 @contextmanager
-def _damage_told(source: Source) -> Iterator[None]:
+def _damage_as_error(source: Source) -> Iterator[None]:
     """Tell of an archive that cannot be unpacked; what is said in it is no matter of this."""
     try:
         yield
