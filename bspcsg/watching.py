@@ -130,9 +130,9 @@ def progress(
     bar = _Bar(steps)
     told = bar.tell if tell is None else function_of(tell, "tell")
     pause, began = not_negative(every, "every"), time.monotonic()
-    look = _Look(told, pause, began)
-    steps.told_to(look)
-    before = watch(look)
+    paced = _PacedCall(told, pause, began)
+    steps.told_to(paced)
+    before = watch(paced)
     try:
         yield steps
     finally:
@@ -141,7 +141,7 @@ def progress(
             bar.end(time.monotonic() - began)
 
 
-class _Look:
+class _PacedCall:
     """The call of a function at times, not inside of itself."""
 
     def __init__(self, told: Callable[[float], object], pause: float, began: float) -> None:

@@ -38,7 +38,7 @@ def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
     )
     said = _said_of(mesh, "trimesh")
     if said is not None:
-        _Dressing(made, said).run()
+        _TrimeshAttributes(made, said).run()
     return made
 
 
@@ -58,7 +58,7 @@ def _tell(message: str, count: int) -> None:
     warn_of_losses([Finding("attributes_left_out", "warning", message, (), count)])
 
 
-class _Dressing:
+class _TrimeshAttributes:
     """The attributes of a trimesh: its visual, arrays by names, and the rest in its metadata."""
 
     def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:

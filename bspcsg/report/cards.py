@@ -68,7 +68,7 @@ class Card:
     note: str
 
 
-class Purse:
+class PageBudget:
     """The characters that may still be spent on cards.
 
     Parameters
@@ -110,7 +110,7 @@ def _urgency(case: CaseRecord) -> tuple[bool, bool, int, float, str]:
     return not failed, unseen and not failed, rank(case), -doubt, case["case"]
 
 
-def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Iterable[Card]:
+def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) -> Iterable[Card]:
     """Yield a card for each case; what does not fit is left out and said."""
     for number, case in enumerate(cases):
         address = f"case-{number + 1}"
@@ -123,9 +123,9 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Ite
         except BspcsgError as error:
             yield Card(address, case, tone(case["verdict"]), [], None, error.message)
             continue
-        purse.spend(sum(len(image) for figure in figures for image in figure.images))
-        model, note = model_within(stored.layers, purse.allowance())
-        purse.spend(len(model["data"]) if model else 0)
+        budget.spend(sum(len(image) for figure in figures for image in figure.images))
+        model, note = model_within(stored.layers, budget.allowance())
+        budget.spend(len(model["data"]) if model else 0)
         yield Card(address, case, tone(case["verdict"]), figures, model, note)
 
 

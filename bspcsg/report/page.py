@@ -7,7 +7,7 @@ from typing import Any
 from ..campaign.record import CaseRecord, FactsRecord, Results, is_failure
 from ..campaign.summary import counts_by_verdict
 from .assets import asset, bundle, rendered
-from .cards import Purse, cards_of, picked
+from .cards import PageBudget, cards_of, picked
 from .charts import Chart, share_below
 from .merging import ordered, versions_of
 from .table import table
@@ -74,7 +74,7 @@ def report_page(
         columns=columns,
         rows=rows,
         operations=sorted({case["operation"] for case in cases}),
-        cards=list(cards_of(watch(chosen), results, Purse(len(chosen), spent))),
+        cards=list(cards_of(watch(chosen), results, PageBudget(len(chosen), spent))),
         total=len(cases),
         facts=_facts,
         number=number,

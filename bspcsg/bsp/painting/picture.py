@@ -124,30 +124,30 @@ class _LargePicture(Picture):
     Parameters
     ----------
     scene : Triangles
-    looks : Looks
+    settings : Looks
     """
 
     _scene: Triangles
-    _looks: "_Looks"
+    _settings: "_PictureSettings"
 
-    def __init__(self, scene: Triangles, looks: "_Looks") -> None:
+    def __init__(self, scene: Triangles, settings: "_PictureSettings") -> None:
         names = ("background", "line_width", "samples")
-        self.__dict__.update({name: getattr(looks, name) for name in names})
-        self.__dict__.update(_scene=scene, _looks=looks)
+        self.__dict__.update({name: getattr(settings, name) for name in names})
+        self.__dict__.update(_scene=scene, _settings=settings)
 
     @cached_property
     def painting(self) -> Painting:
         """Polygons in pixels, the farthest first."""
         scene = self._scene
-        return _ordered(_facets((scene.vertices, scene.faces)), None, scene.colours, self._looks)
+        return _ordered(_facets((scene.vertices, scene.faces)), None, scene.colours, self._settings)
 
     @cached_property
     def png(self) -> bytes:
         """The picture as a PNG file; needs Pillow."""
-        looks = self._looks
-        size = canvas_size(looks.frame, self.samples)
+        settings = self._settings
+        size = canvas_size(settings.frame, self.samples)
         line = line_samples(self.line_width, self.samples)
-        seen = raster(self._scene, looks.camera, size, line=line, **looks.ways)
+        seen = raster(self._scene, settings.camera, size, line=line, **settings.ways)
         return png_of_samples(*seen, self.background, self.samples)
 
     @property
@@ -158,11 +158,11 @@ class _LargePicture(Picture):
     @property
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
-        return self._looks.frame
+        return self._settings.frame
 
 
 @dataclass(frozen=True)
-class _Looks:
+class _PictureSettings:
     """How a scene is to be seen, all of it checked."""
 
     camera: Camera
@@ -260,7 +260,7 @@ def picture(
     facets, mesh = _shapes_of(scene)
     points, count = (facets.corners, len(facets)) if mesh is None else (mesh[0], len(mesh[1]))
     base = colours(DEFAULT if colors is None else colors, count, "colors")
-    looks = _Looks(
+    settings = _PictureSettings(
         _camera(camera, view, points, frame),
         frame,
         style,
@@ -271,27 +271,27 @@ def picture(
         positive(line_width, "line_width"),
         at_least(1, samples, "samples"),
     )
-    if mesh is not None and style != "edges" and in_front(points, looks.camera):
-        return _LargePicture(Triangles(*mesh, base), looks)
+    if mesh is not None and style != "edges" and in_front(points, settings.camera):
+        return _LargePicture(Triangles(*mesh, base), settings)
     tree = scene if isinstance(scene, PartitionTree) else None
-    painting = _ordered(facets, tree, base, looks)
-    return Picture(painting, looks.background, looks.line_width, looks.samples)
+    painting = _ordered(facets, tree, base, settings)
+    return Picture(painting, settings.background, settings.line_width, settings.samples)
 
 
 def _ordered(
-    facets: Facets, tree: PartitionTree | None, base: ColourArray, looks: _Looks
+    facets: Facets, tree: PartitionTree | None, base: ColourArray, settings: _PictureSettings
 ) -> Painting:
     """Return the polygons of a scene from back to front."""
-    camera, style = looks.camera, looks.style
+    camera, style = settings.camera, settings.style
     front = facing(facets, camera)
-    scene = Scene(facets, base, _drawn(facets, front, style, looks.edges, looks.crease))
-    culled = _is_culled(facets, camera, style) if looks.cull is None else looks.cull
+    scene = Scene(facets, base, _drawn(facets, front, style, settings.edges, settings.crease))
+    culled = _is_culled(facets, camera, style) if settings.cull is None else settings.cull
     hidden = ~front if culled else None
     if tree is None and hidden is not None:
         scene, hidden = scene.take(np.flatnonzero(front)), None
     if tree is None:
         tree = _tree(scene.facets)
-    return painted(tree, scene, camera, looks.frame, style, hidden)
+    return painted(tree, scene, camera, settings.frame, style, hidden)
 
 
 def _camera(

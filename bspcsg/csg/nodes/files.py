@@ -90,7 +90,7 @@ def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Regi
         dpi = _DEFAULT_DPI
     lost = LeftOut()
     region = svg_region(path, dpi, arguments.flag("center"), lost)
-    return _told(owner, run, arguments.text("file"), lost, region)
+    return _with_warning(owner, run, arguments.text("file"), lost, region)
 
 
 def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: float) -> Region:
@@ -98,10 +98,10 @@ def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: 
     layer = arguments.text("layer", "")
     lost = LeftOut()
     region = dxf_region(path, layer, np.array(origin), scale, arguments, lost)
-    return _told(owner, run, arguments.text("file"), lost, region)
+    return _with_warning(owner, run, arguments.text("file"), lost, region)
 
 
-def _told(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
+def _with_warning(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
     """Return the region of a drawing; the caller is told what it lacks."""
     words = lost.words(region)
     if words:

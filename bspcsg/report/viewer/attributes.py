@@ -45,7 +45,7 @@ def _each(said: Attributes) -> Iterator[Paint | None]:
 def _materials(said: Attributes) -> Labels:
     names, numbers = np.unique(said.face["material"], return_inverse=True)
     used = [said.materials.get(name, _PLAIN) for name in names.tolist()]
-    colours = [_told(material.color) for material in used]
+    colours = [_hexadecimal(material.color) for material in used]
     labels = [name or "no material" for name in names.tolist()]
     has_images = said.kind_of("uv") not in (None, "face") and any(one.texture for one in used)
     if not has_images:
@@ -73,6 +73,6 @@ def _scale(name: str, values: Values) -> Paint | None:
     return Scale(name, numbers, DISTANCE)
 
 
-def _told(colour: tuple[float, ...]) -> str:
+def _hexadecimal(colour: tuple[float, ...]) -> str:
     """Return a colour of four numbers as ``"#rrggbb"``, or ``"#rrggbbaa"`` if it is not opaque."""
     return hexadecimal(colour[:3] if round(colour[3] * 255) == 255 else colour)
