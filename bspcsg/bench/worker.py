@@ -30,8 +30,9 @@ _REPORT_INTERVAL = 0.5
 #: share of the run.
 _MIN_RUN_SECONDS = 0.02
 
-#: Half the steps around the thousandth, and the last steps, that the times of steps are taken over.
-_WINDOW = 100
+#: The time of a step is the median over this many steps at the beginning and at the end, and over
+#: twice as many around the thousandth.
+_WINDOW_STEPS = 100
 
 
 @dataclass(frozen=True)
@@ -225,9 +226,9 @@ def _of_process(outcome: Outcome) -> dict[str, float]:
 
 def _windows(steps: list[float]) -> dict[str, float]:
     """Return the median times of the first, the thousandth and the last steps."""
-    found = {"first": median(steps[:_WINDOW]), "last": median(steps[-_WINDOW:])}
-    if len(steps) >= 1000 + _WINDOW:
-        found["thousandth"] = median(steps[1000 - _WINDOW : 1000 + _WINDOW])
+    found = {"first": median(steps[:_WINDOW_STEPS]), "last": median(steps[-_WINDOW_STEPS:])}
+    if len(steps) >= 1000 + _WINDOW_STEPS:
+        found["thousandth"] = median(steps[1000 - _WINDOW_STEPS : 1000 + _WINDOW_STEPS])
     return found
 
 

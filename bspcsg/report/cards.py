@@ -14,20 +14,21 @@ from .viewer.packing import packed
 from .viewer.still import camera_for, rings, still
 from .wording import tone, whole
 
-#: Characters of a page with so many cards; a page with more cards may be longer in proportion.
-_PAGE, _CARDS = 1_450_000, 40
+#: The number of characters that a page with so many cards may have. A page with more cards may be
+#: longer in proportion.
+_PAGE_CHARACTERS, _CARDS_PER_PAGE = 1_450_000, 40
 
-#: Share of the page that cards have even if the table is long.
-_LEAST_SHARE = 0.3
+#: The smallest share of a page that is left for cards if the table is long.
+_MIN_CARD_SHARE = 0.3
 
 #: Cells a side that a view is simplified to, until it fits.
 _CELLS = (128, 64, 40, 24)
 
-#: Characters of the pictures of one card, about.
-_PICTURES = 10_000
+#: About the number of characters of the pictures of one card.
+_PICTURE_CHARACTERS = 10_000
 
-#: The most that one view may take, in shares of what is left.
-_GENEROSITY = 2
+#: The largest size of one view, in equal shares of the characters that are left.
+_MAX_VIEW_SHARES = 2
 
 
 @dataclass(frozen=True)
@@ -82,8 +83,8 @@ class PageBudget:
 
     def __init__(self, cards: int, spent: int, page: float | None = None) -> None:
         self._cards = cards
-        page = _PAGE * max(1.0, cards / _CARDS) if page is None else page
-        self.left = max(page - spent, _LEAST_SHARE * page)
+        page = _PAGE_CHARACTERS * max(1.0, cards / _CARDS_PER_PAGE) if page is None else page
+        self.left = max(page - spent, _MIN_CARD_SHARE * page)
 
     def spend(self, characters: int) -> None:
         """Take so many out."""
@@ -93,8 +94,8 @@ class PageBudget:
         """Return what the view of the next card may take, when its pictures are paid for."""
         cards = max(self._cards, 1)
         self._cards = cards - 1
-        free = self.left - self._cards * _PICTURES
-        return min(free, _GENEROSITY * free / cards)
+        free = self.left - self._cards * _PICTURE_CHARACTERS
+        return min(free, _MAX_VIEW_SHARES * free / cards)
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:

@@ -13,8 +13,8 @@ from .merging import ordered, versions_of
 from .table import table
 from .wording import meaning, milliseconds, number, tone, vector, whole
 
-#: Characters of one card beside its pictures and its view, about.
-_CARD_TEXT = 4_000
+#: About the number of characters of one card without its pictures and its view.
+_CARD_TEXT_CHARACTERS = 4_000
 
 _FILES = ("page.css", "report.css", "loader.js", "table.js")
 
@@ -58,7 +58,11 @@ def report_page(
     columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
     # Each cell and row costs its tags besides its text.
     spent = sum(60 + sum(4 + len(cell) for cell in row.cells) for row in rows)
-    spent += len(bundle()) + sum(len(asset(name)) for name in _FILES) + _CARD_TEXT * len(chosen)
+    spent += (
+        len(bundle())
+        + sum(len(asset(name)) for name in _FILES)
+        + _CARD_TEXT_CHARACTERS * len(chosen)
+    )
     page = rendered(
         "report.html",
         title=title,

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from ..._core import are_words, numbers_in_rows, whole_numbers_in_rows
 from ..._types import IndexArray
-from ..blocks import OF_FILE, blocks
+from ..blocks import ROWS_PER_FILE_BLOCK, blocks
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,9 @@ class Rows:
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows are these."""
-        return all(self.hold(block, expected[block]) for block in blocks(self._count, OF_FILE))
+        return all(
+            self.hold(block, expected[block]) for block in blocks(self._count, ROWS_PER_FILE_BLOCK)
+        )
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows of a block, of numbers of eight bytes, are these, bit by bit."""

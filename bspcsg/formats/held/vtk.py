@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import vtk
-from ..blocks import OF_FILE, blocks
+from ..blocks import ROWS_PER_FILE_BLOCK, blocks
 from .layout import Rows, StoredMesh, StoredRows, header_of, piece, size_of, text_at
 
 _HEAD = re.compile(
@@ -54,11 +54,11 @@ def _behind(key: bytes, file: BinaryIO, at: int) -> int:
 
 def _check_triangles(offsets: Rows, kinds: Rows) -> None:
     """Refuse cells that are no triangles, one after another."""
-    for block in blocks(len(offsets), OF_FILE):
+    for block in blocks(len(offsets), ROWS_PER_FILE_BLOCK):
         rows = np.arange(*block.indices(len(offsets)), dtype=np.int64)
         if not offsets.hold(block, 3 * rows[:, None]):
             raise ValueError("a cell has not three corners")
-    for block in blocks(len(kinds), OF_FILE):
+    for block in blocks(len(kinds), ROWS_PER_FILE_BLOCK):
         data = kinds.data(block)
         if data != _KIND * (len(data) // len(_KIND)):
             raise ValueError("a cell is no triangle")

@@ -11,7 +11,7 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
-from ..blocks import OF_FILE, blocks, encoded_lines, listed
+from ..blocks import ROWS_PER_FILE_BLOCK, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, integral, quoted
@@ -428,7 +428,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield _header(mesh, "binary_little_endian")
     vertex, face, lists = _columns(mesh)
     row = np.dtype([("xyz", "<f8", 3), *_fields(vertex)])
-    for block in blocks(len(mesh.vertices), OF_FILE):
+    for block in blocks(len(mesh.vertices), ROWS_PER_FILE_BLOCK):
         points = np.empty(len(mesh.vertices[block]), row)
         points["xyz"] = mesh.vertices[block]
         _fill(points, vertex, block)
@@ -437,7 +437,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     for k, (_, values) in enumerate(lists):
         further += [(f"n{k}", "u1"), (f"l{k}", _little(values), values.shape[1:])]
     row = np.dtype([("count", "u1"), ("corners", "<i4", 3), *further])
-    for block in blocks(len(mesh.faces), OF_FILE):
+    for block in blocks(len(mesh.faces), ROWS_PER_FILE_BLOCK):
         records = np.empty(len(mesh.faces[block]), row)
         records["count"] = 3
         records["corners"] = mesh.faces[block]
