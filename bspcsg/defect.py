@@ -11,8 +11,9 @@ from ._core import ObjectTree, PanicException, Tree, __version__
 if TYPE_CHECKING:
     import zipfile
 
-#: A program that goes on after a defect may meet it often: a process writes no more reports.
-_MOST = 16
+#: The largest number of reports that one process writes: a program that continues after a defect
+#: may meet it often.
+_MAX_REPORTS = 16
 
 _numbers = itertools.count(1)
 
@@ -25,7 +26,7 @@ def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
     Nothing that goes wrong here becomes an error.
     """
     try:
-        return _written(message, call, inputs) if next(_numbers) <= _MOST else None
+        return _written(message, call, inputs) if next(_numbers) <= _MAX_REPORTS else None
     except Exception:
         return None
 

@@ -121,8 +121,8 @@ class InternalError(BspcsgError, RuntimeError):
 
 _Value = TypeVar("_Value")
 
-#: Most characters of another library's words that a message repeats.
-_LONGEST = 200
+#: The largest number of characters that a message quotes of another library's error.
+_MAX_QUOTED_CHARACTERS = 200
 
 _CLASSES: dict[str, type[BspcsgError]] = {
     "forked": BspcsgError,
@@ -241,7 +241,7 @@ def held(value: _Value | None, name: str) -> _Value:
 def words_of(error: BaseException) -> str:
     """Return what another library's exception says: one printable line, not too long."""
     text = " ".join(str(error).split())
-    printable = "".join(letter for letter in text if letter.isprintable())[:_LONGEST]
+    printable = "".join(letter for letter in text if letter.isprintable())[:_MAX_QUOTED_CHARACTERS]
     return printable.rstrip(". ") or type(error).__name__
 
 

@@ -20,36 +20,38 @@ if TYPE_CHECKING:
 
 #: The largest exponent of the lattice step, either way: 10**22 is the last power of ten that is a
 #: double.
-MOST_PITCH = 22
+MAX_PITCH = 22
 
-#: Threads beyond which no machine goes: each has a stack of 64 MB, which makes 64 GB of addresses.
-MOST_THREADS = 1024
+#: The largest number of threads. Each has a stack of 64 MB, so this many take 64 GB of addresses.
+MAX_THREADS = 1024
 
-#: A circle of so many sides lies within 1.2e-9 of its radius of the true one, π²/2 / 2**32: more
-#: sides move no corner of a body of radius one by two steps of the lattice that it gets.
-MOST_SEGMENTS = 1 << 16
+#: The largest number of sides of a circle. This many lie within 1.2e-9 of the radius of the true
+#: circle, π²/2 / 2**32. In a body of radius one that is less than two steps of its lattice, so more
+#: sides would make it no rounder.
+MAX_SEGMENTS = 1 << 16
 
 #: Sides of a full circle, unless the caller says otherwise.
 SEGMENTS = 32
 
-#: Corners of one body. While its solid is made each takes some 600 bytes, all of them 2.4 GB.
-MOST_CORNERS = 4_000_000
+#: The largest number of corners of one body. Each takes some 600 bytes while the solid is made, all
+#: of them 2.4 GB.
+MAX_CORNERS = 4_000_000
 
-#: Seconds that may be asked for, some twelve days: a call of the system takes no more than 2**31
-#: milliseconds.
-MOST_SECONDS = 10**6
+#: The longest time that a caller may choose, in seconds: some twelve days. System calls take no
+#: more than 2**31 milliseconds.
+MAX_SECONDS = 10**6
 
-#: Trees divide lines, planes and spaces.
-_MOST_DIMENSIONS = 3
+#: The highest dimension: trees divide lines, planes and spaces.
+_MAX_DIMENSION = 3
 
-#: Messages do not spell out larger numbers.
-_COUNTABLE = 10**15
+#: Messages show all digits of smaller numbers than this.
+_MAX_COUNT_SHOWN = 10**15
 
-#: Letters of a value that a message repeats.
-_LONGEST = 80
+#: The largest number of characters of a value that a message quotes.
+_MAX_VALUE_CHARACTERS = 80
 
 #: Seeds are taken modulo this.
-_SEEDS = 2**64
+_SEED_MODULUS = 2**64
 
 _Kind = TypeVar("_Kind")
 
@@ -95,12 +97,12 @@ def not_negative(value: Any, name: str) -> float:
 
 
 def seconds(value: Any, name: str) -> float | None:
-    """Return a time above 0, up to `MOST_SECONDS`; None, as infinity does, stands for ever."""
+    """Return a time above 0, up to `MAX_SECONDS`; None, as infinity does, stands for ever."""
     if value is None or (isinstance(value, float) and value == math.inf):
         return None
     time = positive(value, name)
-    if time > MOST_SECONDS:
-        message = f"{name} must be {MOST_SECONDS} at most, or None, not {time:g}."
+    if time > MAX_SECONDS:
+        message = f"{name} must be {MAX_SECONDS} at most, or None, not {time:g}."
         raise invalid_parameter(message)
     return time
 
@@ -118,7 +120,7 @@ def at_least(least: int, value: Any, name: str) -> int:
 def dimension_number(value: Any) -> int:
     """Return 1, 2 or 3."""
     result = at_least(1, value, "dimension")
-    if result > _MOST_DIMENSIONS:
+    if result > _MAX_DIMENSION:
         raise invalid_parameter(f"dimension must be 1, 2 or 3, not {shown(value)}.")
     return result
 
@@ -131,12 +133,12 @@ def sides_around(least: int, value: Any, name: str) -> int:
     InvalidParameterError
         If it is no whole number, or fewer.
     LimitError
-        If it is beyond `MOST_SEGMENTS`.
+        If it is beyond `MAX_SEGMENTS`.
     """
     count = at_least(least, value, name)
-    if count > MOST_SEGMENTS:
+    if count > MAX_SEGMENTS:
         message = (
-            f"{name} must be {MOST_SEGMENTS} at most, not {shown(count)}: more sides are no"
+            f"{name} must be {MAX_SEGMENTS} at most, not {shown(count)}: more sides are no"
             " rounder, for corners lie on a lattice."
         )
         raise LimitError(message, "too_many")
@@ -144,10 +146,10 @@ def sides_around(least: int, value: Any, name: str) -> int:
 
 
 def refuse_many_corners(count: float, what: str) -> None:
-    """Raise `LimitError` if a body would have more than `MOST_CORNERS` corners."""
-    if count > MOST_CORNERS:
-        amount = f"{count:.0f}" if count < _COUNTABLE else "far too many"
-        message = f"{what} would have {amount} corners, and {MOST_CORNERS} are the most."
+    """Raise `LimitError` if a body would have more than `MAX_CORNERS` corners."""
+    if count > MAX_CORNERS:
+        amount = f"{count:.0f}" if count < _MAX_COUNT_SHOWN else "far too many"
+        message = f"{what} would have {amount} corners, and {MAX_CORNERS} are the most."
         raise LimitError(f"{message} Choose fewer sides.", "too_many")
 
 
@@ -278,9 +280,9 @@ def pitch_exponent(value: Any) -> int:
         raise invalid_parameter(
             f"pitch is the exponent of ten of the lattice step, a whole number, not {shown(value)}."
         )
-    if abs(result) > MOST_PITCH:
+    if abs(result) > MAX_PITCH:
         raise LimitError(
-            f"pitch must be from -{MOST_PITCH} to {MOST_PITCH}, not {shown(result)}.", "too_large"
+            f"pitch must be from -{MAX_PITCH} to {MAX_PITCH}, not {shown(result)}.", "too_large"
         )
     return result
 
@@ -293,9 +295,9 @@ def optional_pitch(value: Any) -> int | None:
 def thread_count(value: Any) -> int:
     """Return a number of threads, 0 for as many as there are processors."""
     result = _whole(value, "threads")
-    if result is None or not 0 <= result <= MOST_THREADS:
+    if result is None or not 0 <= result <= MAX_THREADS:
         raise invalid_parameter(
-            f"threads must be a whole number from 0 to {MOST_THREADS}, not {shown(value)}."
+            f"threads must be a whole number from 0 to {MAX_THREADS}, not {shown(value)}."
         )
     return result
 
@@ -313,7 +315,7 @@ def set_threads(n: int) -> None:
 
 def seed_number(value: Any) -> int:
     """Return what names a random order: a whole number from 0 on, below 2**64."""
-    return at_least(0, value, "seed") % _SEEDS
+    return at_least(0, value, "seed") % _SEED_MODULUS
 
 
 def winding_rule(value: Any) -> "WindingRule":
@@ -342,7 +344,11 @@ def shown(value: Any) -> str:
         text = repr(value)
     except ValueError:  # an integer of thousands of digits
         return "a number of thousands of digits"
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST // 2]}...{text[-_LONGEST // 2 :]}"
+    return (
+        text
+        if len(text) <= _MAX_VALUE_CHARACTERS
+        else f"{text[: _MAX_VALUE_CHARACTERS // 2]}...{text[-_MAX_VALUE_CHARACTERS // 2 :]}"
+    )
 
 
 def _is_truth_value(value: Any) -> bool:

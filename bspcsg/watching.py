@@ -11,8 +11,8 @@ from .parameters import at_least, function_of, not_negative
 #: Signs of a whole bar.
 _WIDTH = 30
 
-#: Seconds after which a bar appears, as short work needs none.
-_PATIENCE = 0.5
+#: A bar appears after this many seconds: short work needs none.
+_BAR_DELAY = 0.5
 
 
 class Steps:
@@ -54,7 +54,7 @@ class _Bar:
 
     def tell(self, seconds: float) -> None:
         """Write the line if somebody sees it, and it is time."""
-        if self._can_go_back and (self._shown or seconds >= _PATIENCE):
+        if self._can_go_back and (self._shown or seconds >= _BAR_DELAY):
             self._put(self._line(seconds))
 
     def end(self, seconds: float) -> None:
@@ -130,9 +130,9 @@ def progress(
     bar = _Bar(steps)
     told = bar.tell if tell is None else function_of(tell, "tell")
     pause, began = not_negative(every, "every"), time.monotonic()
-    look = _Look(told, pause, began)
-    steps.told_to(look)
-    before = watch(look)
+    paced = _PacedCall(told, pause, began)
+    steps.told_to(paced)
+    before = watch(paced)
     try:
         yield steps
     finally:
@@ -141,7 +141,7 @@ def progress(
             bar.end(time.monotonic() - began)
 
 
-class _Look:
+class _PacedCall:
     """The call of a function at times, not inside of itself."""
 
     def __init__(self, told: Callable[[float], object], pause: float, began: float) -> None:

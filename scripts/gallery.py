@@ -17,8 +17,8 @@ os.environ.setdefault("MPLBACKEND", "agg")
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 
-#: A block may have this many lines, beside imports and empty ones.
-LONGEST = 10
+#: The largest number of lines of a block, without imports and empty lines.
+MAX_BLOCK_LINES = 10
 
 
 def blocks() -> list[str]:

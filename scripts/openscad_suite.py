@@ -43,7 +43,7 @@ FOLDERS = (
 EXAMPLES = ("Old", "Basics", "Advanced", "Functions", "Parametric")
 
 #: The longest time for one script, in seconds.
-PATIENCE = 300
+TIMEOUT = 300
 
 _OPEN = "a lone polyhedron that is not closed: OpenSCAD writes its faces as they are"
 _GRID = "OpenSCAD moves corners of DXF files to multiples of 1/1024"
@@ -131,7 +131,7 @@ def asked(script: Path, target: Path) -> str:
     environment = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
     try:
         done = subprocess.run(
-            command, capture_output=True, errors="replace", timeout=PATIENCE, env=environment,
+            command, capture_output=True, errors="replace", timeout=TIMEOUT, env=environment,
             check=False,
         )  # fmt: skip
     except subprocess.TimeoutExpired:

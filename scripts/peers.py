@@ -28,8 +28,8 @@ FACES = np.array(
     + [[2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
 )
 
-#: Seconds after which a question counts as not answered.
-_PATIENCE = 120
+#: A question counts as not answered after this many seconds.
+_TIMEOUT = 120
 
 #: The number of times that the cube is cut by another and put together again.
 _ROUNDS = 10
@@ -198,7 +198,7 @@ def answers(name: str) -> Iterator[tuple[str, str]]:
         command = [sys.executable, __file__, "--ask", name, question]
         try:
             done = subprocess.run(
-                command, capture_output=True, text=True, timeout=_PATIENCE, check=False
+                command, capture_output=True, text=True, timeout=_TIMEOUT, check=False
             )
         except subprocess.TimeoutExpired:
             yield question, "no answer"

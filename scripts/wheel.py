@@ -39,8 +39,8 @@ TARGETS = {
     "musllinux-aarch64": ("aarch64-unknown-linux-musl", "musllinux_1_2"),
 }
 
-#: Seconds within which a user has a checked result, downloads included.
-PATIENCE = 60
+#: The longest time until a user has a checked result, downloads included, in seconds.
+MAX_SECONDS = 60
 
 #: No compilers are found here.
 _PLAIN_PATH = "/usr/bin:/bin"
@@ -233,10 +233,10 @@ def examined(kind: str, path: Path, tree: Path) -> Figures:
     print(
         f"  {trial.packages} packages of {trial.installed_megabytes:.0f} MB; first checked boolean"
         f" after {trial.seconds:.1f} s, {trial.processor_seconds:.1f} s of them on a processor"
-        f" (at most {PATIENCE} s)",
+        f" (at most {MAX_SECONDS} s)",
         flush=True,
     )
-    if trial.seconds > PATIENCE:
+    if trial.seconds > MAX_SECONDS:
         raise SystemExit("that is too long")
     return figures | {name: round(value, 1) for name, value in vars(trial).items()}
 

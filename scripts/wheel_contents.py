@@ -14,8 +14,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 
-#: The largest wheel and source distribution, in bytes.
-LARGEST = 8_000_000
+#: The largest number of bytes of a wheel or a source distribution.
+MAX_BYTES = 8_000_000
 
 #: Files that no source distribution holds.
 _FOREIGN = re.compile(r"(^|/)(\.git|\.venv|target|out|dist|__pycache__)/|\.(so|pyd|pyc)$")
@@ -93,7 +93,7 @@ def problems_of_source(path: Path, root: Path) -> list[str]:
 
 def _problems_of_size(path: Path) -> list[str]:
     size = path.stat().st_size
-    return [f"it has {size:,} bytes, more than {LARGEST:,}"] if size > LARGEST else []
+    return [f"it has {size:,} bytes, more than {MAX_BYTES:,}"] if size > MAX_BYTES else []
 
 
 def _problems_of_metadata(about: Message) -> list[str]:

@@ -27,8 +27,9 @@ from .tree import Part
 _Any = TypeVar("_Any")
 _Number = TypeVar("_Number", int, float)
 
-#: Names of patches that become one object, of which so many are told.
-_AND, _FEW = " + ", 3
+#: What separates the names of patches that become one object, and the largest number of names that
+#: are shown.
+_NAME_SEPARATOR, _MAX_NAMES_SHOWN = " + ", 3
 
 #: From the worst verdict to the best.
 _VERDICTS = ("refused", "not closed", "empty", "inside out", "solid")
@@ -100,13 +101,15 @@ def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
         return []
     owner = np.repeat(np.arange(len(parts)), counts)
     group = _surfaces(raw, owner, len(parts))
-    names = _told_apart([name or f"part {number}" for number, (name, _) in enumerate(parts, 1)])
+    names = _with_numbers([name or f"part {number}" for number, (name, _) in enumerate(parts, 1)])
     found = []
     for one in dict.fromkeys(group.tolist()):
         members = np.flatnonzero(group == one)
-        called = [names[member] for member in members[:_FEW].tolist()]
-        more = [f"{len(members) - _FEW} more"] if len(members) > _FEW else []
-        found.append((_AND.join([*called, *more]), np.flatnonzero(group[owner] == one)))
+        called = [names[member] for member in members[:_MAX_NAMES_SHOWN].tolist()]
+        more = (
+            [f"{len(members) - _MAX_NAMES_SHOWN} more"] if len(members) > _MAX_NAMES_SHOWN else []
+        )
+        found.append((_NAME_SEPARATOR.join([*called, *more]), np.flatnonzero(group[owner] == one)))
     return found
 
 
@@ -124,13 +127,14 @@ def _surfaces(raw: RawMesh, owner: IndexArray, count: int) -> IndexArray:
     return surfaces_of(np.concatenate([alone, links])[:, [0, 1, 1]], count)[:count]
 
 
-def _told_apart(names: Sequence[str]) -> list[str]:
+def _with_numbers(names: Sequence[str]) -> list[str]:
+    """Return the names; one that repeats an earlier name gets a number."""
     seen: Counter[str] = Counter()
-    told = []
+    numbered = []
     for name in names:
         seen[name] += 1
-        told.append(f"{name} ({seen[name]})" if seen[name] > 1 else name)
-    return told
+        numbered.append(f"{name} ({seen[name]})" if seen[name] > 1 else name)
+    return numbered
 
 
 def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> Iterator[Finding]:

@@ -56,7 +56,7 @@ def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assemb
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:
-        return _Making(path, suffix, options).assembly(_scene(path, suffix))
+        return _Reading(path, suffix, options).assembly(_scene(path, suffix))
     raw = read_as(path, suffix)
     start, children = 0, []
     for name, faces in parts_of(raw):
@@ -77,7 +77,7 @@ def _decoded(name: str, data: bytes, suffix: str) -> SceneNode:
         return _TREES[suffix][0](Source(name, data))
 
 
-class _Making:
+class _Reading:
     """The solids of one file: meshes that nodes share are shared by solids."""
 
     def __init__(self, path: str | os.PathLike[str], suffix: str, options: dict[str, Any]) -> None:
@@ -141,7 +141,7 @@ def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> t
     if scene is None:
         raise FormatError(f"{os.fspath(path)}: no part of the assembly has volume.", "empty")
     given = scene
-    scene = _Held().node(scene) if suffix == ".3mf" else glb.as_written(scene)
+    scene = _As3mf().node(scene) if suffix == ".3mf" else glb.as_written(scene)
 
     def prove(file: BinaryIO) -> None:
         found = _decoded(os.fspath(path), file.read(), suffix)
@@ -224,14 +224,14 @@ def _is_painted(said: Attributes | None) -> bool:
     return said is not None and not {"color", "material"}.isdisjoint(said.names)
 
 
-class _Held:
+class _As3mf:
     """A tree with the colours and attributes that 3MF holds; what nodes share stays shared."""
 
     def __init__(self) -> None:
         self._meshes: dict[int, RawMesh] = {}
 
     def node(self, node: SceneNode) -> SceneNode:
-        """Return a node as it is held."""
+        """Return a node as 3MF holds it."""
         color = node.color and tuple(round(value * _BYTE) / _BYTE for value in node.color)
         mesh = None if node.mesh is None else self._mesh(node.mesh)
         return SceneNode(node.name, node.matrix, mesh, color, tuple(map(self.node, node.children)))

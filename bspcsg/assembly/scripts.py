@@ -18,8 +18,8 @@ from .tree import Assembly
 _UNITING = frozenset({"group", "union", "render", "color"})
 
 
-#: Most of them that may lie in one another before what is in them is one part.
-_DEEPEST = 60
+#: The largest number of these nodes inside one another; what lies deeper becomes one part.
+_MAX_PART_DEPTH = 60
 
 
 def load(path: str | os.PathLike[str], name: str, **options: Any) -> Assembly:
@@ -48,7 +48,7 @@ class _Reading:
     ) -> Assembly | None:
         """Return a node as a tree; of colours in one another the outermost counts."""
         is_moving = node.name == "multmatrix" and len(node.arguments) > 0
-        if depth > _DEEPEST or not (node.name in _UNITING or is_moving):
+        if depth > _MAX_PART_DEPTH or not (node.name in _UNITING or is_moving):
             one = CsgTree((Node("group", scope, (node,)),), self.tree.name, self.tree.folder)
             body = csg.evaluate(one, **self._options)
             return Assembly(node.name, body, color=color) if isinstance(body, Solid) else None

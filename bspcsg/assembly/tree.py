@@ -21,8 +21,8 @@ from ..solid.solid import Solid
 from .bill import Bill, bill_of
 from .clashes import Clash, are_apart, clashes_of
 
-#: Most assemblies that may lie in one another, as in files.
-_DEEPEST = 64
+#: The largest number of assemblies inside one another, the same as in files.
+_MAX_DEPTH = 64
 
 #: The content of an assembly.
 Content: TypeAlias = Solid | Iterable[Any]
@@ -113,8 +113,8 @@ class Assembly(Movable):
         self.children: tuple[Assembly, ...] = children
         self.factors: Factors = ()
         self._depth: int = 1 + max((child._depth for child in children), default=0)
-        if self._depth > _DEEPEST:
-            raise invalid_parameter(f"Assemblies lie in one another at most {_DEEPEST} deep.")
+        if self._depth > _MAX_DEPTH:
+            raise invalid_parameter(f"Assemblies lie in one another at most {_MAX_DEPTH} deep.")
 
     def _with(self, **changes: Any) -> "Assembly":
         other = object.__new__(Assembly)

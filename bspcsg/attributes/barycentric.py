@@ -16,9 +16,9 @@ _Pair: TypeAlias = tuple[FloatArray, FloatArray]
 #: Splits the 53 bits of a double into two halves whose products are exact.
 _SPLITTER = 2.0**27 + 1
 
-#: Products of two edges' lengths per area up to which pairs of doubles decide. Their determinants
-#: are off by less than 2**-98 of the edges' product, so weights are off by less than 2**-58 then.
-_THINNEST = 2.0**40
+#: The largest product of two edges' lengths per area for which pairs of doubles decide. Their
+#: determinants err by less than 2**-98 of that product, so weights err by less than 2**-58.
+_MAX_EXACT_THINNESS = 2.0**40
 
 
 def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
@@ -34,7 +34,7 @@ def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
     third, _ = _determinant(a, b, flat)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         v, w = (_quotient(part, area) for part in (second, third))
-        thin = ~(size <= _THINNEST * np.abs(area[0]))
+        thin = ~(size <= _MAX_EXACT_THINNESS * np.abs(area[0]))
     found = np.stack([1.0 - v - w, v, w], axis=1)
     for k in np.flatnonzero(thin).tolist():
         found[k] = _exact(flat[k], seen[k])

@@ -72,7 +72,7 @@ class _Inner:
 
 
 @dataclass(frozen=True, eq=False)
-class _Lot:
+class _SourceTriangles:
     """The triangles of a result that lie in one source, and where their corners are in it.
 
     Parameters
@@ -167,7 +167,7 @@ def carried(
         if attributes is not None:
             rows = rows_of.get(slot, _NO_ROWS)
             known = arrays_of(slot) if len(rows) else None
-            lots.append(_lot(surface, rows, attributes, known or _NO_ARRAYS))
+            lots.append(_triangles_of(surface, rows, attributes, known or _NO_ARRAYS))
     materials: dict[str, Material] = {}
     lots = [replace(lot, attributes=lot.attributes.among(materials)) for lot in lots]
     found: dict[Kind, dict[str, Values]] = {"vertex": {}, "corner": {}, "face": {}}
@@ -195,7 +195,9 @@ def _by_slot(source: IndexArray) -> Iterator[tuple[int, IndexArray]]:
     yield from zip(slots.tolist(), np.split(order, starts[1:]), strict=False)
 
 
-def _lot(surface: Surface, rows: IndexArray, attributes: Attributes, known: SourceArrays) -> _Lot:
+def _triangles_of(
+    surface: Surface, rows: IndexArray, attributes: Attributes, known: SourceArrays
+) -> _SourceTriangles:
     doubles, lattice, faces, numbers = known
     origins = surface.source[rows, 1]
     triangles = faces[np.searchsorted(numbers, origins)]
@@ -206,7 +208,7 @@ def _lot(surface: Surface, rows: IndexArray, attributes: Attributes, known: Sour
     places = weights(points[at, corner], lattice[triangles[at]])
     inner = _Inner(at, corner, origins[at], places)
     inner = _brought_inside(inner, surface.faces[rows], corners, origins)
-    return _Lot(attributes, rows, origins, corners, inner, surface.flips[rows])
+    return _SourceTriangles(attributes, rows, origins, corners, inner, surface.flips[rows])
 
 
 def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
@@ -266,7 +268,7 @@ def _between(values: Values, places: FloatArray) -> Values:
     return found
 
 
-def _joined(name: str, lots: list[_Lot], surface: Surface) -> tuple[Kind, Values]:
+def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[Kind, Values]:
     """Return what a name has values for in the result, and the values."""
     kinds = {lot.attributes.kind_of(name) for lot in lots}
     if kinds == {"face"}:
@@ -282,7 +284,7 @@ def _joined(name: str, lots: list[_Lot], surface: Surface) -> tuple[Kind, Values
 
 
 def _filled(
-    name: str, lots: list[_Lot], parts: list[Values], shape: tuple[int, ...], depth: int
+    name: str, lots: list[_SourceTriangles], parts: list[Values], shape: tuple[int, ...], depth: int
 ) -> Values:
     """Return the values of all triangles; those of sources that lack the name get the default."""
     parts = colors_alike(name, parts, depth)
@@ -360,7 +362,9 @@ def default_of(name: str, values: Values, depth: int) -> Any:
     return np.nan if kind.kind == "f" else np.zeros((), kind)[()]
 
 
-def _of_vertices(name: str, values: Values, lots: list[_Lot], surface: Surface) -> Values | None:
+def _of_vertices(
+    name: str, values: Values, lots: list[_SourceTriangles], surface: Surface
+) -> Values | None:
     """Return the values of vertices if all corners at each agree, else None."""
     count = len(surface.vertices)
     flat = values.reshape(3 * len(surface.faces), math.prod(values.shape[2:]))

@@ -50,7 +50,7 @@ def _values(name: str, kind: Kind, parts: Sequence[MeshPart]) -> Values:
         "corner": lambda part: (len(part.faces), 3),
         "face": lambda part: (len(part.faces),),
     }[kind]
-    held = [_held(name, kind, part.attributes) for part in parts]
+    held = [_values_of(name, kind, part.attributes) for part in parts]
     depth = 2 if kind == "corner" else 1
     known = colors_alike(name, [values for values in held if values is not None], depth)
     given = iter(known)
@@ -65,7 +65,7 @@ def _values(name: str, kind: Kind, parts: Sequence[MeshPart]) -> Values:
     return whole
 
 
-def _held(name: str, kind: Kind, attributes: Attributes | None) -> Values | None:
+def _values_of(name: str, kind: Kind, attributes: Attributes | None) -> Values | None:
     if attributes is None or attributes.kind_of(name) is None:
         return None
     return attributes.at_corners(name) if kind == "corner" else attributes.of(kind)[name]

@@ -21,8 +21,8 @@ from .engines import ENGINES
 from .targets import MAIN_RIVAL, OURS
 from .worker import Task
 
-#: Seconds for making operands before the first call, and for ending after the last.
-_GRACE = 120.0
+#: The longest time to make operands before the first call, and to end after the last, in seconds.
+_GRACE_SECONDS = 120.0
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -201,7 +201,7 @@ def _listen(
     lines = _Lines(child)
     under_way, began = None, time.monotonic()
     while True:
-        line = lines.next(began + (limit if under_way else _GRACE + limit))
+        line = lines.next(began + (limit if under_way else _GRACE_SECONDS + limit))
         if line is None:
             return under_way, {"state": "stopped", "stopped_after": time.monotonic() - began}
         if not line:

@@ -8,8 +8,8 @@ from .times import seconds_text
 
 Row = dict[str, Any]
 
-#: Runs whose median needs no remark.
-_ENOUGH = 5
+#: A median of fewer runs than this is shown with their number.
+_MIN_RUNS_FOR_MEDIAN = 5
 
 #: The sign in place of a figure that there is none of.
 _NOTHING = "—"
@@ -202,7 +202,7 @@ def _time(found: Row | None) -> str:
         return f"> {seconds_text(found['stopped_after'])}{steps}"
     if found["state"] != "ok":
         return str(found["state"])
-    fewer = "" if found["runs"] >= _ENOUGH else f" ({found['runs']})"
+    fewer = "" if found["runs"] >= _MIN_RUNS_FOR_MEDIAN else f" ({found['runs']})"
     return f"{seconds_text(found['median'])} / {seconds_text(found['cpu'])}{fewer}"
 
 

@@ -23,14 +23,16 @@ from .facts import facts_of
 from .targets import OURS
 from .work import Carving, Chain, Outcome, Tell, Work
 
-#: Steps are told at most so often, in seconds.
-_TELL_EVERY = 0.5
+#: The shortest time between two reports of steps, in seconds.
+_REPORT_INTERVAL = 0.5
 
-#: A run repeats what takes less, in seconds; the cost of a call is its part of that.
-_LEAST_RUN = 0.02
+#: The shortest run, in seconds. It repeats a call that takes less, and the cost of the call is its
+#: share of the run.
+_MIN_RUN_SECONDS = 0.02
 
-#: Half the steps around the thousandth, and the last steps, that the times of steps are taken over.
-_WINDOW = 100
+#: The time of a step is the median over this many steps at the beginning and at the end, and over
+#: twice as many around the thousandth.
+_WINDOW_STEPS = 100
 
 
 @dataclass(frozen=True)
@@ -171,7 +173,7 @@ class _Turns:
             self.left -= 1
             return
         self._warm = True
-        self._calls = max(ceil(_LEAST_RUN / seconds), 1)
+        self._calls = max(ceil(_MIN_RUN_SECONDS / seconds), 1)
         self.left = max(min(self.task.runs, int(self.task.budget / seconds) - 1), 0)
         self.say({"say": "plan", "engine": self.engine.name, "runs": self.left})
 
@@ -201,7 +203,7 @@ class _Turns:
         def tell(done: int) -> None:
             nonlocal last
             now = time.perf_counter()
-            if now - last >= _TELL_EVERY:
+            if now - last >= _REPORT_INTERVAL:
                 last = now
                 self.say({"say": "step", "engine": self.engine.name, "done": done})
 
@@ -224,9 +226,9 @@ def _of_process(outcome: Outcome) -> dict[str, float]:
 
 def _windows(steps: list[float]) -> dict[str, float]:
     """Return the median times of the first, the thousandth and the last steps."""
-    found = {"first": median(steps[:_WINDOW]), "last": median(steps[-_WINDOW:])}
-    if len(steps) >= 1000 + _WINDOW:
-        found["thousandth"] = median(steps[1000 - _WINDOW : 1000 + _WINDOW])
+    found = {"first": median(steps[:_WINDOW_STEPS]), "last": median(steps[-_WINDOW_STEPS:])}
+    if len(steps) >= 1000 + _WINDOW_STEPS:
+        found["thousandth"] = median(steps[1000 - _WINDOW_STEPS : 1000 + _WINDOW_STEPS])
     return found
 
 

@@ -14,8 +14,8 @@ from .console.output import Output
 from .inputs.files import STREAM, Target, expanded, is_dropped
 from .inputs.scripts import SUFFIXES
 
-#: Files from which on a bar shows how far it is.
-_MANY = 4
+#: A bar shows the progress if there are at least this many files.
+_MIN_FILES_FOR_BAR = 4
 
 #: What is done with one file: its document, and the exit code.
 Doing = Callable[[Path, Target], tuple[dict[str, Any], int]]
@@ -127,7 +127,7 @@ def _progress(
     pairs: Sequence[tuple[Path, Target]], out: Output, word: str
 ) -> Iterator[Iterator[tuple[Path, Target]]]:
     """Yield the pairs, under a bar on the terminal if there are many."""
-    if len(pairs) < _MANY or not sys.stderr.isatty() or out.verbosity < 0:
+    if len(pairs) < _MIN_FILES_FOR_BAR or not sys.stderr.isatty() or out.verbosity < 0:
         yield iter(pairs)
         return
     from rich.console import Console

@@ -9,8 +9,8 @@ _INTERRUPTED = 130
 #: every exception numpy takes for a no.
 _BAD_MOMENTS = ("<frozen importlib._bootstrap>", "npy_ctypes_check")
 
-#: After so many seconds an interrupt that came at a bad moment comes again.
-_AGAIN = 0.01
+#: An interrupt that came at a bad moment is repeated after this many seconds.
+_REPEAT_DELAY = 0.01
 
 try:
     import atexit
@@ -50,7 +50,7 @@ def _is_bad_moment(frame: FrameType | None) -> bool:
 
 def _come_again() -> None:
     signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
-    signal.setitimer(signal.ITIMER_REAL, _AGAIN)
+    signal.setitimer(signal.ITIMER_REAL, _REPEAT_DELAY)
 
 
 def _end_for_good() -> None:

@@ -17,12 +17,13 @@ if TYPE_CHECKING:
     from ..solid.solid import Solid
     from ..verify.check import CheckReport
 
-#: Triangles and bits up to which the exact volume is printed; of more, its digits fill pages.
-_EXACT_FACES, _EXACT_BITS = 500, 10_000
+#: The exact volume is printed for at most this many triangles and bits; of more its digits fill
+#: pages.
+_MAX_EXACT_FACES, _MAX_EXACT_BITS = 500, 10_000
 
 
-#: Most crossings that a certificate names.
-_NAMED = 8
+#: The largest number of crossings that a certificate names.
+_MAX_CROSSINGS_NAMED = 8
 
 
 class Job(ABC):
@@ -214,17 +215,17 @@ def certificate_values(mesh: "Mesh") -> dict[str, Any]:
         "open_edges": proof.open_edges,
         "crossings": len(proof.crossings),
         "flat": len(proof.flat),
-        "where": [list(pair) for pair in proof.crossings[:_NAMED]],
+        "where": [list(pair) for pair in proof.crossings[:_MAX_CROSSINGS_NAMED]],
     }
 
 
 def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
     """Return a fraction like ``"1/3"``, unless it is unwieldy."""
-    if len(mesh.faces) > _EXACT_FACES:
+    if len(mesh.faces) > _MAX_EXACT_FACES:
         return None
     volume = result.volume_exact
     longest = max(volume.numerator.bit_length(), volume.denominator.bit_length())
-    return str(volume) if longest <= _EXACT_BITS else None
+    return str(volume) if longest <= _MAX_EXACT_BITS else None
 
 
 def summary(name: str, mesh: "Mesh", timed: bool) -> str:

@@ -22,9 +22,10 @@ from ..solid.leaf import ConstantLeaf, PlaneLeaf, TreeLeaf
 from ..solid.solid import Solid, expression_of, from_node
 from .syntax.tree import Argument, CsgTree, Node, Value
 
-#: Corners and triangles beyond which an expression is not written out but given up for one
-#: polyhedron: some 60 bytes each make half of the largest script that is read.
-_LARGEST = 2_000_000
+#: The largest number of corners and triangles of an expression that is written out; a larger one
+#: becomes one polyhedron. Each takes some 60 bytes, all of them half of the largest script that is
+#: read.
+_MAX_BODY_SIZE = 2_000_000
 
 
 class _Body(NamedTuple):
@@ -73,7 +74,7 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
     body = (
         _polyhedron(solid) if truth_value(flat, "flat") else _Reading().body(*expression_of(solid))
     )
-    if body is None or body.size > _LARGEST or body.negated:
+    if body is None or body.size > _MAX_BODY_SIZE or body.negated:
         body = _polyhedron(solid)
     if body is None or body.negated:
         message = "A solid that reaches to infinity cannot be written as a script."
@@ -96,7 +97,9 @@ def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
             seen |= inner
             waiting.extend(inner)
             continue
-        names.update(name for said in content.sayings if said is not None for name in said.names)
+        names.update(
+            name for said in content.source_attributes if said is not None for name in said.names
+        )
     if not names:
         return ()
     told = ", ".join(f"“{name}”" for name in sorted(names))
@@ -153,7 +156,7 @@ class _Reading:
             else:
                 lines.append(_operation(operator, [lines[line] for line in arguments]))
         made = lines[-1]
-        if made is None or made.size > _LARGEST:
+        if made is None or made.size > _MAX_BODY_SIZE:
             return _polyhedron(from_node(node))
         return made
 
@@ -225,7 +228,7 @@ def _odd(bodies: Sequence[_Body]) -> _Body:
         plain = body._replace(negated=False)
         one, other = (_joined("difference", pair) for pair in ((made, plain), (plain, made)))
         made = _joined("union", [one, other])
-        if made.size > _LARGEST:
+        if made.size > _MAX_BODY_SIZE:
             break
     return made._replace(negated=sum(body.negated for body in bodies) % 2 == 1)
 

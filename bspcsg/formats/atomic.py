@@ -22,9 +22,9 @@ from ..parameters import file_path
 if sys.platform != "win32":
     import fcntl
 
-#: Letters of a file's name that the unfinished file has, too: names end at 255 bytes, and a letter
-#: has four at most.
-_KEPT = 57
+#: The largest number of characters of a file's name that begin the name of its unfinished file.
+#: File systems allow 255 bytes for a name, and a character takes up to four.
+_MAX_NAME_CHARACTERS = 57
 
 #: The names of unfinished files, but for their first letters: they tell the machine, as locks may
 #: not reach others that write into the same folder.
@@ -109,9 +109,9 @@ def _check_target(name: str) -> None:
         raise FileNotFoundError(2, f"there is no folder {folder}")
 
 
-#: Bytes that are gathered before they are written: fewer take longer each, and chunks of more go
-#: out as they are.
-_PIECE = 1 << 18
+#: The number of bytes that are buffered before they are written. A smaller buffer takes more time,
+#: and longer chunks go out as they are.
+_BUFFER_BYTES = 1 << 18
 
 
 def _sweep(folder: Path) -> None:
@@ -169,13 +169,13 @@ def _locked(handle: int, part: Path) -> Iterator[None]:
 
 
 def _write_new(target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
-    name = f".{target.name[:_KEPT]}.{_machine()}-{os.urandom(4).hex()}.part"
+    name = f".{target.name[:_MAX_NAME_CHARACTERS]}.{_machine()}-{os.urandom(4).hex()}.part"
     part = target.with_name(name)
     # Opened like any new file, so that the user's mask decides about its mode.
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
         with contextlib.ExitStack() as until_named:
-            with open(handle, "wb", buffering=_PIECE) as stream:
+            with open(handle, "wb", buffering=_BUFFER_BYTES) as stream:
                 until_named.enter_context(_locked(handle, part))
                 if prove is None:
                     stream.writelines(chunks)

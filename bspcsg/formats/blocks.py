@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy.typing as npt
 
-#: Rows looked at together: their arrays fit into a processor's cache.
-TOGETHER = 1 << 14
+#: The number of rows in a block of arrays: they fit into the processor's cache.
+ROWS_PER_BLOCK = 1 << 14
 
-#: Rows of a file written together, and read back together: fewer take longer each, and of more
-#: what was written leaves the cache before it is read back.
-OF_FILE = 2 * TOGETHER
+#: The number of rows of a file that are written, and read back, together. Smaller blocks take more
+#: time, and a larger one leaves the cache before it is read back.
+ROWS_PER_FILE_BLOCK = 2 * ROWS_PER_BLOCK
 
 
-def blocks(count: int, together: int = TOGETHER) -> Iterator[slice]:
+def blocks(count: int, together: int = ROWS_PER_BLOCK) -> Iterator[slice]:
     """Yield the parts into which so many rows are divided."""
     return (slice(start, start + together) for start in range(0, count, together))
 
@@ -28,11 +28,11 @@ def listed(values: npt.NDArray[Any]) -> Iterator[Any]:
         yield from values[block].tolist()
 
 
-#: Lines of text that are handed on together: some hundred thousand bytes.
-_LINES = 1 << 12
+#: The number of lines of text that are handed on together: some hundred thousand bytes.
+_LINES_PER_CHUNK = 1 << 12
 
 
 def encoded_lines(lines: Iterator[str]) -> Iterator[bytes]:
     """Yield lines of text, many at a time."""
-    while together := "".join(itertools.islice(lines, _LINES)):
+    while together := "".join(itertools.islice(lines, _LINES_PER_CHUNK)):
         yield together.encode()

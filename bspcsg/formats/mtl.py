@@ -16,8 +16,8 @@ _PLAIN = (0.8, 0.8, 0.8)
 #: Statements after which names follow.
 _NAMING = frozenset({b"newmtl", b"map_Kd"})
 
-#: Words of a file's name: names end at 255 bytes.
-_MOST_WORDS = 128
+#: The largest number of words in the name of a file: file systems allow 255 bytes.
+_MAX_NAME_WORDS = 128
 
 
 @dataclass
@@ -113,7 +113,7 @@ def _number(word: bytes) -> float:
 
 def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes | None:
     """Return the picture whose name, which may be of several words, ends a statement."""
-    for start in range(max(0, len(words) - _MOST_WORDS), len(words)):
+    for start in range(max(0, len(words) - _MAX_NAME_WORDS), len(words)):
         data = source.beside(name_of(words[start:]))
         if data is not None:
             return data

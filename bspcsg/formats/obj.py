@@ -82,7 +82,7 @@ def read(source: Source) -> RawMesh:
         lambda k, message, code: source.error(message, code, line=found.face_lines[k]),
     )
     faces = polygons.corners[positions]
-    said, missing = _said(source, found, polygons, positions)
+    said, missing = _attributes_of(source, found, polygons, positions)
     named = _objects(found.objects, [len(corners) - 2 for corners in found.polygons], len(faces))
     return RawMesh(
         vertices,
@@ -95,7 +95,7 @@ def read(source: Source) -> RawMesh:
     )
 
 
-def _said(
+def _attributes_of(
     source: Source, found: _Found, polygons: IndexPolygons, positions: IndexArray
 ) -> tuple[Attributes, list[str]]:
     """Return what is said besides the shape, and the files that are not there."""

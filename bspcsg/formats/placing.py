@@ -9,7 +9,7 @@ import numpy as np
 from .._core import Tree
 from .._types import FloatArray
 from ..errors import Finding, InvalidMeshError, LimitError, core_errors
-from ..solid.moving import Mended, SaidMesh
+from ..solid.moving import AttributedMesh, Mended
 from ..solid.sewing import Sewn, sewn
 from .raw import RawMesh, compacted, joined
 
@@ -109,7 +109,7 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
             _take(found, members, meshes, crossing)
             flat += _left_out(own, found)
             whole = replace(whole, is_mended=True)
-    return _told(joined(meshes), meshes, crossing, flat) if whole.is_mended else whole
+    return _with_findings(joined(meshes), meshes, crossing, flat) if whole.is_mended else whole
 
 
 def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
@@ -161,14 +161,14 @@ def _with_mended(raw: RawMesh, found: Mended) -> RawMesh:
 def _pitch_of(whole: RawMesh) -> int | None:
     """Return the pitch that suits a mesh, if one does."""
     try:
-        return SaidMesh(whole.vertices, whole.faces).suited_pitch()
+        return AttributedMesh(whole.vertices, whole.faces).suited_pitch()
     except LimitError:
         return None
 
 
 def _mended(raw: RawMesh, image: Image, pitch: int) -> Mended | None:
     """Return a mesh in its place where that needs more than its image, if it does."""
-    mesh = SaidMesh(raw.vertices, raw.faces, raw.attributes)
+    mesh = AttributedMesh(raw.vertices, raw.faces, raw.attributes)
     divided = _sewn(mesh)
     if divided is not None:
         mesh = divided.mesh
@@ -181,7 +181,7 @@ def _mended(raw: RawMesh, image: Image, pitch: int) -> Mended | None:
     return replace(found, kept=divided.kept[found.kept])
 
 
-def _sewn(mesh: SaidMesh) -> Sewn | None:
+def _sewn(mesh: AttributedMesh) -> Sewn | None:
     """Return a mesh closed by index, if moving could open it, and if it closes now."""
     try:
         with core_errors():
@@ -211,7 +211,7 @@ def _take(
         meshes[number] = replace(meshes[number], vertices=vertices, faces=faces, attributes=said)
 
 
-def _told(
+def _with_findings(
     whole: RawMesh, meshes: list[RawMesh], crossing: dict[int, list[int]], flat: int
 ) -> RawMesh:
     starts = np.cumsum([0] + [len(mesh.faces) for mesh in meshes]).tolist()

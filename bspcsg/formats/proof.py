@@ -15,11 +15,11 @@ from .._types import IndexArray
 from ..errors import FormatError, words_of
 from ..mesh.mesh import Mesh
 from .blocks import blocks
-from .held.layout import Held, HeldRows
+from .held.layout import StoredMesh, StoredRows
 from .raw import RawMesh, parts_of
 
 #: Takes a file apart; raises an exception of any kind where it cannot.
-Scan: TypeAlias = Callable[[BinaryIO], Sequence[Held | HeldRows]]
+Scan: TypeAlias = Callable[[BinaryIO], Sequence[StoredMesh | StoredRows]]
 
 #: Returns what an object's name becomes in a file.
 Called: TypeAlias = Callable[[str], str]
@@ -57,15 +57,15 @@ def prove(
     """
     with _reading(path):
         held = [one for one in scan(file) if one.count]
-    meant = _meant(mesh, called, repeats)
-    _compare_counts(path, meant, held)
+    expected = _expected_objects(mesh, called, repeats)
+    _compare_counts(path, expected, held)
     with _reading(path):
         rounded = _rounded(mesh, held)
         # That a file has the very arrays is the fastest of all proofs.
-        if len(held) == 1 and held[0].has(rounded, meant[0][1]):
+        if len(held) == 1 and held[0].has(rounded, expected[0][1]):
             return
         loaded = [one.loaded() for one in held]
-    _compare_corners(path, rounded, meant, loaded)
+    _compare_corners(path, rounded, expected, loaded)
 
 
 @contextmanager
@@ -113,10 +113,10 @@ def prove_with_attributes(
     if np.array_equal(vertices, vertices.astype(np.float32)):
         vertices = vertices.astype(np.float32)
     named = [("", found.faces)] if called is None else parts_of(found)
-    held = [Held(vertices, faces, name) for name, faces in named if len(faces)]
-    meant = _meant(mesh, called, repeats)
-    _compare_counts(path, meant, held)
-    _compare_corners(path, _rounded(mesh, held), meant, held)
+    held = [StoredMesh(vertices, faces, name) for name, faces in named if len(faces)]
+    expected = _expected_objects(mesh, called, repeats)
+    _compare_counts(path, expected, held)
+    _compare_corners(path, _rounded(mesh, held), expected, held)
     rows = np.arange(len(mesh.faces)) if repeats else np.flatnonzero(_three_corners(mesh.faces))
     _compare_attributes(path, mesh, found, rows)
 
@@ -125,9 +125,9 @@ def _compare_attributes(path: str, mesh: RawMesh, found: RawMesh, rows: IndexArr
     for name in () if mesh.attributes is None else mesh.attributes.names:
         if found.attributes is None or found.attributes.kind_of(name) is None:
             raise _mismatch(path, f"it lacks the attribute “{name}”")
-        meant = mesh.attributes.at_corners(name, rows) if mesh.attributes else None
+        expected = mesh.attributes.at_corners(name, rows) if mesh.attributes else None
         told = found.attributes.at_corners(name)
-        if meant is None or not _are_same(meant, told):
+        if expected is None or not _are_same(expected, told):
             raise _mismatch(path, f"the values of the attribute “{name}” are others")
     meant_materials = {} if mesh.attributes is None else mesh.attributes.materials
     told_materials = {} if found.attributes is None else found.attributes.materials
@@ -149,7 +149,7 @@ def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatErro
     return FormatError(message, "write_mismatch", where)
 
 
-def _meant(
+def _expected_objects(
     mesh: Mesh | RawMesh, called: Called | None, repeats: bool
 ) -> list[tuple[str, IndexArray]]:
     """Return names and triangles of the objects that a file is to hold."""
@@ -168,11 +168,11 @@ def _three_corners(faces: IndexArray) -> npt.NDArray[np.bool_]:
 
 
 def _compare_counts(
-    path: str, meant: list[tuple[str, IndexArray]], held: Sequence[Held | HeldRows]
+    path: str, expected: list[tuple[str, IndexArray]], held: Sequence[StoredMesh | StoredRows]
 ) -> None:
-    if len(meant) != len(held):
-        raise _mismatch(path, f"it holds {len(held)} objects instead of {len(meant)}")
-    for (name, faces), one in zip(meant, held, strict=True):
+    if len(expected) != len(held):
+        raise _mismatch(path, f"it holds {len(held)} objects instead of {len(expected)}")
+    for (name, faces), one in zip(expected, held, strict=True):
         if name != one.name:
             raise _mismatch(path, f"an object is called “{one.name}” instead of “{name}”")
         if len(faces) != one.count:
@@ -184,11 +184,11 @@ def _compare_counts(
 def _compare_corners(
     path: str,
     rounded: npt.NDArray[Any],
-    meant: list[tuple[str, IndexArray]],
-    held: list[Held],
+    expected: list[tuple[str, IndexArray]],
+    held: list[StoredMesh],
 ) -> None:
     before = 0
-    for (_, faces), one in zip(meant, held, strict=True):
+    for (_, faces), one in zip(expected, held, strict=True):
         at = _first_difference(rounded, faces, one)
         if at is not None:
             message = f"the corners of triangle {before + at} are others"
@@ -196,24 +196,26 @@ def _compare_corners(
         before += len(faces)
 
 
-def _rounded(mesh: Mesh | RawMesh, held: Sequence[Held | HeldRows]) -> npt.NDArray[Any]:
+def _rounded(mesh: Mesh | RawMesh, held: Sequence[StoredMesh | StoredRows]) -> npt.NDArray[Any]:
     """Return the vertices of a mesh in the precision of a file."""
     if not held:
         return mesh.vertices
     return mesh.vertices.astype(held[0].vertices.dtype.newbyteorder("="), copy=False)
 
 
-def _first_difference(vertices: npt.NDArray[Any], faces: IndexArray, held: Held) -> int | None:
+def _first_difference(
+    vertices: npt.NDArray[Any], faces: IndexArray, held: StoredMesh
+) -> int | None:
     """Return the first triangle whose corners are not those that a loaded file holds, if any."""
     for block in blocks(len(faces)):
-        meant = vertices[faces[block]]
-        differ = (meant != _corners(held, block.start, len(meant))).any(axis=(1, 2))
+        expected = vertices[faces[block]]
+        differ = (expected != _corners(held, block.start, len(expected))).any(axis=(1, 2))
         if differ.any():
             return int(block.start + np.flatnonzero(differ)[0])
     return None
 
 
-def _corners(held: Held, start: int, count: int) -> npt.NDArray[Any]:
+def _corners(held: StoredMesh, start: int, count: int) -> npt.NDArray[Any]:
     if held.faces is None:
         return held.vertices[3 * start : 3 * (start + count)].reshape(-1, 3, 3)
     faces = held.faces[start : start + count]

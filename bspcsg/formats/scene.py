@@ -69,13 +69,13 @@ def say_alike(one: SceneNode, other: SceneNode) -> bool:
     """Say whether the meshes of two trees that are alike say the same, colours of nodes apart."""
     pairs = zip(one.walk(), other.walk(), strict=False)
     return all(
-        _as_said(a.mesh.attributes, b.mesh.attributes)
+        _equal_attributes(a.mesh.attributes, b.mesh.attributes)
         for a, b in pairs
         if a.mesh is not None and b.mesh is not None and a.color is None
     )
 
 
-def _as_said(one: Attributes | None, other: Attributes | None) -> bool:
+def _equal_attributes(one: Attributes | None, other: Attributes | None) -> bool:
     names = set() if one is None else set(one.names)
     if names != (set() if other is None else set(other.names)):
         return False

@@ -14,8 +14,8 @@ from .blocks import blocks
 from .raw import RawMesh, compacted
 from .triangles import are_flat, are_turned
 
-#: Most triangles that a finding names.
-_NAMED = 8
+#: The largest number of triangles that a finding names.
+_MAX_TRIANGLES_NAMED = 8
 
 
 def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
@@ -103,7 +103,7 @@ def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
 def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     """Return a mesh in single precision, how many triangles were mended, and which still cross."""
     result, mended, crossing = _rounded(mesh)
-    for _ in range(_ROUNDS):
+    for _ in range(_MAX_ROUNDS):
         if not len(crossing) or not len(result.faces):
             break
         mended += len(crossing)
@@ -115,9 +115,10 @@ def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
     return result, mended, crossing
 
 
-#: Rounds of uniting what rounding made cross, and of rounding what that makes. One nearly always
-#: does: surfaces nearer each other than the rounding lie in one place after it, and are united.
-_ROUNDS = 4
+#: The largest number of rounds: each unites what rounding made cross, and rounds the result. One is
+#: nearly always enough: surfaces nearer each other than the rounding lie in one place after it, and
+#: are united.
+_MAX_ROUNDS = 4
 
 
 def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
@@ -197,7 +198,7 @@ def _thickening(count: int, spacing: float) -> Finding:
 
 def _crossing(where: IndexArray) -> Finding:
     message = f"in single precision {len(where)} triangles cross or overlap others{_REMEDY}"
-    named = tuple(where[:_NAMED].tolist())
+    named = tuple(where[:_MAX_TRIANGLES_NAMED].tolist())
     return Finding("crossing_in_single", "warning", message, named, len(where))
 
 
@@ -234,7 +235,7 @@ def _changed(mesh: Mesh | RawMesh, rounded: FloatArray, moved: BoolArray) -> tup
             code,
             "warning",
             f"single precision {verb} {len(where)} triangles{_REMEDY}",
-            tuple(where[:_NAMED].tolist()),
+            tuple(where[:_MAX_TRIANGLES_NAMED].tolist()),
             len(where),
         )
         for code, verb, where in told

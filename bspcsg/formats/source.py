@@ -27,22 +27,24 @@ _WIDE_MARKS = {
     codecs.BOM_UTF16_BE: "utf-16",
 }
 
-#: Most characters of an offending word that an error quotes.
-_QUOTED = 24
+#: The largest number of characters of an offending word that an error quotes.
+_MAX_QUOTED_CHARACTERS = 24
 
-#: Bytes of a script or drawing: parsed, each becomes ten or more, so that this fills 3 GB.
-_LARGEST_TEXT = 1 << 28
+#: The largest number of bytes of a script or drawing. A parsed file takes ten or more times as
+#: many, so this fills 3 GB.
+_MAX_TEXT_BYTES = 1 << 28
 
-#: Whole numbers up to this are exact as floats.
-_MOST_EXACT = 2.0**53
+#: A double holds every whole number exactly up to this one.
+_MAX_EXACT_INTEGER = 2.0**53
 
-#: Letters of a whole number: twice as many as 64 bits need, so that errors can name what is a bit
-#: too large.
-_MOST_DIGITS = 40
+#: The largest number of characters of a whole number. It is twice what 64 bits need, so that errors
+#: can quote a number that is a little too large.
+_MAX_INTEGER_CHARACTERS = 40
 
-#: The beginning of what Git has in place of a large file, and most bytes of one.
-_POINTER = re.compile(rb"version https://(git-lfs|hawser)\.github\.com/spec/v\d")
-_LARGEST_POINTER = 1024
+#: The beginning of the pointer that Git keeps in place of a large file, and the largest number of
+#: bytes of a pointer.
+_POINTER_START = re.compile(rb"version https://(git-lfs|hawser)\.github\.com/spec/v\d")
+_MAX_POINTER_BYTES = 1024
 
 
 @dataclass(frozen=True)
@@ -155,7 +157,7 @@ def _uncommented(
 def _limited(path: Path) -> bytes | None:
     """Return the bytes of a file, or None if it is not there or too large."""
     try:
-        data = content_of(path) if path.stat().st_size <= _LARGEST_TEXT else None
+        data = content_of(path) if path.stat().st_size <= _MAX_TEXT_BYTES else None
     except (OSError, ValueError):
         return None
     return None if data is None or _is_pointer(data) else data
@@ -179,9 +181,11 @@ def limited_content(path: str | os.PathLike[str]) -> bytes:
     """
     name = file_path(path)
     with _readable(name):
-        data = content_of(Path(name)) if Path(name).stat().st_size <= _LARGEST_TEXT else None
-    if data is None or len(data) > _LARGEST_TEXT:
-        raise FormatError(f"{name}: the file is larger than {_LARGEST_TEXT:,} bytes.", "too_large")
+        data = content_of(Path(name)) if Path(name).stat().st_size <= _MAX_TEXT_BYTES else None
+    if data is None or len(data) > _MAX_TEXT_BYTES:
+        raise FormatError(
+            f"{name}: the file is larger than {_MAX_TEXT_BYTES:,} bytes.", "too_large"
+        )
     return present(name, data)
 
 
@@ -214,7 +218,7 @@ def present(name: str, data: bytes) -> bytes:
 
 
 def _is_pointer(data: bytes) -> bool:
-    return len(data) <= _LARGEST_POINTER and _POINTER.match(data) is not None
+    return len(data) <= _MAX_POINTER_BYTES and _POINTER_START.match(data) is not None
 
 
 @contextmanager
@@ -230,7 +234,7 @@ def quoted(words: bytes) -> str:
     """Return the beginning of some bytes in quotes, fit for a message."""
     decoded = words.decode("utf-8", "replace")
     text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in decoded)
-    short = text if len(text) <= _QUOTED else text[:_QUOTED] + "…"
+    short = text if len(text) <= _MAX_QUOTED_CHARACTERS else text[:_MAX_QUOTED_CHARACTERS] + "…"
     return f"“{short}”" if text else "nothing"
 
 
@@ -244,7 +248,7 @@ def as_text(name: bytes) -> str:
 
 def whole(word: bytes) -> int:
     """Return a whole number; ``1_0``, which Python takes for 10, is none."""
-    if b"_" in word or len(word) > _MOST_DIGITS:
+    if b"_" in word or len(word) > _MAX_INTEGER_CHARACTERS:
         raise ValueError(word)
     return int(word)
 
@@ -255,7 +259,7 @@ def integral(word: bytes) -> int:
         return whole(word)
     except ValueError:
         number = float(word)
-        if b"_" in word or not number.is_integer() or abs(number) > _MOST_EXACT:
+        if b"_" in word or not number.is_integer() or abs(number) > _MAX_EXACT_INTEGER:
             raise
         return int(number)
 

@@ -15,11 +15,11 @@ from .._types import FloatArray
 #: two such products at most 8 u of the larger; each product is at most that of the lengths.
 _NORMAL_ERROR = 2.0**-49
 
-#: Below this an underflow may have taken more than the bound allows.
-_TINY = 1e-280
+#: Added to error bounds, which do not hold by themselves where products underflow.
+_UNDERFLOW_ERROR = 1e-280
 
-#: Sizes between which products in two doubles neither overflow nor underflow.
-_SMALLEST, _LARGEST = 2.0**-400, 2.0**400
+#: Between these sizes, products in pairs of doubles neither overflow nor underflow.
+_MIN_EXACT_SIZE, _MAX_EXACT_SIZE = 2.0**-400, 2.0**400
 
 #: Splits the 53 bits of a double into two halves whose products are exact.
 _SPLITTER = 2.0**27 + 1
@@ -48,7 +48,7 @@ def _flat_by_products(corners: FloatArray) -> tuple[npt.NDArray[np.bool_], npt.N
     exact = _is_difference(first, corners[:, 1], corners[:, 0])
     exact &= _is_difference(second, corners[:, 2], corners[:, 0])
     sizes = np.abs(np.concatenate([first, second], axis=1))
-    exact &= ((sizes == 0) | ((sizes > _SMALLEST) & (sizes < _LARGEST))).all(axis=1)
+    exact &= ((sizes == 0) | ((sizes > _MIN_EXACT_SIZE) & (sizes < _MAX_EXACT_SIZE))).all(axis=1)
     flat = np.ones(len(corners), dtype=bool)
     for one, other in ((0, 1), (1, 2), (2, 0)):
         left = _product(first[:, one], second[:, other])
@@ -87,7 +87,7 @@ def are_turned(before: FloatArray, after: FloatArray) -> npt.NDArray[np.bool_]:
         error = first_error * np.abs(second).sum(axis=1)
         error += second_error * (np.abs(first).sum(axis=1) + 3 * first_error)
         turned: npt.NDArray[np.bool_] = cosines < 0
-        unsure = ~(np.abs(cosines) > 2 * error + _TINY)
+        unsure = ~(np.abs(cosines) > 2 * error + _UNDERFLOW_ERROR)
     for triangle in np.flatnonzero(unsure).tolist():
         exact = zip(_exact_normal(before[triangle]), _exact_normal(after[triangle]), strict=True)
         turned[triangle] = sum(one * other for one, other in exact) < 0
@@ -101,7 +101,7 @@ def _normals(corners: FloatArray) -> _Normals:
         px, py, pz, qx, qy, qz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
         normals = np.stack([py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx], axis=1)
         sizes = (np.abs(px) + np.abs(py) + np.abs(pz)) * (np.abs(qx) + np.abs(qy) + np.abs(qz))
-        errors = np.where(np.isfinite(sizes), _NORMAL_ERROR * sizes + _TINY, np.inf)
+        errors = np.where(np.isfinite(sizes), _NORMAL_ERROR * sizes + _UNDERFLOW_ERROR, np.inf)
     return normals, errors
 
 

@@ -24,11 +24,11 @@ from .source import Source
 _FACES = ("triangle", "quad", "polygon")
 _OTHER = ("vertex", "line")
 
-#: Size that the packed data of a file may unpack to, in bytes.
-_LARGEST = 1 << 31
+#: The largest number of bytes that the packed data of a file may unpack to.
+_MAX_UNPACKED_BYTES = 1 << 31
 
-#: Bytes of a file that are handed on together: they stay in a processor's cache.
-_PIECE = 1 << 17
+#: The number of bytes of a file that are handed on together: they stay in the processor's cache.
+_CHUNK_BYTES = 1 << 17
 
 #: Files of nothing, which meshio neither writes nor reads.
 EMPTY = {
@@ -95,7 +95,7 @@ def _grid_of(source: Source, suffix: str) -> Any:
                 _ONE_AT_A_TIME,
                 contextlib.redirect_stdout(cast(TextIO, _OfOthers(sys.stdout))),
                 contextlib.redirect_stderr(cast(TextIO, _OfOthers(sys.stderr))),
-                _bounded(_LARGEST),
+                _bounded(_MAX_UNPACKED_BYTES),
                 np.errstate(all="ignore"),
                 warnings.catch_warnings(action="ignore"),
             ):
@@ -208,5 +208,5 @@ def _write(mesh: Mesh | RawMesh, suffix: str) -> Iterator[bytes]:
         with _ONE_AT_A_TIME:
             grid.write(path, binary=True)
         with path.open("rb", buffering=0) as written:
-            while piece := written.read(_PIECE):
+            while piece := written.read(_CHUNK_BYTES):
                 yield piece

@@ -24,7 +24,7 @@ import numpy as np
 
 from .._core import normal_bits
 from ..errors import InvalidMeshError, invalid_parameter
-from ..parameters import MOST_PITCH, is_complex, shown
+from ..parameters import MAX_PITCH, is_complex, shown
 from .arrays import is_masked
 
 #: Exponent of the lattice step for sets that any lattice can hold.
@@ -141,7 +141,7 @@ class Hyperplane:
 
         One that the default does not reach asks for a coarser one by powers of 1000, as meshes do.
         """
-        within = range(DEFAULT_PITCH, MOST_PITCH, 3)
+        within = range(DEFAULT_PITCH, MAX_PITCH, 3)
         coarsest = next((p for p in within if self.is_above_lattice(p) is None), DEFAULT_PITCH)
         for pitch in range(coarsest, _FINEST_PITCH - 1, -1):
             if self.is_above_lattice(pitch) is None and self.on_lattice(pitch).moved is None:

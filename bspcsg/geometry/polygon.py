@@ -72,21 +72,24 @@ def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
     the input; triangles overlap only if the contours cross.
     """
     edges = directed_edges(contours)
-    many = len(edges) > _FEW
-    triangles = _many_triangles(contours, edges) if many else _few_triangles(contours)
+    if len(edges) > _MAX_MANIFOLD_CORNERS:
+        triangles = _region_triangles(contours, edges)
+    else:
+        triangles = _manifold_triangles(contours)
     return triangles if _has_border(triangles, edges) else _fans(contours)
 
 
-#: Corners up to which manifold3d is quick; beyond, it takes the square of their number, and needles
-#: that import takes the square of, too. It calls itself for each of many corners on one line.
-_FEW = 200
+#: The largest number of corners that manifold3d triangulates. Its time grows with their square, and
+#: so does that of importing the needles that it makes. For many corners on one line its recursion
+#: is as deep as their number.
+_MAX_MANIFOLD_CORNERS = 200
 
 
-def _few_triangles(contours: Sequence[FloatArray]) -> IndexArray:
+def _manifold_triangles(contours: Sequence[FloatArray]) -> IndexArray:
     return np.asarray(manifold3d.triangulate(list(contours)), dtype=np.int64).reshape(-1, 3)
 
 
-def _many_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> IndexArray:
+def _region_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> IndexArray:
     """Return the triangles of a region, or of pieces of contours that bound none.
 
     A piece of many corners that crosses itself is cut between two of them. Its halves have the cut
@@ -113,8 +116,8 @@ def _piece_triangles(corners: FloatArray) -> IndexArray | None:
     """Return the triangles of one contour; None if it is too long for one that crosses itself."""
     is_turned = signed_area(corners) < 0
     contour = np.ascontiguousarray(corners[::-1]) if is_turned else corners
-    if len(contour) <= _FEW:
-        triangles = _few_triangles([contour])
+    if len(contour) <= _MAX_MANIFOLD_CORNERS:
+        triangles = _manifold_triangles([contour])
     else:
         found = outline_triangles(contour, directed_edges([contour]))
         if found is None:
@@ -260,15 +263,15 @@ def _contains(outer: FloatArray, inner: FloatArray) -> bool:
     is_near = ((probes >= outer.min(axis=0)) & (probes <= outer.max(axis=0))).all(axis=1)
     if 2 * is_near.sum() <= len(probes):
         return False
-    together = max(1, _PAIRS // len(outer))
+    together = max(1, _PAIRS_PER_BATCH // len(outer))
     near = probes[is_near]
     parts = [near[start : start + together] for start in range(0, len(near), together)]
     inside = sum(int((_crossings(outer, part) % 2).sum()) for part in parts)
     return 2 * inside > len(probes)
 
 
-#: Pairs of a point and an edge that are looked at together.
-_PAIRS = 1 << 16
+#: The number of pairs of a point and an edge that are computed together, which bounds the memory.
+_PAIRS_PER_BATCH = 1 << 16
 
 
 def _crossings(contour: FloatArray, points: FloatArray) -> IndexArray:

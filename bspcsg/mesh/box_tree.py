@@ -8,18 +8,18 @@ import numpy as np
 
 from .._types import FloatArray, IndexArray
 
-#: Members of a leaf.
-_LEAF = 8
+#: The number of members of a leaf.
+_LEAF_SIZE = 8
 
-#: Boxes of a level that are followed to leaves near a point. Measured: with one, the search for the
-#: nearest triangles takes four times as long, with eight half as long again.
-_FOLLOWED = 4
+#: The number of boxes on each level that are followed to leaves near a point. With one, the search
+#: for the nearest triangles takes four times as long, with eight half as long again.
+_BOXES_FOLLOWED = 4
 
 #: Bits of each coordinate in the order along which members are sorted.
 _BITS = 21
 
-#: Pairs of boxes that are divided together, which bounds the memory to some 100 MB.
-_CHUNK = 1 << 16
+#: The number of pairs of boxes that are divided together: this bounds the memory to some 100 MB.
+_PAIRS_PER_BATCH = 1 << 16
 
 #: Pairs of boxes on one level of two trees: their numbers in both, (k, 2).
 BoxPairs: TypeAlias = IndexArray
@@ -47,7 +47,7 @@ class BoxTree:
         """Return the tree over triangles, (m, 3, 3), or over boxes, (m, 2, 3)."""
         low, high = corners.min(axis=1), corners.max(axis=1)
         order = np.argsort(_along_a_curve((low + high) / 2), kind="stable")
-        starts = np.arange(0, len(order), _LEAF)
+        starts = np.arange(0, len(order), _LEAF_SIZE)
         boxes = np.minimum.reduceat(low[order], starts), np.maximum.reduceat(high[order], starts)
         levels = [boxes]
         while len(levels[-1][0]) > 1:
@@ -67,13 +67,13 @@ class BoxTree:
         for low, high in reversed(self.levels[:-1]):
             halves = np.hstack([2 * near, np.minimum(2 * near + 1, len(low) - 1)])
             gaps = squared_gaps(low[halves], high[halves], around, around)
-            best = np.argsort(gaps, axis=1, kind="stable")[:, :_FOLLOWED]
+            best = np.argsort(gaps, axis=1, kind="stable")[:, :_BOXES_FOLLOWED]
             near = np.take_along_axis(halves, best, axis=1)
         return near
 
     def members(self, leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
         """Return the members of leaves, and for each the row of its leaf."""
-        places = leaves[:, None] * _LEAF + np.arange(_LEAF)
+        places = leaves[:, None] * _LEAF_SIZE + np.arange(_LEAF_SIZE)
         rows = np.broadcast_to(np.arange(len(leaves))[:, None], places.shape)
         there = places < len(self.order)
         return self.order[places[there]], rows[there]
@@ -111,7 +111,9 @@ class Nearness:
                 yield pairs[near]
                 continue
             below, halves = self._divided(level, pairs[near])
-            chunks = [halves[k : k + _CHUNK] for k in range(0, len(halves), _CHUNK)]
+            chunks = [
+                halves[k : k + _PAIRS_PER_BATCH] for k in range(0, len(halves), _PAIRS_PER_BATCH)
+            ]
             waiting.extend((below, chunk) for chunk in reversed(chunks))
 
     def _gaps(self, level: tuple[int, int], pairs: BoxPairs) -> FloatArray:

@@ -7,8 +7,8 @@ import numpy as np
 from .._types import FloatArray, IndexArray
 from .box_tree import BoxTree, Nearness
 
-#: Boxes that are asked for at once: of a thousand nested ones, 2 MB.
-_BATCH = 256
+#: The number of boxes that are looked up together: among a thousand nested boxes they take 2 MB.
+_BOXES_PER_BATCH = 256
 
 
 def boxes_of(corners: FloatArray, owner: IndexArray) -> FloatArray:
@@ -48,8 +48,8 @@ def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
         yield from (np.zeros(0, dtype=np.int64) for _ in inner)
         return
     tree = BoxTree.over(outer)
-    for at in range(0, len(inner), _BATCH):
-        yield from _around(inner[at : at + _BATCH], outer, tree)
+    for at in range(0, len(inner), _BOXES_PER_BATCH):
+        yield from _around(inner[at : at + _BOXES_PER_BATCH], outer, tree)
 
 
 def _around(inner: FloatArray, outer: FloatArray, tree: BoxTree) -> list[IndexArray]:

@@ -38,7 +38,7 @@ def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
     )
     said = _said_of(mesh, "trimesh")
     if said is not None:
-        _Dressing(made, said).run()
+        _TrimeshAttributes(made, said).run()
     return made
 
 
@@ -58,7 +58,7 @@ def _tell(message: str, count: int) -> None:
     warn_of_losses([Finding("attributes_left_out", "warning", message, (), count)])
 
 
-class _Dressing:
+class _TrimeshAttributes:
     """The attributes of a trimesh: its visual, arrays by names, and the rest in its metadata."""
 
     def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
@@ -218,8 +218,8 @@ class Column:
 #: The columns of meshes that went to manifold3d, by the numbers that it tells their faces apart by.
 _LAYOUTS: dict[int, tuple[Column, ...]] = {}
 
-#: More meshes than these are not remembered.
-_MOST_LAYOUTS = 1 << 16
+#: The largest number of meshes whose columns are remembered; the oldest are forgotten first.
+_MAX_LAYOUTS = 1 << 16
 
 
 def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
@@ -285,7 +285,7 @@ def _with_properties(
         np.array([0, len(corners)], dtype=np.uint64),
         np.array([original], dtype=np.uint32),
     )
-    while len(_LAYOUTS) >= _MOST_LAYOUTS:
+    while len(_LAYOUTS) >= _MAX_LAYOUTS:
         _LAYOUTS.pop(next(iter(_LAYOUTS)), None)
     _LAYOUTS[original] = columns
     return manifold3d.Manifold(made)

@@ -15,8 +15,9 @@ Point: TypeAlias = tuple[float, float, float]
 #: Relative rounding error of a tetrahedron's volume, by the lengths of three edges.
 _NOISE = 1e-15
 
-#: Most faces of a piece that are looked below, and most of the points that are kept.
-_TRIES, _POINTS = 60, 6
+#: The largest number of faces of a piece below which a point is looked for, and of points that are
+#: kept.
+_MAX_FACES_TRIED, _MAX_POINTS_KEPT = 60, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,10 +73,10 @@ class MeshPieces:
         origin = triangles[0, 0]
         local = triangles - origin
         normals = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0])
-        largest = np.argsort(-np.linalg.norm(normals, axis=1), kind="stable")[:_TRIES]
+        largest = np.argsort(-np.linalg.norm(normals, axis=1), kind="stable")[:_MAX_FACES_TRIED]
         below = [_below(local, normals, face) for face in largest.tolist()]
         found = sorted((pair for pair in below if pair is not None), key=lambda pair: -pair[0])
-        return [_as_point(point + origin) for _, point in found[:_POINTS]]
+        return [_as_point(point + origin) for _, point in found[:_MAX_POINTS_KEPT]]
 
 
 def _as_point(point: FloatArray) -> Point:

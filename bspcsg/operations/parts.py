@@ -11,8 +11,9 @@ from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: So many corners of a cavity are looked at first: hardly ever do all lie on the shell around it.
-_FIRST = 16
+#: The number of corners of a cavity that are tried first: it is rare that all of these lie on the
+#: shell around it.
+_CORNERS_TRIED_FIRST = 16
 
 
 @uncounted
@@ -119,7 +120,7 @@ class _Shells:
         if number not in self._solids:
             shell = self._meshes[number]
             self._solids[number] = Solid(shell.vertices, shell.faces, pitch=self._pitch)
-        for some in (points[:_FIRST], points[_FIRST:]):
+        for some in (points[:_CORNERS_TRIED_FIRST], points[_CORNERS_TRIED_FIRST:]):
             try:
                 sides = self._solids[number].classify(some)
             except InvalidMeshError:

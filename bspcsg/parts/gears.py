@@ -24,8 +24,8 @@ from ..solid.solid import Solid
 #: Height of a tooth above the reference circle and depth below it, in modules (ISO 53, profile A).
 _ADDENDUM, _DEDENDUM = 1.0, 1.25
 
-#: Radii at which the end of an undercut is looked for, before it is halved down on.
-_LOOKED_AT = 1000
+#: The number of radii at which the end of an undercut is looked for before bisection finds it.
+_RADII_TRIED = 1000
 
 
 @counted
@@ -157,9 +157,9 @@ class _Form:
         if along >= 0:
             return math.hypot(self.base, along)
         # The corner cuts into the flank: up to where its path leaves it.
-        radii = np.linspace(self.base, self.reference + _ADDENDUM, _LOOKED_AT)
+        radii = np.linspace(self.base, self.reference + _ADDENDUM, _RADII_TRIED)
         inside = np.flatnonzero(self.foot(radii) < self.flank(radii))
-        low, high = radii[inside[-1]], radii[min(inside[-1] + 1, _LOOKED_AT - 1)]
+        low, high = radii[inside[-1]], radii[min(inside[-1] + 1, _RADII_TRIED - 1)]
         for _ in range(50):
             middle = (low + high) / 2
             is_inside = self.foot(np.array([middle])) < self.flank(np.array([middle]))

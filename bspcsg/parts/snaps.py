@@ -14,8 +14,8 @@ from ..solid.solid import Solid
 #: The length of the land between catch and slope, as a part of the thickness.
 _LAND = 0.2
 
-#: The least thickness and undercut, as a part of the length.
-_LEAST = 1e-3
+#: The smallest thickness and undercut, as a share of the length.
+_MIN_RATIO = 1e-3
 
 
 @counted
@@ -152,7 +152,7 @@ def _nose(
         number(entrance, "entrance"),
         number(retention, "retention"),
     )
-    if max(out, thick) > long or min(out, thick) < _LEAST * long:
+    if max(out, thick) > long or min(out, thick) < _MIN_RATIO * long:
         raise invalid_parameter(
             f"thickness and undercut must be from a thousandth of the length to all of it, not"
             f" {thick:g} and {out:g} of {long:g}."

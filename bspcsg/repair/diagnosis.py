@@ -22,8 +22,8 @@ from ..solid.counting import uncounted
 from ..solid.measure import overlaps_of
 from ..solid.solid import Solid
 
-#: Most places that a finding keeps.
-_PLACES = 8
+#: The largest number of places that a finding names.
+_MAX_PLACES_NAMED = 8
 
 #: Height by longest edge below which a triangle's area is computed exactly.
 _FLAT = 1e-6
@@ -177,8 +177,8 @@ class EdgeUses:
 
     def faces_at(self, edges: IndexArray) -> tuple[int, ...]:
         """Return the first few faces at some edges."""
-        at = np.flatnonzero(np.isin(self.edge, edges[:_PLACES]))
-        return tuple(np.unique(self.face[at])[:_PLACES].tolist())
+        at = np.flatnonzero(np.isin(self.edge, edges[:_MAX_PLACES_NAMED]))
+        return tuple(np.unique(self.face[at])[:_MAX_PLACES_NAMED].tolist())
 
 
 def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
@@ -261,7 +261,7 @@ def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]
     except BspcsgError as error:
         known = any(found.severity == "error" for found in findings)
         if not known or error.code != "not_closed":
-            where = error.where[:_PLACES]
+            where = error.where[:_MAX_PLACES_NAMED]
             findings.append(Finding(error.code, "error", error.message, where, len(error.where)))
         names = {"not_closed": "not closed", "empty_mesh": "empty"}
         return None, names.get(error.code, "refused")
@@ -309,7 +309,7 @@ def _many(count: int, one: str, more: str = "") -> str:
 
 
 def _few(indices: IndexArray) -> tuple[int, ...]:
-    return tuple(indices[:_PLACES].tolist())
+    return tuple(indices[:_MAX_PLACES_NAMED].tolist())
 
 
 def _between(vertices: FloatArray, ends: Sequence[int] | IndexArray) -> str:

@@ -26,11 +26,11 @@ STEPS = ("weld", "dedup", "drop", "split", "orient", "fill")
 _CHILD = Path(__file__).with_name("child.py")
 _MISSING = 6
 
-#: pymeshlab counts edges in 32 bits; no mesh has a larger hole.
-_LARGEST_HOLE = 2**31 - 1
+#: The largest number of edges around a hole that pymeshlab can be asked for: it counts in 32 bits.
+_MAX_HOLE_EDGES = 2**31 - 1
 
-#: Most names that are told.
-_TOLD = 4
+#: The largest number of names that a message shows.
+_MAX_NAMES_SHOWN = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +102,7 @@ def repair(
         message = f"{raw.name or 'the mesh'}: there is no triangle in it, so nothing is repaired."
         raise InvalidMeshError(message, "empty_mesh")
     ordered = [step for step in STEPS if step in steps]
-    settings = {"steps": ordered, "weld": weld, "max_hole": min(max_hole, _LARGEST_HOLE)}
+    settings = {"steps": ordered, "weld": weld, "max_hole": min(max_hole, _MAX_HOLE_EDGES)}
     with tempfile.TemporaryDirectory() as folder:
         np.savez(
             Path(folder) / "mesh.npz",
@@ -136,8 +136,12 @@ def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
     found = []
     for code, kind, names in kinds:
         if names:
-            told = ", ".join(f"“{name}”" for name in list(names)[:_TOLD])
-            more = f" and {len(names) - _TOLD} more" if len(names) > _TOLD else ""
+            told = ", ".join(f"“{name}”" for name in list(names)[:_MAX_NAMES_SHOWN])
+            more = (
+                f" and {len(names) - _MAX_NAMES_SHOWN} more"
+                if len(names) > _MAX_NAMES_SHOWN
+                else ""
+            )
             message = f"repairing keeps no {kind}: {told}{more} were left out."
             found.append(Finding(code, "warning", message, (), len(names)))
     return tuple(found)

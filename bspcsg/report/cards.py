@@ -14,20 +14,21 @@ from .viewer.packing import packed
 from .viewer.still import camera_for, rings, still
 from .wording import tone, whole
 
-#: Characters of a page with so many cards; a page with more cards may be longer in proportion.
-_PAGE, _CARDS = 1_450_000, 40
+#: The number of characters that a page with so many cards may have. A page with more cards may be
+#: longer in proportion.
+_PAGE_CHARACTERS, _CARDS_PER_PAGE = 1_450_000, 40
 
-#: Share of the page that cards have even if the table is long.
-_LEAST_SHARE = 0.3
+#: The smallest share of a page that is left for cards if the table is long.
+_MIN_CARD_SHARE = 0.3
 
 #: Cells a side that a view is simplified to, until it fits.
 _CELLS = (128, 64, 40, 24)
 
-#: Characters of the pictures of one card, about.
-_PICTURES = 10_000
+#: About the number of characters of the pictures of one card.
+_PICTURE_CHARACTERS = 10_000
 
-#: The most that one view may take, in shares of what is left.
-_GENEROSITY = 2
+#: The largest size of one view, in equal shares of the characters that are left.
+_MAX_VIEW_SHARES = 2
 
 
 @dataclass(frozen=True)
@@ -68,7 +69,7 @@ class Card:
     note: str
 
 
-class Purse:
+class PageBudget:
     """The characters that may still be spent on cards.
 
     Parameters
@@ -82,8 +83,8 @@ class Purse:
 
     def __init__(self, cards: int, spent: int, page: float | None = None) -> None:
         self._cards = cards
-        page = _PAGE * max(1.0, cards / _CARDS) if page is None else page
-        self.left = max(page - spent, _LEAST_SHARE * page)
+        page = _PAGE_CHARACTERS * max(1.0, cards / _CARDS_PER_PAGE) if page is None else page
+        self.left = max(page - spent, _MIN_CARD_SHARE * page)
 
     def spend(self, characters: int) -> None:
         """Take so many out."""
@@ -93,8 +94,8 @@ class Purse:
         """Return what the view of the next card may take, when its pictures are paid for."""
         cards = max(self._cards, 1)
         self._cards = cards - 1
-        free = self.left - self._cards * _PICTURES
-        return min(free, _GENEROSITY * free / cards)
+        free = self.left - self._cards * _PICTURE_CHARACTERS
+        return min(free, _MAX_VIEW_SHARES * free / cards)
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:
@@ -110,7 +111,7 @@ def _urgency(case: CaseRecord) -> tuple[bool, bool, int, float, str]:
     return not failed, unseen and not failed, rank(case), -doubt, case["case"]
 
 
-def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Iterable[Card]:
+def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) -> Iterable[Card]:
     """Yield a card for each case; what does not fit is left out and said."""
     for number, case in enumerate(cases):
         address = f"case-{number + 1}"
@@ -123,9 +124,9 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, purse: Purse) -> Ite
         except BspcsgError as error:
             yield Card(address, case, tone(case["verdict"]), [], None, error.message)
             continue
-        purse.spend(sum(len(image) for figure in figures for image in figure.images))
-        model, note = model_within(stored.layers, purse.allowance())
-        purse.spend(len(model["data"]) if model else 0)
+        budget.spend(sum(len(image) for figure in figures for image in figure.images))
+        model, note = model_within(stored.layers, budget.allowance())
+        budget.spend(len(model["data"]) if model else 0)
         yield Card(address, case, tone(case["verdict"]), figures, model, note)
 
 

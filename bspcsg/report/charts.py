@@ -7,8 +7,8 @@ from typing import NamedTuple
 _WIDTH, _HEIGHT = 360, 190
 _LEFT, _RIGHT, _TOP, _BOTTOM = 42, 8, 8, 32
 
-#: Points of a curve: more cannot be told apart.
-_MOST_POINTS = 200
+#: The largest number of steps of a curve: nobody could see more in a picture of this width.
+_MAX_CURVE_STEPS = 200
 
 
 class Mark(NamedTuple):
@@ -64,7 +64,9 @@ def share_below(series: Sequence[tuple[str, Sequence[float]]]) -> Chart | None:
 def _path(values: Sequence[float], low: int, high: int) -> str:
     """Return the steps of a curve, each as far up as the share of values up to there."""
     count = len(values)
-    picked = sorted({round(k * (count - 1) / _MOST_POINTS) for k in range(_MOST_POINTS + 1)})
+    picked = sorted(
+        {round(k * (count - 1) / _MAX_CURVE_STEPS) for k in range(_MAX_CURVE_STEPS + 1)}
+    )
     steps = [
         f"H{_x(math.log10(values[k]), low, high):.1f}V{_y((k + 1) / count):.1f}"
         for k in picked

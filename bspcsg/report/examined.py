@@ -13,7 +13,7 @@ from ..errors import Finding
 from ..formats.raw import RawMesh
 from ..repair.diagnosis import Diagnosis
 from .assets import asset, bundle, rendered
-from .cards import Figure, Purse, model_within
+from .cards import Figure, PageBudget, model_within
 from .viewer.checked import assembled, marked
 from .viewer.faces import OWN
 from .viewer.landmark import Landmark
@@ -21,8 +21,8 @@ from .viewer.layer import Layer, drawn_points
 from .viewer.still import camera_for, rings, still
 from .wording import NOTHING, number, vector, whole
 
-#: Characters of a page above which browsers take seconds to open it.
-_PAGE = 20_000_000
+#: The largest number of characters of a page: browsers take seconds to open a longer one.
+_MAX_PAGE_CHARACTERS = 20_000_000
 
 _FILES = ("page.css", "report.css", "loader.js", "table.js")
 
@@ -101,13 +101,13 @@ class CheckPage:
 
     def __init__(self, files: int, thin: float | None = None) -> None:
         spent = len(bundle()) + sum(len(asset(name)) for name in _FILES)
-        self._purse = Purse(files, spent, _PAGE)
+        self._budget = PageBudget(files, spent, _MAX_PAGE_CHARACTERS)
         self._thin = thin
         self._sheets: list[Sheet] = []
 
     def add(self, file: str, whole_file: Examination) -> None:
         """Show a file, and each of its objects if there are several."""
-        allowance = self._purse.allowance() / (1 + len(whole_file.objects))
+        allowance = self._budget.allowance() / (1 + len(whole_file.objects))
         if whole_file.objects:
             scene = assembled(whole_file)
         else:
@@ -141,8 +141,8 @@ class CheckPage:
         paint = next((own for own in OWN if own in paints), "")
         told = {"unit": mesh.unit, "landmarks": landmarks, "paint": paint}
         model, note = (None, "") if not figures else model_within(layers, allowance, **told)
-        self._purse.spend(sum(len(image) for one in figures for image in one.images))
-        self._purse.spend(len(model["data"]) if model else 0)
+        self._budget.spend(sum(len(image) for one in figures for image in one.images))
+        self._budget.spend(len(model["data"]) if model else 0)
         sheet = Sheet(
             self._address,
             file,

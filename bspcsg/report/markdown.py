@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from ..campaign.record import CaseRecord, RunRecord, is_failure
 from ..campaign.summary import conclusion, counts_by_verdict
 
-#: Most cases that a table lists.
-_MOST = 50
+#: The largest number of cases that a table lists.
+_MAX_CASES_LISTED = 50
 
 #: Verdicts that are listed although they are no failures.
 _NOTEWORTHY = ("oracle failed", "oracle refused", "within rounding", "refused")
@@ -48,9 +48,9 @@ def _counts(cases: Sequence[CaseRecord]) -> str:
 
 def _listed(cases: Sequence[CaseRecord]) -> str:
     rows = [_row(["case", "verdict", "why", "again"]), _row(["---"] * 4)]
-    for case in cases[:_MOST]:
+    for case in cases[:_MAX_CASES_LISTED]:
         rows.append(_row([case["case"], case["verdict"], case["reason"], _code(case["command"])]))
-    more = len(cases) - _MOST
+    more = len(cases) - _MAX_CASES_LISTED
     return "\n".join(rows) + (f"\n\nand {more} more" if more > 0 else "")
 
 

@@ -7,14 +7,14 @@ from typing import Any
 from ..campaign.record import CaseRecord, FactsRecord, Results, is_failure
 from ..campaign.summary import counts_by_verdict
 from .assets import asset, bundle, rendered
-from .cards import Purse, cards_of, picked
+from .cards import PageBudget, cards_of, picked
 from .charts import Chart, share_below
 from .merging import ordered, versions_of
 from .table import table
 from .wording import meaning, milliseconds, number, tone, vector, whole
 
-#: Characters of one card beside its pictures and its view, about.
-_CARD_TEXT = 4_000
+#: About the number of characters of one card without its pictures and its view.
+_CARD_TEXT_CHARACTERS = 4_000
 
 _FILES = ("page.css", "report.css", "loader.js", "table.js")
 
@@ -58,7 +58,11 @@ def report_page(
     columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
     # Each cell and row costs its tags besides its text.
     spent = sum(60 + sum(4 + len(cell) for cell in row.cells) for row in rows)
-    spent += len(bundle()) + sum(len(asset(name)) for name in _FILES) + _CARD_TEXT * len(chosen)
+    spent += (
+        len(bundle())
+        + sum(len(asset(name)) for name in _FILES)
+        + _CARD_TEXT_CHARACTERS * len(chosen)
+    )
     page = rendered(
         "report.html",
         title=title,
@@ -74,7 +78,7 @@ def report_page(
         columns=columns,
         rows=rows,
         operations=sorted({case["operation"] for case in cases}),
-        cards=list(cards_of(watch(chosen), results, Purse(len(chosen), spent))),
+        cards=list(cards_of(watch(chosen), results, PageBudget(len(chosen), spent))),
         total=len(cases),
         facts=_facts,
         number=number,

@@ -23,12 +23,19 @@ from ..geometry import transform
 from ..geometry.chain import BLOCK, FactorBlock, FactorChain
 from ..geometry.hyperplane import DEFAULT_PITCH, Hyperplane, exact_number
 from ..once import Last, Once
-from ..parameters import MOST_PITCH
+from ..parameters import MAX_PITCH
 from .extent import EXTENTS, Extent
-from .moving import SaidMesh
+from .moving import AttributedMesh
 from .program import COMPLEMENT
-from .sayings import Sayings, after_motion, all_tagged, attributes_of, patched, said_of
 from .sewing import sewn
+from .source_attributes import (
+    SourceAttributes,
+    after_motion,
+    all_tagged,
+    attributes_of,
+    inherited,
+    patched,
+)
 
 
 def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
@@ -52,8 +59,9 @@ class Pitches(Last[int, Tree]):
             return self.keep(pitch, tree.refined(pitch))
 
 
-#: The fewest steps across a mesh that may be rounded for others: import takes no fewer, either.
-_FEWEST_STEPS = 10**6
+#: The smallest number of lattice steps across a mesh whose corners may be rounded to the lattice of
+#: other operands. Import uses no fewer either.
+_MIN_STEPS_ACROSS = 10**6
 
 
 class MeshLeaf:
@@ -106,7 +114,7 @@ class MeshLeaf:
         return True
 
     @property
-    def sayings(self) -> Sayings:
+    def source_attributes(self) -> SourceAttributes:
         """The attributes of the mesh."""
         said = self._settled().attributes
         return () if said is None else (said,)
@@ -142,7 +150,7 @@ class MeshLeaf:
         """
         vertices, faces = self.arrays()
         is_exact = np.array_equal(np.round(vertices, -pitch), vertices)
-        if not is_exact and np.ptp(vertices, axis=0).max() < _FEWEST_STEPS * 10.0**pitch:
+        if not is_exact and np.ptp(vertices, axis=0).max() < _MIN_STEPS_ACROSS * 10.0**pitch:
             return None
         leaf = MeshLeaf(vertices, faces, pitch, False, self._winding)
         leaf._content = replace(self._settled(), arrays=(vertices, faces))
@@ -156,7 +164,7 @@ class MeshLeaf:
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
         """Return the leaf of the mesh whose vertices the factors have moved."""
         # Rounding moves vertices, so the word given for the original no longer counts.
-        said = SaidMesh(*self.arrays(), self._settled().attributes)
+        said = AttributedMesh(*self.arrays(), self._settled().attributes)
         found = None if self._trusted else sewn(said, self.grown())
         mesh = said if found is None else found.mesh
         return MeshLeaf.moved(mesh, factors, self.given_pitch, self._winding)
@@ -171,7 +179,7 @@ class MeshLeaf:
     @classmethod
     def moved(
         cls,
-        mesh: SaidMesh,
+        mesh: AttributedMesh,
         factors: FactorChain,
         pitch: int | None = None,
         winding: WindingRule = "positive",
@@ -192,7 +200,7 @@ class MeshLeaf:
     @cached_property
     def shown(self) -> Tree:
         """The tree as it is made into a mesh."""
-        return patched(self.grown(), self.sayings)
+        return patched(self.grown(), self.source_attributes)
 
     def _settled(self) -> "_Settled":
         """Return the content; what moving the vertices has made cross is mended on first use."""
@@ -244,13 +252,13 @@ class _Moved:
 
     Parameters
     ----------
-    mesh : SaidMesh
+    mesh : AttributedMesh
     before : (n, 3) float64
         The vertices before they were moved.
     pitch : int
     """
 
-    mesh: SaidMesh
+    mesh: AttributedMesh
     before: FloatArray
     pitch: int
     _result: Once[_Settled] = field(default_factory=Once, init=False, repr=False)
@@ -283,7 +291,7 @@ class TreeLeaf:
     record : Record or None
         The record of its evaluation, as long as that is remembered.
     extent : Extent
-    sayings : tuple of Attributes or None
+    source_attributes : tuple of Attributes or None
         The values on each source of the tree; empty if there are none.
     given_pitch : int or None
         As for `MeshLeaf`.
@@ -294,7 +302,7 @@ class TreeLeaf:
     result: Tree
     record: Record | None = None
     extent: Extent = None
-    sayings: Sayings = ()
+    source_attributes: SourceAttributes = ()
     given_pitch: int | None = None
     tags: Mapping[str, object] = field(default_factory=dict)
     _pitches: Pitches = field(default_factory=Pitches, init=False, repr=False)
@@ -354,7 +362,7 @@ class TreeLeaf:
     @cached_property
     def shown(self) -> Tree:
         """The tree as it is made into a mesh."""
-        return patched(self.result, self.sayings)
+        return patched(self.result, self.source_attributes)
 
     @property
     def is_constant(self) -> bool:
@@ -378,7 +386,7 @@ class PlaneLeaf:
     pitch: int | None = field(default=None, init=False)
     given_pitch: int | None = field(default=None, init=False)
     extent: Extent = field(default=None, init=False)
-    sayings: Sayings = field(default=(), init=False)
+    source_attributes: SourceAttributes = field(default=(), init=False)
     _images: WeakKeyDictionary[FactorBlock, Hyperplane] = field(
         default_factory=WeakKeyDictionary, init=False, repr=False
     )
@@ -436,7 +444,7 @@ class ConstantLeaf:
     full: bool
     pitch: int | None = field(default=None, init=False)
     given_pitch: int | None = field(default=None, init=False)
-    sayings: Sayings = field(default=(), init=False)
+    source_attributes: SourceAttributes = field(default=(), init=False)
 
     @property
     def extent(self) -> Extent:
@@ -464,7 +472,7 @@ def tree_of(leaf: ExpressionLeaf) -> Tree:
 
 def shown_tree(leaf: ExpressionLeaf) -> Tree:
     """Return the tree that the leaf's mesh is made of: faces that differ in it stay apart."""
-    if leaf.sayings and isinstance(leaf, (MeshLeaf, TreeLeaf)):
+    if leaf.source_attributes and isinstance(leaf, (MeshLeaf, TreeLeaf)):
         return leaf.shown
     return tree_of(leaf)
 
@@ -480,10 +488,10 @@ def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf
         return leaf
     with core_errors():
         tree = tree_of(leaf).renamed()
-    said = all_tagged(tree, leaf.sayings, values)
+    said = all_tagged(tree, leaf.source_attributes, values)
     if isinstance(leaf, MeshLeaf):
         return TreeLeaf(tree, None, leaf.extent, said, leaf.given_pitch)
-    return replace(leaf, result=tree, sayings=said, tags={**leaf.tags, **values})
+    return replace(leaf, result=tree, source_attributes=said, tags={**leaf.tags, **values})
 
 
 def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
@@ -508,9 +516,9 @@ def run(record: Record) -> TreeLeaf:
     leaves, trees = _on_one_lattice(record.leaves, extent)
     with core_errors():
         result = Tree.evaluate(record.program, trees)
-    operands = [(tree, leaf.sayings) for tree, leaf in zip(trees, leaves, strict=True)]
+    operands = [(tree, leaf.source_attributes) for tree, leaf in zip(trees, leaves, strict=True)]
     given = _given_pitch_of(record.leaves, result)
-    return TreeLeaf(result, record, extent, said_of(result, operands), given)
+    return TreeLeaf(result, record, extent, inherited(result, operands), given)
 
 
 def bounded_on_one_lattice(leaves: Sequence[ExpressionLeaf]) -> list[Tree]:
@@ -544,12 +552,14 @@ def _on_one_lattice(
 def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
     """Return the finest pitch at which every leaf of a coarser one stays on the lattice."""
     finest = _common_pitch(leaves)
-    coarser = range(finest, MOST_PITCH)
-    held = (pitch for pitch in coarser if all(_is_held(leaf, pitch, extent) for leaf in leaves))
-    return next(held, finest)
+    coarser = range(finest, MAX_PITCH)
+    fitting = (
+        pitch for pitch in coarser if all(_fits_lattice(leaf, pitch, extent) for leaf in leaves)
+    )
+    return next(fitting, finest)
 
 
-def _is_held(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
+def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
     if isinstance(leaf, PlaneLeaf):
         return extent is not None or leaf.beyond(pitch) is None
     if leaf.pitch is None or leaf.pitch <= pitch:
@@ -574,8 +584,8 @@ def _moved_output(leaf: TreeLeaf, factors: FactorChain) -> MeshLeaf:
     tree = leaf.shown
     with core_errors():
         vertices, faces = tree.to_mesh()
-    said = attributes_of(tree, leaf.sayings) if leaf.sayings else None
-    return MeshLeaf.moved(SaidMesh(vertices, faces, said), factors, leaf.given_pitch)
+    said = attributes_of(tree, leaf.source_attributes) if leaf.source_attributes else None
+    return MeshLeaf.moved(AttributedMesh(vertices, faces, said), factors, leaf.given_pitch)
 
 
 #: Something that is being moved: it asks for leaves under factors, and is sent them where they go.
@@ -616,8 +626,8 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
     try:
         with core_errors():
             moved = tree_of(base).moved(list(motion.axes), list(motion.shift))
-        sayings = after_motion(motion, base.sayings)
-        return TreeLeaf(moved, None, base.extent, sayings, base.given_pitch)
+        source_attributes = after_motion(motion, base.source_attributes)
+        return TreeLeaf(moved, None, base.extent, source_attributes, base.given_pitch)
     except (LimitError, UnboundedError):
         # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
         # off by the border of the universe, which does not move with it.

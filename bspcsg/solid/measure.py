@@ -23,14 +23,15 @@ _PRIMES = (2**61 - 1, 2**61 - 31)
 #: Fractions of more digits take more than about a second to bring to lowest terms.
 LONGEST_VOLUME = 200_000
 
-#: No machine holds a number of more digits; the core counts its bits in 64.
-_MOST_DIGITS = 10**15
+#: The largest bound on decimal digits that the core gets, which counts bits in 64-bit integers. No
+#: machine holds a number with more digits.
+_MAX_DIGITS = 10**15
 
 #: Volumes below this part of what they are summed from may be rounding.
 _ROUNDING = 1e-9
 
-#: Most places that a finding names.
-_PLACES = 8
+#: The largest number of places that a finding names.
+_MAX_PLACES_NAMED = 8
 
 
 class Measured(ABC):
@@ -156,7 +157,7 @@ class Measured(ABC):
         LimitError
             If they might have more; the message says how many.
         """
-        digits = min(at_least(1, most_digits, "most_digits"), _MOST_DIGITS)
+        digits = min(at_least(1, most_digits, "most_digits"), _MAX_DIGITS)
         bits = math.ceil(digits * math.log2(10))
         with core_errors():
             return Fraction(*self.normalized().tree.volume6_exact(bits))
@@ -306,7 +307,7 @@ def overlaps_of(solid: Measured) -> tuple[Finding, ...]:
         message += (
             f"; {len(crossing)} cross or overlap others, the first near {_near(mesh, crossing)}"
         )
-    where = tuple(crossing[:_PLACES])
+    where = tuple(crossing[:_MAX_PLACES_NAMED])
     overlap = Finding("self_overlap", "warning", message, where, max(1, len(crossing)))
     return (*turned, overlap)
 
@@ -333,7 +334,9 @@ def _turned_shells(mesh: Mesh, reduced: Measured) -> tuple[Finding, ...]:
         return ()
     many = "1 body is" if len(found) == 1 else f"{len(found)} bodies are"
     message = f"{many} inside out, and left out of the solid; the first near {_near(mesh, found)}"
-    return (Finding("inside_out", "warning", message, tuple(found[:_PLACES]), len(found)),)
+    return (
+        Finding("inside_out", "warning", message, tuple(found[:_MAX_PLACES_NAMED]), len(found)),
+    )
 
 
 def _faults_of(solid: Measured, told: tuple[Finding, ...]) -> tuple[Finding, ...]:
@@ -361,7 +364,7 @@ def _crossings_of(solid: Measured, *, is_on_lattice: bool) -> tuple[Finding, ...
     if is_on_lattice:
         code, much = "self_overlap", " cross or overlap others"
     message = f"these triangles{much}; the first near {_near(mesh, crossing)}"
-    return (Finding(code, "warning", message, tuple(crossing[:_PLACES]), len(crossing)),)
+    return (Finding(code, "warning", message, tuple(crossing[:_MAX_PLACES_NAMED]), len(crossing)),)
 
 
 def _flat(mesh: Mesh, faces: list[int]) -> Finding:
@@ -370,7 +373,7 @@ def _flat(mesh: Mesh, faces: list[int]) -> Finding:
         "these triangles of inputs have no area in doubles, though their corners have on the"
         f" lattice; the first near {_near(mesh, faces)}"
     )
-    return Finding("flat", "note", message, tuple(faces[:_PLACES]), len(faces))
+    return Finding("flat", "note", message, tuple(faces[:_MAX_PLACES_NAMED]), len(faces))
 
 
 def _crossing_faces(mesh: Mesh) -> list[int]:

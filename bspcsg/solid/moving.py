@@ -13,8 +13,8 @@ from ..geometry.chain import FactorChain
 
 
 @dataclass(frozen=True, eq=False)
-class SaidMesh:
-    """A mesh, and what is said of its faces.
+class AttributedMesh:
+    """A mesh with the attributes of its faces.
 
     Parameters
     ----------
@@ -27,14 +27,14 @@ class SaidMesh:
     faces: IndexArray
     attributes: Attributes | None = None
 
-    def moved(self, factors: FactorChain) -> "SaidMesh":
+    def moved(self, factors: FactorChain) -> "AttributedMesh":
         """Return the mesh moved by the product of the factors, its outside still outside."""
         said = self.attributes and self.attributes.turned(factors.product[:3, :3])
         faces = self.faces
         if factors.mirrors:
             faces = np.ascontiguousarray(faces[:, ::-1])
             said = said and said.reordered([2, 1, 0])
-        return SaidMesh(transform.apply(factors.product, self.vertices), faces, said)
+        return AttributedMesh(transform.apply(factors.product, self.vertices), faces, said)
 
     def mended(self, before: FloatArray, pitch: int) -> "Mended | None":
         """Return the mesh without the crossings that moving its vertices has made, if it has any.
@@ -57,7 +57,7 @@ class SaidMesh:
         kept, faces = found["kept"], found["triangles"]
         said = self.attributes and self.attributes.onto(faces, kept)
         left = np.isin(kept, found["crossings"])
-        return Mended(SaidMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
+        return Mended(AttributedMesh(found["vertices"], faces, said), kept, np.flatnonzero(left))
 
     def held_pitch(self, given: int | None) -> int | None:
         """Return the given pitch if its lattice holds all vertices, else None."""
@@ -81,13 +81,13 @@ class Mended:
 
     Parameters
     ----------
-    mesh : SaidMesh
+    mesh : AttributedMesh
     kept : (m,) int64
         The triangle of the mesh as it was moved that each of these stands for.
     left : (k,) int64
         The triangles that cross others still.
     """
 
-    mesh: SaidMesh
+    mesh: AttributedMesh
     kept: IndexArray
     left: IndexArray

@@ -13,7 +13,7 @@ from .._core import Tree
 from .._types import IndexArray
 from ..attributes.carrying import Surface, carried, patches_of
 from ..errors import core_errors
-from .moving import SaidMesh
+from .moving import AttributedMesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,34 +22,34 @@ class Sewn:
 
     Parameters
     ----------
-    mesh : SaidMesh
+    mesh : AttributedMesh
     kept : (m,) int64
         The triangle of the mesh before that each of these is a part of, ascending.
     """
 
-    mesh: SaidMesh
+    mesh: AttributedMesh
     kept: IndexArray
 
 
-def sewn(mesh: SaidMesh, tree: Tree) -> Sewn | None:
+def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
     """Return a mesh closed by index: with triangles divided at T-junctions, and corners welded.
 
     None if it closes wherever its corners are moved to.
 
     Parameters
     ----------
-    mesh : SaidMesh
+    mesh : AttributedMesh
     tree : Tree
         The one that was made from it.
     """
     if tree.closes_when_moved:
         return None
-    sayings = () if mesh.attributes is None else (mesh.attributes,)
+    attributes = () if mesh.attributes is None else (mesh.attributes,)
     with core_errors():
-        shown = tree.patched(patches_of(sayings)) if sayings else tree
+        shown = tree.patched(patches_of(attributes)) if attributes else tree
         surface = Surface(*shown.to_mesh(), shown.origins(), shown.flips())
-    said = carried(surface, sayings, shown.source_arrays) if sayings else None
+    said = carried(surface, attributes, shown.source_arrays) if attributes else None
     order = np.argsort(surface.source[:, 1], kind="stable")
     said = said and said.taken(order)
-    divided = SaidMesh(surface.vertices, surface.faces[order], said)
+    divided = AttributedMesh(surface.vertices, surface.faces[order], said)
     return Sewn(divided, surface.source[order, 1])

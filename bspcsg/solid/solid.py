@@ -54,10 +54,11 @@ from .movable import Movable
 from .point_set import PointSet
 from .profile import Profile
 from .program import Operator
-from .sayings import Sayings, later_attributes, said_of
+from .source_attributes import SourceAttributes, inherited, later_attributes
 
-#: Faces of results whose mesh is made for `repr`: that takes some hundredths of a second.
-_SMALL = 20_000
+#: The largest number of faces of a result whose mesh is made for `repr`, which takes some
+#: hundredths of a second.
+_MAX_FACES_FOR_REPR = 20_000
 
 
 @owning
@@ -321,9 +322,9 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return self._placed
 
     @property
-    def _sayings(self) -> Sayings:
+    def _source_attributes(self) -> SourceAttributes:
         """The attributes of each source of the tree."""
-        return self._leaf().sayings
+        return self._leaf().source_attributes
 
     def to_mesh(self) -> Mesh:
         """Return the boundary as a closed mesh; its arrays are read-only and kept.
@@ -341,13 +342,15 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return self._mesh
 
     def _made_mesh(self) -> Mesh:
-        return _mesh_of(self.tree, self._sayings)
+        return _mesh_of(self.tree, self._source_attributes)
 
     def _divided_mesh(self) -> Mesh:
         reduced = self.normalized()
         with core_errors():
             divided = reduced.tree.divided()
-        return reduced.to_mesh() if divided is None else _mesh_of(divided, reduced._sayings)
+        return (
+            reduced.to_mesh() if divided is None else _mesh_of(divided, reduced._source_attributes)
+        )
 
     def normalized(self) -> "Solid":
         """Return the same set with the reduced boundary as its mesh.
@@ -361,9 +364,11 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
                 reduced = tree.normalized()
             # If the check found nothing to change, the tree itself is the reduced one.
             if not _is_reduced(tree):
-                sayings = said_of(reduced, [(tree, self._sayings)])
+                source_attributes = inherited(reduced, [(tree, self._source_attributes)])
                 given = self._leaf().given_pitch
-                self._reduced = from_leaf(TreeLeaf(reduced, sayings=sayings, given_pitch=given))
+                self._reduced = from_leaf(
+                    TreeLeaf(reduced, source_attributes=source_attributes, given_pitch=given)
+                )
         return self if self._reduced is None else self._reduced
 
     @counted
@@ -502,7 +507,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             return self._mesh
         stats = leaf.result.stats()
         # What was moved or read back has no record of the kernels.
-        if stats["elements"] + stats.get("kernel_elements", 0) > _SMALL:
+        if stats["elements"] + stats.get("kernel_elements", 0) > _MAX_FACES_FOR_REPR:
             return None
         try:
             return self.to_mesh()
@@ -531,8 +536,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         if leaf.extent is None:
             leaf, factors = self._leaf(), UNMOVED
         tree = tree_of(leaf)
-        told = (_kept(tree, leaf.sayings), leaf.given_pitch)
-        needed = 2 if leaf.given_pitch is not None else 1 if leaf.sayings else 0
+        told = (_kept(tree, leaf.source_attributes), leaf.given_pitch)
+        needed = 2 if leaf.given_pitch is not None else 1 if leaf.source_attributes else 0
         return _restored, (tree.dump(), tuple(factors), *told[:needed])
 
 
@@ -626,7 +631,9 @@ def with_record(last: LastOperation, factors: FactorChain) -> Solid:
     record = Record(last.program, leaves)
     result = last.result
     given = given_pitch(result)
-    leaf = TreeLeaf(result.tree, record, sayings=result._sayings, given_pitch=given)
+    leaf = TreeLeaf(
+        result.tree, record, source_attributes=result._source_attributes, given_pitch=given
+    )
     return from_node(ExpressionNode(leaf), factors)
 
 
@@ -637,9 +644,9 @@ def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
     return from_node(operation(operator, operands), prefix)
 
 
-def _mesh_of(tree: Tree, sayings: Sayings) -> Mesh:
+def _mesh_of(tree: Tree, source_attributes: SourceAttributes) -> Mesh:
     with core_errors():
-        carried = later_attributes(tree, sayings)
+        carried = later_attributes(tree, source_attributes)
         return Mesh(*tree.to_mesh(), tree.origins(), carried).frozen()
 
 
@@ -647,19 +654,24 @@ def _is_reduced(tree: Tree) -> bool:
     return tree.simple is True
 
 
-def _kept(tree: Tree, sayings: Sayings) -> Sayings:
+def _kept(tree: Tree, source_attributes: SourceAttributes) -> SourceAttributes:
     """Return what is said of the sources whose faces may bound a solid, if anything is."""
-    if not sayings:
+    if not source_attributes:
         return ()
-    kept = zip(tree.named, sayings, strict=True)
+    kept = zip(tree.named, source_attributes, strict=True)
     return tuple(said if is_named else None for is_named, said in kept)
 
 
 def _restored(
-    data: bytes, factors: Factors, sayings: Sayings = (), given: int | None = None
+    data: bytes,
+    factors: Factors,
+    source_attributes: SourceAttributes = (),
+    given: int | None = None,
 ) -> Solid:
     with core_errors():
         tree = Tree.load(data)
         # Nothing and all of space are stored without sources.
-        leaf = TreeLeaf(tree, sayings=sayings if tree.sources else (), given_pitch=given)
+        leaf = TreeLeaf(
+            tree, source_attributes=source_attributes if tree.sources else (), given_pitch=given
+        )
         return from_node(ExpressionNode(leaf), FactorChain.of(factors))

@@ -59,8 +59,8 @@ Depth: TypeAlias = Literal["quick", "full"]
 #: Lattice steps, neighbouring doubles and tolerances of manifold3d that are forgiven.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
 
-#: Most pieces of a dispute that are settled, the thickest first.
-_MOST_PIECES = 50
+#: The largest number of pieces of a dispute that are settled, the thickest first.
+_MAX_PIECES_SETTLED = 50
 
 
 @uncounted
@@ -313,7 +313,7 @@ class _Check:
 
     def _ruling(self, ours: Mesh, theirs: Mesh, pieces: MeshPieces, rounding: float) -> Ruling:
         """Return whom the operands as they came support in the pieces that rounding leaves."""
-        disputed = pieces.thicker_than(rounding)[:_MOST_PIECES]
+        disputed = pieces.thicker_than(rounding)[:_MAX_PIECES_SETTLED]
         points = [pieces.points_in(piece) for piece in disputed]
         return settle(self.program, _meshes_of(self.came), ours, theirs, points)
 

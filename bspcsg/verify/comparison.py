@@ -22,9 +22,9 @@ from .verdict import Facts
 #: Added to a distance, as a part of the largest coordinate: far more than its rounding.
 _SLACK = 1e-12
 
-#: The number of points that are measured at once, and of their pairs with triangles; more need
-#: more memory.
-_BATCH, _CHUNK = 1000, 1 << 16
+#: The numbers of points, and of their pairs with triangles, that are measured together: they bound
+#: the memory.
+_POINTS_PER_BATCH, _PAIRS_PER_BATCH = 1000, 1 << 16
 
 
 @dataclass(frozen=True)
@@ -141,7 +141,9 @@ def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
     corners = mesh.vertices[mesh.faces]
     slack = _SLACK * max(np.abs(corners).max(), np.abs(points).max(initial=0.0))
     surface = _Surface(corners, slack)
-    batches = (points[at : at + _BATCH] for at in range(0, len(points), _BATCH))
+    batches = (
+        points[at : at + _POINTS_PER_BATCH] for at in range(0, len(points), _POINTS_PER_BATCH)
+    )
     return np.concatenate([np.zeros(0), *map(surface.distances, batches)])
 
 
@@ -173,8 +175,8 @@ class _Surface:
         """Lower what was found to the distances from the triangles of leaves."""
         numbers, rows = self._tree.members(pairs[:, 1])
         owners = pairs[rows, 0]
-        for at in range(0, len(owners), _CHUNK):
-            own, near = owners[at : at + _CHUNK], numbers[at : at + _CHUNK]
+        for at in range(0, len(owners), _PAIRS_PER_BATCH):
+            own, near = owners[at : at + _PAIRS_PER_BATCH], numbers[at : at + _PAIRS_PER_BATCH]
             low, high = (side[near] for side in self._boxes)
             gaps = squared_gaps(low, high, points[own], points[own])
             kept = gaps <= self._limit(found)[own]

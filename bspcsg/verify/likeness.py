@@ -17,8 +17,8 @@ from .verdict import Facts
 #: Relative error of volumes and areas summed in doubles.
 SUMMING = 1e-11
 
-#: Most faces at the seam that are looked at, from both sides each.
-_PROBED = 16
+#: The largest number of faces at the seam that are probed, each on both sides.
+_MAX_FACES_PROBED = 16
 
 #: The distance of a point from the face it belongs to, in lengths by which rounding moves surfaces.
 _CLEAR = 64.0
@@ -83,7 +83,9 @@ def _points_at_seam(mesh: Mesh, film: float) -> list[Point]:
     faces = np.flatnonzero(_is_at_seam(mesh))
     if len(faces) == 0:
         faces = np.arange(len(mesh.faces))
-    chosen = faces[np.linspace(0, len(faces) - 1, min(_PROBED, len(faces))).astype(np.int64)]
+    chosen = faces[
+        np.linspace(0, len(faces) - 1, min(_MAX_FACES_PROBED, len(faces))).astype(np.int64)
+    ]
     corners = mesh.vertices[mesh.faces[chosen]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     doubled = np.linalg.norm(normals, axis=1, keepdims=True)

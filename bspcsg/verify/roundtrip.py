@@ -14,8 +14,8 @@ from ..mesh.weld import welded
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: Most names that are told.
-_TOLD = 4
+#: The largest number of names that a message shows.
+_MAX_NAMES_SHOWN = 4
 
 
 @dataclass(frozen=True)
@@ -78,12 +78,12 @@ class Losses:
         if self.solid == (True, False):
             found.append("no longer a solid")
         if self.names:
-            told = ", ".join(f"“{name}”" for name in self.names[:_TOLD])
-            more = len(self.names) - _TOLD
+            told = ", ".join(f"“{name}”" for name in self.names[:_MAX_NAMES_SHOWN])
+            more = len(self.names) - _MAX_NAMES_SHOWN
             found.append(f"names gone: {told}" + (f" and {more} more" if more > 0 else ""))
         if self.attributes:
-            told = ", ".join(f"“{name}”" for name in self.attributes[:_TOLD])
-            more = len(self.attributes) - _TOLD
+            told = ", ".join(f"“{name}”" for name in self.attributes[:_MAX_NAMES_SHOWN])
+            more = len(self.attributes) - _MAX_NAMES_SHOWN
             found.append(f"attributes: {told}" + (f" and {more} more" if more > 0 else ""))
         return found
 

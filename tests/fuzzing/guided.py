@@ -29,14 +29,14 @@ FLAGS = [
 #: One input may take this long, and this much memory.
 SECONDS, MEGABYTES = 10, 2048
 
-#: An input is stopped after so many times as long: it may have waited for the processor.
-PATIENCE = 10
+#: An input is stopped after this multiple of its time: it may have waited for the processor.
+TIMEOUT_FACTOR = 10
 
-#: Longer inputs are no other scenes.
-LONGEST = 2000
+#: The largest number of bytes of an input: longer inputs give no other scenes.
+MAX_INPUT_BYTES = 2000
 
-#: After so many findings in one run a target is left alone.
-ENOUGH = 5
+#: A run of a target ends after this many findings.
+MAX_FINDINGS = 5
 
 _COVERAGE = re.compile(r"cov: (\d+) ft:")
 _COUNT = re.compile(r"stat::number_of_executed_units: (\d+)")
@@ -58,7 +58,7 @@ class Guided:
         """Run until a moment of the monotonic clock, again after each finding."""
         total, clock = Outcome(), CpuClock()
         ended = 0
-        while ended < ENOUGH and until - time.monotonic() > 1:
+        while ended < MAX_FINDINGS and until - time.monotonic() > 1:
             one = self._once(seed + 100 * ended, until)
             ended += 1
             total.executions += one.executions
@@ -89,9 +89,9 @@ class Guided:
         options = {
             "seed": seed % 2**31,
             "max_total_time": most,
-            "max_len": LONGEST,
+            "max_len": MAX_INPUT_BYTES,
             "len_control": 0,
-            "timeout": PATIENCE * SECONDS,
+            "timeout": TIMEOUT_FACTOR * SECONDS,
             "report_slow_units": SECONDS,
             "rss_limit_mb": MEGABYTES,
             "print_final_stats": 1,
@@ -104,7 +104,7 @@ class Guided:
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE,
                 env={**os.environ, "RUST_BACKTRACE": "0"},
-                timeout=most + 2 * PATIENCE * SECONDS,
+                timeout=most + 2 * TIMEOUT_FACTOR * SECONDS,
                 check=False,
             )
         except subprocess.TimeoutExpired as late:

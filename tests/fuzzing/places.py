@@ -36,8 +36,9 @@ RAYS: list[Point] = [
 ]
 
 
-#: More planes than this at one point divide its neighbourhood into too many parts to look at.
-PLANES = 12
+#: The largest number of planes through one point: more divide its neighbourhood into too many
+#: parts.
+MAX_PLANES = 12
 
 
 class UndecidedError(Exception):
@@ -124,7 +125,7 @@ def location(sets: Sequence[Known], value: Callable[[Sequence[bool]], bool], poi
     expression holds in some of the parts and not in others.
     """
     normals = sorted({reduced(n) for each in sets for n in each.normals_at(point)})
-    if len(normals) > PLANES:
+    if len(normals) > MAX_PLANES:
         raise UndecidedError
     places = around(normals)
     columns = [each.sides(point, places) for each in sets]

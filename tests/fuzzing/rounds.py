@@ -27,8 +27,8 @@ LARGE_SECONDS = 60
 #: The folder of cases that must be answered.
 CASES = Path(__file__).resolve().parents[1] / "corpus" / "cases"
 
-#: After so many findings in one run a target is left alone.
-ENOUGH = 20
+#: A run of a target ends after this many findings.
+MAX_FINDINGS = 20
 
 
 class Rounds:
@@ -40,7 +40,7 @@ class Rounds:
     def run(self, first: int, until: float) -> tuple[Outcome, int]:
         """Run rounds until a moment of the monotonic clock; return the next round, too."""
         outcome, clock, at = Outcome(), CpuClock(), first
-        while len(outcome.found) < ENOUGH and until - time.monotonic() > 1:
+        while len(outcome.found) < MAX_FINDINGS and until - time.monotonic() > 1:
             at, ended = self._rounds(at, until, outcome)
             if not ended:
                 break

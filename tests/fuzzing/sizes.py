@@ -36,17 +36,19 @@ _CORE = Path(__file__).parents[2] / "core" / "src"
 _ROOMS = ("mesh", "tree", "merge", "extract", "query", "python/calls/run.rs")
 _SIZE = re.compile(r"const [A-Z_]+: usize = (\d+)(?:_(\d+))?(?: << (\d+))?;")
 
-#: Sizes outside of these are met by all scenes, or would take minutes.
-LEAST, MOST = 8, 1 << 14
+#: The smallest and the largest size near which scenes are made: every scene has smaller ones, and
+#: larger ones would take minutes.
+MIN_SIZE, MAX_SIZE = 8, 1 << 14
 
-#: Faces around a corner, and corners of a polygon, at most: their needles cost the square.
-FAN = 129
+#: The largest number of faces around a corner, and of corners of a polygon: the time for their
+#: needles grows with its square.
+MAX_FAN_SIZE = 129
 
-#: Steps to points that are far from everything, at most.
-FAR = 100 * UNIT
+#: The largest distance of points that are far from everything, in lattice steps.
+MAX_FAR_STEPS = 100 * UNIT
 
-#: Operands of a scene that has many: their names are letters.
-CROWD = 24
+#: The largest number of operands of a scene: their names are letters.
+MAX_OPERANDS = 24
 
 #: Numbers of threads that must give the same bytes.
 THREADS = (1, 2, 4)
@@ -62,7 +64,7 @@ def thresholds() -> list[int]:
         for path in paths
         for low, more, shift in _SIZE.findall(path.read_text(encoding="utf-8"))
     }
-    return sorted(size for size in found if LEAST <= size <= MOST)
+    return sorted(size for size in found if MIN_SIZE <= size <= MAX_SIZE)
 
 
 def _sources(path: Path) -> list[Path]:
@@ -72,7 +74,7 @@ def _sources(path: Path) -> list[Path]:
 _THRESHOLDS = thresholds()
 
 
-def a_size(rng: Rng, most: int = MOST) -> int:
+def a_size(rng: Rng, most: int = MAX_SIZE) -> int:
     """Return a size beside a threshold, or at it."""
     fitting = [size for size in _THRESHOLDS if size <= most]
     return fitting[int(rng.integers(len(fitting)))] + int(rng.integers(-1, 2))
@@ -284,7 +286,7 @@ def _plate(rng: Rng) -> tuple[Body, ...]:
 
 def _crowd(rng: Rng) -> tuple[Body, ...]:
     """Return many small operands in one place."""
-    count = min(a_size(rng, CROWD), CROWD)
+    count = min(a_size(rng, MAX_OPERANDS), MAX_OPERANDS)
     grid = int(rng.choice([UNIT, 1]))
     bodies = []
     for _ in range(count):
@@ -367,7 +369,7 @@ def scatter(rng: Rng) -> Part:
 
 def fan(rng: Rng) -> Part:
     """Return a pyramid with a threshold's number of faces at its tip, or as many corners below."""
-    count = max(a_size(rng, FAN), 3)
+    count = max(a_size(rng, MAX_FAN_SIZE), 3)
     turns = 2 * np.pi * np.arange(count) / count
     rim = [(round(2 * UNIT * np.cos(t)), round(2 * UNIT * np.sin(t)), 0) for t in turns]
     vertices: list[Point] = [*rim, (0, 0, 2 * UNIT)]
@@ -378,7 +380,7 @@ def fan(rng: Rng) -> Part:
 
 def stairs(rng: Rng) -> Part:
     """Return stairs: two polygons of many corners, and all faces perpendicular to axes."""
-    steps, step = a_size(rng, FAN), UNIT // 10
+    steps, step = a_size(rng, MAX_FAN_SIZE), UNIT // 10
     corners = [(0, 0)]
     for k in range(steps):
         corners += [(steps - k, k), (steps - k, k + 1)]
@@ -441,7 +443,9 @@ def _points(rng: Rng, scene: Scene) -> tuple[Point, ...]:
         x, y, z = points[k]
         dx, dy, dz = rng.integers(-2, 3, 3).tolist()
         points.append((x + dx, y + dy, z + dz))
-    points += [(x, y, z) for x, y, z in rng.integers(-FAR, FAR, (3, 3)).tolist()]
+    points += [
+        (x, y, z) for x, y, z in rng.integers(-MAX_FAR_STEPS, MAX_FAR_STEPS, (3, 3)).tolist()
+    ]
     return tuple(points)
 
 

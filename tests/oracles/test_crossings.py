@@ -65,11 +65,12 @@ FINER = -40
 #: Of the coarsest operand: given doubles lie up to half of it off the lattice, on each axis.
 STEP = 1e-9
 
-#: The most that single precision moves a corner, in spacings: half by rounding, four by mending.
-MOST = 5
+#: The largest distance by which single precision moves a corner, in spacings of its numbers: half
+#: of one by rounding, four by mending.
+MAX_SPACINGS_MOVED = 5
 
 #: The same for what is thickened first: by one on each axis, and uniting rounds and mends again.
-THICKENED = 2 + 2 * MOST
+MAX_SPACINGS_THICKENED = 2 + 2 * MAX_SPACINGS_MOVED
 
 
 def faults(mesh: "b.Mesh") -> tuple[list[list[int]], list[int]]:
@@ -538,7 +539,7 @@ def test_meshes_in_single_precision_do_not_cross(
         crossing += [seed] if left else []
         mended += found["mended"] > 0
         rounded = b.Mesh(vertices, faces, mesh.source[found["kept"]])
-        reach = MOST * float(np.spacing(np.float32(np.abs(mesh.vertices).max())))
+        reach = MAX_SPACINGS_MOVED * float(np.spacing(np.float32(np.abs(mesh.vertices).max())))
         assert abs(rounded.volume - mesh.volume) <= reach * mesh.area, seed
         united += left > 0 and is_mended_by_uniting(mesh, reach)
     assert mended > 0.1 * count
@@ -597,7 +598,7 @@ def test_what_is_thinner_than_single_precision_keeps_a_volume(
         assert (result.vertices == result.vertices.astype(np.float32)).all()
         assert_closed(result.faces)
         assert result.volume > 0 and not any(faults(result)), seed
-        reach = THICKENED * float(np.spacing(np.float32(np.abs(mesh.vertices).max())))
+        reach = MAX_SPACINGS_THICKENED * float(np.spacing(np.float32(np.abs(mesh.vertices).max())))
         assert distances(result.vertices, mesh.vertices[mesh.faces]).max() <= reach, seed
         assert distances(mesh.vertices, result.vertices[result.faces]).max() <= reach, seed
     assert vanishing >= len(THIN)

@@ -345,7 +345,7 @@ def test_systems_that_take_a_part_at_a_time() -> None:
             return min(len(data), 7)
 
     data = bytes(range(256)) * 10
-    whole = standard._Whole(Sparing(), None, standard._refuse)
+    whole = standard._CompleteWriter(Sparing(), None, standard._refuse)
     assert whole.write(data) == len(data) and bytes(taken) == data
 
 

@@ -46,7 +46,7 @@ def test_cases_run_on_the_workers(folder: Path, capsys: Capture, scheduler: Any)
 def test_no_scheduler_is_told(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "_PATIENCE", 0.2)
+    monkeypatch.setattr(cluster, "_TIMEOUT", 0.2)
     given = ["crosscheck", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
     code, _, err = ran(capsys, *given)
     assert code == 6 and err.startswith("bspcsg: error: tcp://127.0.0.1:9: no scheduler answers")
@@ -63,7 +63,7 @@ def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.Mon
 def test_a_cluster_without_workers_is_told(
     folder: Path, capsys: Capture, scheduler: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster, "_PATIENCE", 2)
+    monkeypatch.setattr(cluster, "_TIMEOUT", 2)
     scheduler.scale(0)
     given = ["crosscheck", "a.off", "c.stl", "--results", "r.jsonl"]
     code, _, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)

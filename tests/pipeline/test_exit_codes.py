@@ -387,7 +387,7 @@ def test_code_5_when_standard_output_is_full(
 
     with monkeypatch.context() as place_of_output:
         place_of_output.setattr("bspcsg.cli.console.standard.discard", lambda *_: None)
-        raw = standard._Whole(Full(), None, standard._refuse)
+        raw = standard._CompleteWriter(Full(), None, standard._refuse)
         place_of_output.setattr(sys, "stdout", io.TextIOWrapper(io.BufferedWriter(raw)))
         assert run(["info", "a.off"]) == 5
         raw.write = len  # type: ignore[method-assign]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gallery import LONGEST, blocks, pictures, run
+from gallery import MAX_BLOCK_LINES, blocks, pictures, run
 from support.examples import WRITES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -40,7 +40,7 @@ def test_every_picture_is_written_by_code_that_is_shown_or_named() -> None:
 @pytest.mark.parametrize("block", BLOCKS, ids=lambda block: pictures(block)[0])
 def test_the_code_on_the_page_makes_the_picture_below_it(block: str, tmp_path: Path) -> None:
     lines = [line for line in block.splitlines() if line]
-    assert sum(not line.startswith(("import ", "from ")) for line in lines) <= LONGEST
+    assert sum(not line.startswith(("import ", "from ")) for line in lines) <= MAX_BLOCK_LINES
     run(block, tmp_path)
     (name,) = pictures(block)
     assert f"](gallery/{name})" in SHOWN.split(block)[1].split("```")[1]

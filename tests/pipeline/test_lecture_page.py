@@ -16,7 +16,7 @@ from bspcsg.bsp.trees.analysis import shielding_distance
 from bspcsg.report.lecture.page import CHAPTERS, SCRIPTS, lecture_page
 from support.browser import Browser
 
-_MOST_BYTES = 2_000_000
+_MAX_PAGE_BYTES = 2_000_000
 _READY = "document.documentElement.dataset.ready === 'yes'"
 _PHONE = {"width": 375, "height": 844, "deviceScaleFactor": 1, "mobile": True}
 
@@ -177,7 +177,7 @@ def test_each_chapter_has_three_exercises_with_answers(browser: Browser) -> None
 
 
 def test_the_page_is_small_and_asks_for_nothing(browser: Browser, page: Path) -> None:
-    assert page.stat().st_size < _MOST_BYTES
+    assert page.stat().st_size < _MAX_PAGE_BYTES
     assert browser.requests() == [page.as_uri()] and browser.errors() == []
     assert not re.search(r'(?:src|href)="https?:', page.read_text(encoding="utf-8"))
     assert len(browser.texts("main > section")) == len(CHAPTERS)

@@ -16,8 +16,9 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
 
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 
-#: Seconds in which a process ends that is to end at once, on a machine that is much too busy.
-PATIENCE = 10
+#: The longest time for a process to end that has to end at once, in seconds, on an overloaded
+#: machine.
+TIMEOUT = 10
 
 #: Never ends.
 ENDLESS = "import time\nopen('started', 'w')\nwhile True:\n    sum(range(10**9))\n"
@@ -32,7 +33,7 @@ def killed(running: "subprocess.Popen[bytes]") -> "list[psutil.Process]":
     started: list[psutil.Process] = psutil.Process(running.pid).children(recursive=True)
     running.kill()
     running.wait()
-    until = time.monotonic() + PATIENCE
+    until = time.monotonic() + TIMEOUT
     while alive(started) and time.monotonic() < until:
         time.sleep(0.01)
     left = alive(started)

@@ -363,7 +363,7 @@ def test_long_work_says_for_how_long_at_a_terminal(folder: Path) -> None:
 
 
 def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(status, "_PATIENCE", 0.0)
+    monkeypatch.setattr(status, "_LINE_DELAY", 0.0)
     with status.watched("work", quiet=False):
         assert status._line is None
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)

@@ -13,8 +13,8 @@ from bspcsg.csg import read_scad
 from manual import PARTS, script
 from support import DEEP
 
-#: The most by which volumes may differ: tools make balls, curves and letters of other facets.
-_ROUNDNESS = 0.015
+#: The largest relative difference of volumes: tools make balls, curves and letters of other facets.
+_MAX_VOLUME_DIFFERENCE = 0.015
 
 
 def _present(tool: str) -> list[str]:
@@ -46,7 +46,9 @@ def volumes() -> dict[str, float]:
 @pytest.mark.parametrize("tool", ["manifold3d", "trimesh"])
 def test_others_make_the_same_parts(tool: str, volumes: dict[str, float]) -> None:
     for part in _present(tool):
-        assert _volume(script(part, tool)) == pytest.approx(volumes[part], rel=_ROUNDNESS), part
+        assert _volume(script(part, tool)) == pytest.approx(
+            volumes[part], rel=_MAX_VOLUME_DIFFERENCE
+        ), part
 
 
 @pytest.mark.skipif(not DEEP, reason="build123d takes seconds to import, for each part")
@@ -54,7 +56,7 @@ def test_build123d_makes_the_same_parts(volumes: dict[str, float]) -> None:
     pytest.importorskip("build123d")
     for part in _present("build123d"):
         found = _volume(script(part, "build123d"))
-        assert found == pytest.approx(volumes[part], rel=_ROUNDNESS), part
+        assert found == pytest.approx(volumes[part], rel=_MAX_VOLUME_DIFFERENCE), part
 
 
 @pytest.mark.skipif(shutil.which("openscad") is None, reason="openscad is not installed")
@@ -62,4 +64,4 @@ def test_openscad_makes_the_same_parts(volumes: dict[str, float]) -> None:
     for part in _present("openscad"):
         solid = csg.evaluate(read_scad(script(part, "openscad")))
         assert isinstance(solid, b.Solid)
-        assert solid.volume == pytest.approx(volumes[part], rel=_ROUNDNESS), part
+        assert solid.volume == pytest.approx(volumes[part], rel=_MAX_VOLUME_DIFFERENCE), part

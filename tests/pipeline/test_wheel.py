@@ -131,7 +131,7 @@ def test_the_compiler_leaves_the_builders_folders_out(tmp_path: Path) -> None:
 
 
 def test_a_large_wheel_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(wheel_contents, "LARGEST", 1000)
+    monkeypatch.setattr(wheel_contents, "MAX_BYTES", 1000)
     assert "more than 1,000" in "\n".join(problems_of(put_wheel(tmp_path)))
 
 

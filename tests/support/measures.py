@@ -25,10 +25,11 @@ from .probes import Failure
 Measured: TypeAlias = tuple[list[Failure], dict[str, float]]
 
 #: The largest share of the time of writing or reading that a proof may take.
-SHARE = 0.15
+MAX_PROOF_SHARE = 0.15
 
-#: Smaller files are written in a few milliseconds, most of which no triangle takes.
-LARGE = 300_000
+#: The smallest number of triangles of a file whose share counts. Smaller files are written in a few
+#: milliseconds, most of which do not depend on triangles.
+MIN_TRIANGLES_TIMED = 300_000
 
 #: The codes of findings that tell of a crossing, in doubles and in single precision.
 SAID = frozenset({"crossing", "turned", "collapsed"})
@@ -37,8 +38,8 @@ SAID_IN_SINGLE = frozenset({"crossing_in_single"})
 #: The codes of findings that name vertices in one place.
 CONTACTS = frozenset({"edge_contact", "vertex_contact", "rounded_contact", "given_contact"})
 
-#: The largest share of meshes that may cross, though a finding says so.
-MOST_SAID = 0.01
+#: The largest share of meshes that may cross even if a finding reports it.
+MAX_REPORTED_SHARE = 0.01
 
 
 def crossings(rounds: int) -> Measured:
@@ -74,7 +75,7 @@ def crossings(rounds: int) -> Measured:
             if crosses and not is_said:
                 failed.append(Failure(seed, f"a crossing {place} that nothing tells of"))
     for what, count in counts.items():
-        if what.endswith("said") and count > MOST_SAID * counts["meshes"]:
+        if what.endswith("said") and count > MAX_REPORTED_SHARE * counts["meshes"]:
             failed.append(Failure(rounds, f"{count} meshes of {counts['meshes']} cross {what}"))
     return failed, dict(counts)
 
@@ -99,7 +100,7 @@ def shares_of_proofs(triangles: int, turns: int = 5) -> Measured:
                 share = _share(mesh, path, text, turns)
                 name = f"{suffix[1:]}{' as text' if text and known.binary else ''}"
                 figures[name] = round(share, 3)
-                if share > SHARE and triangles >= LARGE:
+                if share > MAX_PROOF_SHARE and triangles >= MIN_TRIANGLES_TIMED:
                     failed.append(Failure(triangles, f"{name}: {share:.1%}"))
                 path.unlink()
     return failed, figures
@@ -157,7 +158,7 @@ def shares_of_checks(triangles: int, turns: int = 15) -> Measured:
 
             share = _share_of_proof(work, turns)
             figures[suffix[1:]] = round(share, 3)
-            if share > SHARE and triangles >= LARGE:
+            if share > MAX_PROOF_SHARE and triangles >= MIN_TRIANGLES_TIMED:
                 failed.append(Failure(triangles, f"{suffix[1:]}: {share:.1%}"))
             path.unlink()
     return failed, figures

@@ -28,7 +28,7 @@ from bspcsg.machine import held_mb
 Corner: TypeAlias = tuple[float, ...]
 
 #: Seconds after which a child counts as stuck.
-PATIENCE = 60
+TIMEOUT = 60
 
 #: Requests to a server of three workers: more than there are workers.
 REQUESTS = 4
@@ -60,7 +60,7 @@ def same(one: b.Solid, other: b.Solid) -> bool:
     return triangles(one) == triangles(other) and one.equals(other)
 
 
-def ended(child: int, patience: float = PATIENCE) -> int:
+def ended(child: int, patience: float = TIMEOUT) -> int:
     """Wait for a child; return its status as `os.waitpid` has it. Kill it if it is stuck."""
     until = time.monotonic() + patience
     while time.monotonic() < until:
@@ -142,11 +142,11 @@ def method(name: str) -> Callable[[], None]:
         expected[0].to_mesh()
         context = multiprocessing.get_context(name)
         with context.Pool(2) as pool:
-            found = pool.map_async(job, range(4)).get(PATIENCE)
+            found = pool.map_async(job, range(4)).get(TIMEOUT)
         assert all(map(same, found, expected))
         with ProcessPoolExecutor(2, mp_context=context) as executor:
             futures = [executor.submit(job, k) for k in range(4)]
-            assert all(same(f.result(PATIENCE), e) for f, e in zip(futures, expected, strict=True))
+            assert all(same(f.result(TIMEOUT), e) for f, e in zip(futures, expected, strict=True))
 
     return program
 
@@ -157,7 +157,7 @@ def joblib() -> None:
 
     expected = [job(k) for k in range(4)]
     solids = [solid.translate((0, 0, 1)) for solid in expected]
-    found = Parallel(n_jobs=2, backend="loky", timeout=PATIENCE)(
+    found = Parallel(n_jobs=2, backend="loky", timeout=TIMEOUT)(
         delayed(b.union)(solid, other) for solid, other in zip(solids, expected, strict=True)
     )
     assert all(same(f, s | e) for f, s, e in zip(found, solids, expected, strict=True))
@@ -337,7 +337,7 @@ def many(jobs: int = 1000) -> None:
             assert pool.apply(small_job, (k,)).volume == expected[k % 15], k
     kinds = [job(k) for k in range(35)]
     with context.Pool(64) as pool:
-        found = pool.map_async(job, range(64), chunksize=1).get(10 * PATIENCE)
+        found = pool.map_async(job, range(64), chunksize=1).get(10 * TIMEOUT)
     assert all(f.equals(kinds[k % 35]) for k, f in enumerate(found))
 
 

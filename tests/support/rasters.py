@@ -15,11 +15,13 @@ GOLDEN = Path(__file__).resolve().parents[1] / "golden"
 #: With this variable set, pictures are kept instead of compared.
 KEEP = "BSPCSG_KEEP_PICTURES"
 
-#: A channel of a pixel differs if it is off by more than this; edges are shaded differently.
-_OFF = 48
+#: Two pixels are the same if no channel differs by more than this: renderers shade edges
+#: differently.
+_MAX_CHANNEL_DIFFERENCE = 48
 
-#: So many of a thousand pixels may differ: a line that is drawn a pixel beside its place.
-_FEW = 5
+#: The largest number of pixels in a thousand that may differ: a line may lie a pixel beside its
+#: place.
+_MAX_DIFFERING_PER_MILLE = 5
 
 #: Drawings are rasterised so many times larger, and shrunk, so that their edges are smooth.
 _FINE = 4
@@ -55,14 +57,14 @@ def assert_as_kept(picture: Image.Image, name: str, folder: Path) -> None:
 
 def are_alike(one: Image.Image, other: Image.Image) -> bool:
     """Say whether two pictures are the same but for a few pixels."""
-    return differing(one, other) * 1000 <= _FEW * one.width * one.height
+    return differing(one, other) * 1000 <= _MAX_DIFFERING_PER_MILLE * one.width * one.height
 
 
 def differing(one: Image.Image, other: Image.Image) -> int:
     """Return the number of pixels that are not alike."""
     assert one.size == other.size
     off = ImageChops.difference(one.convert("RGB"), other.convert("RGB"))
-    return int((np.asarray(off).max(axis=2) > _OFF).sum())
+    return int((np.asarray(off).max(axis=2) > _MAX_CHANNEL_DIFFERENCE).sum())
 
 
 def side_by_side(*pictures: Image.Image) -> Image.Image:

@@ -30,8 +30,9 @@ OPERATIONS: dict[str, Callable[["b.Solid", "b.Solid"], "b.Solid"]] = {
     "xor": lambda x, y: x ^ y,
 }
 
-#: Larger files than this, in bytes, are left out: they take longer and show little more.
-LARGEST = 100_000
+#: The largest number of bytes of a file that is used: larger files take longer and show little
+#: more.
+MAX_FILE_BYTES = 100_000
 
 #: Digits of a word: by chance two results agree in one of 2^64 cases.
 _DIGITS = 16
@@ -69,7 +70,9 @@ def words_of_cases(cases: Sequence[Path] = CASES) -> Iterator[tuple[str, str]]:
         yield from words_of_pairs(list(zip(names, operands, strict=True)))
 
 
-def words_of_files(folder: Path = MESHES, *, largest: int = LARGEST) -> Iterator[tuple[str, str]]:
+def words_of_files(
+    folder: Path = MESHES, *, largest: int = MAX_FILE_BYTES
+) -> Iterator[tuple[str, str]]:
     """Combine each mesh of a folder with itself, turned, and with the next one, moved there."""
     named = [(path.name, solid) for path, solid in _solids(folder, largest)]
     for (name, solid), (after, other) in zip(named, [*named[1:], *named[:1]], strict=True):

@@ -188,7 +188,7 @@ def test_files_that_are_not_what_they_should(
 
 
 def test_blocks_of_drawings_have_a_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(drawings, "MOST_IN_BLOCKS", 300)
+    monkeypatch.setattr(drawings, "MAX_BLOCK_ENTITIES", 300)
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.new()
     document.blocks.new("0").add_circle((0, 0), 1)
@@ -213,7 +213,7 @@ def test_blocks_of_drawings_have_a_bound(tmp_path: Path, monkeypatch: pytest.Mon
 def test_arcs_of_drawings_have_a_bound(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sides: int, most: int
 ) -> None:
-    monkeypatch.setattr(arguments, "MOST_CORNERS", most)
+    monkeypatch.setattr(arguments, "MAX_CORNERS", most)
     ezdxf = pytest.importorskip("ezdxf")
     document = ezdxf.new()
     for place in range(4):

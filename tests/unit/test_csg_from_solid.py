@@ -129,7 +129,7 @@ def test_deep_expressions() -> None:
 def test_what_would_be_too_large_is_one_polyhedron(monkeypatch: pytest.MonkeyPatch) -> None:
     made = b.xor(b.cube(1).translate(k / 4, 0, 0) for k in range(6)) | b.cube(9)
     assert names(csg.tree_of(made)).count("polyhedron") > 60
-    monkeypatch.setattr("bspcsg.csg.from_solid._LARGEST", 1000)
+    monkeypatch.setattr("bspcsg.csg.from_solid._MAX_BODY_SIZE", 1000)
     assert names(csg.tree_of(made)) == ["polyhedron"]
     assert rebuilt(made).equals(made)
 

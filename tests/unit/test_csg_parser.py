@@ -15,7 +15,7 @@ from hypothesis import given
 import support
 from bspcsg import BspcsgError, FormatError, InvalidParameterError, Solid, csg
 from bspcsg.csg import Argument, CsgTree, Node
-from bspcsg.csg.syntax.json_form import DEEPEST_NODE
+from bspcsg.csg.syntax.json_form import MAX_NODE_DEPTH
 from support.timing import seconds
 
 #: Levels: more than Python can go down by calls.
@@ -361,7 +361,7 @@ def test_scad_takes_names_of_files(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 # Found: a tree of 200 levels was written as JSON that `from_json` refused, and JSON with a byte
 # order mark was refused.
 def test_the_deepest_trees_that_json_holds_are_read_again() -> None:
-    tree = csg.parse("group() {" * (DEEPEST_NODE - 1) + "cube(1);" + "}" * (DEEPEST_NODE - 1))
+    tree = csg.parse("group() {" * (MAX_NODE_DEPTH - 1) + "cube(1);" + "}" * (MAX_NODE_DEPTH - 1))
     assert csg.from_json(csg.to_json(tree)) == tree
     deeper = csg.to_json(tree).replace('"children": []', '"children": [{"node": "cube"}]')
     with pytest.raises(FormatError, match="nest deeper than 200"):

@@ -202,7 +202,7 @@ def grid(space: Any) -> None:
 def test_what_has_no_bound_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, draw: Draw, words: str
 ) -> None:
-    monkeypatch.setattr(dxf_curves, "MOST_IN_BLOCKS", 3000)
+    monkeypatch.setattr(dxf_curves, "MAX_BLOCK_ENTITIES", 3000)
     with pytest.raises(b.FormatError, match=words):
         region_of(tmp_path, draw)
 

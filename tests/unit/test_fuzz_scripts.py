@@ -63,7 +63,7 @@ else:
 """
     )
     monkeypatch.setattr("fuzzing.guided.SECONDS", 0.2)
-    monkeypatch.setattr("fuzzing.guided.ENOUGH", 1)
+    monkeypatch.setattr("fuzzing.guided.MAX_FINDINGS", 1)
     target = Guided("any", [sys.executable, str(program)], tmp_path)
     assert len(target.run(1, time.monotonic() + 60).found) == count
 
@@ -93,7 +93,7 @@ def test_programs_that_never_end_are_stopped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("fuzzing.guided.SECONDS", 0.01)
-    monkeypatch.setattr("fuzzing.guided.ENOUGH", 1)
+    monkeypatch.setattr("fuzzing.guided.MAX_FINDINGS", 1)
     program = tmp_path / "target.py"
     program.write_text("import time\ntime.sleep(1000)\n")
     target = Guided("any", [sys.executable, str(program)], tmp_path)

@@ -218,14 +218,14 @@ def test_deep_xml_is_no_harm(tmp_path: Path, depth: int) -> None:
 
 
 def test_parts_that_unpack_to_too_much(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(threemf, "_SMALL", 1000)
+    monkeypatch.setattr(threemf, "_MIN_BYTE_LIMIT", 1000)
     path = package(tmp_path / "bomb.3mf", model(CUBE, ITEM) + " " * 10**7)
     assert path.stat().st_size < 20_000
     assert "unpacks to far more" in refusal(path, path.read_bytes(), "too_large")
 
 
 def test_archives_of_too_many_parts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(threemf, "_MOST_PARTS", 0)
+    monkeypatch.setattr(threemf, "_MAX_PARTS", 0)
     path = package(tmp_path / "x.3mf", model(CUBE, ITEM))
     refusal(path, path.read_bytes(), "too_large")
     with pytest.raises(b.FormatError, match="more than 0 parts"):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bspcsg.errors import FormatError
-from bspcsg.formats.blocks import OF_FILE
+from bspcsg.formats.blocks import ROWS_PER_FILE_BLOCK
 from bspcsg.formats.registry import MAKERS, Form
 from bspcsg.io import FORMATS, RawMesh, encoded, read, write
 from bspcsg.mesh.mesh import Mesh
@@ -201,7 +201,7 @@ def test_files_in_binary_are_read_once_and_in_pieces(suffix: str) -> None:
     size = file.seek(0, io.SEEK_END)
     lines = 1 << 14
     assert size < sum(file.pieces) < size + lines
-    assert max(file.pieces) <= 24 * OF_FILE < size / 4
+    assert max(file.pieces) <= 24 * ROWS_PER_FILE_BLOCK < size / 4
 
 
 def test_the_first_triangle_that_differs_is_named(

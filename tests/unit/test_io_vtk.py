@@ -67,7 +67,7 @@ def test_document_types_are_refused(tmp_path: Path) -> None:
 
 
 def test_packed_bombs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(vtk, "_LARGEST", 1 << 10)
+    monkeypatch.setattr(vtk, "_MAX_UNPACKED_BYTES", 1 << 10)
     path = tmp_path / "x.vtu"
     ball = b.sphere(1, segments=24).normalized().to_mesh()
     write(RawMesh(ball.vertices, ball.faces), path)

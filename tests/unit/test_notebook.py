@@ -53,7 +53,7 @@ def test_solids_without_a_boundary_to_show(solid: b.Solid, words: str) -> None:
 
 
 def test_too_large_a_solid_is_a_picture_and_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(notebook, "_MOST_IN_VIEW", 100)
+    monkeypatch.setattr(notebook, "_MAX_VIEW_TRIANGLES", 100)
     shown = str(b.sphere(r=1, segments=24)._repr_html_())
     assert shown.startswith("<svg") and "528 triangles are too many for a notebook" in shown
     assert "iframe" not in shown
@@ -107,7 +107,7 @@ def test_trees_in_the_plane_are_pictures() -> None:
 
 def test_trees_too_large_to_draw_are_text(monkeypatch: pytest.MonkeyPatch) -> None:
     tree = b.bsp.PartitionTree([[(0, 0), (2, 1)], [(1, 0), (1, 3)]])
-    monkeypatch.setattr("bspcsg.bsp.trees.tree._MOST_DRAWN", 2)
+    monkeypatch.setattr("bspcsg.bsp.trees.tree._MAX_NODES_DRAWN", 2)
     assert len(tree) == 3 and tree._repr_svg_() is None
 
 

@@ -48,7 +48,8 @@ def calls_of(work: Callable[[], object]) -> int:
     return count
 
 
-MANY: dict[str, Callable[[int], Any]] = {
+#: Functions that make a shape of so many polygons.
+SHAPES_BY_COUNT: dict[str, Callable[[int], Any]] = {
     "apart": lambda n: shapely.MultiPolygon(squares(n)),
     "touching": lambda n: shapely.MultiPolygon(squares(n, 1.0)),
     "with holes": lambda n: shapely.MultiPolygon(with_holes(n)),
@@ -64,7 +65,7 @@ MANY: dict[str, Callable[[int], Any]] = {
 }
 
 
-@pytest.mark.parametrize("make", MANY.values(), ids=MANY)
+@pytest.mark.parametrize("make", SHAPES_BY_COUNT.values(), ids=SHAPES_BY_COUNT)
 def test_each_polygon_costs_the_same_however_many_there_are(make: Callable[[int], Any]) -> None:
     few, many = make(100), make(400)
     assert calls_of(lambda: Region(many)) < 5 * calls_of(lambda: Region(few))
@@ -79,7 +80,7 @@ def test_bare_contours_meet_only_those_nearby() -> None:
     assert calls_of(lambda: b.extrude(many, 1)) < 5 * calls_of(lambda: b.extrude(few, 1))
 
 
-@pytest.mark.parametrize("make", MANY.values(), ids=MANY)
+@pytest.mark.parametrize("make", SHAPES_BY_COUNT.values(), ids=SHAPES_BY_COUNT)
 def test_what_shapes_mean(make: Callable[[int], Any]) -> None:
     shape = make(30)
     parts = list(getattr(shape, "geoms", shape))

@@ -101,7 +101,7 @@ def on_terminal(monkeypatch: pytest.MonkeyPatch) -> Terminal:
     """Return what stands for standard error from now on, without patience."""
     found = Terminal()
     monkeypatch.setattr(sys, "stderr", found)
-    monkeypatch.setattr(watching, "_PATIENCE", 0.0)
+    monkeypatch.setattr(watching, "_BAR_DELAY", 0.0)
     return found
 
 

@@ -9,7 +9,7 @@ import pytest
 import bspcsg as b
 from bspcsg.campaign.record import VERDICTS, Results
 from bspcsg.report import cards
-from bspcsg.report.cards import Card, Purse, cards_of
+from bspcsg.report.cards import Card, PageBudget, cards_of
 from bspcsg.report.charts import share_below
 from bspcsg.report.merging import merged
 from bspcsg.report.page import report_page
@@ -92,11 +92,11 @@ def test_views_are_simplified_or_left_out_to_stay_within_the_size(
     results = merged([write_results(tmp_path / "r.jsonl", [header(), kept])])
 
     def card(left: float) -> Card:
-        purse = Purse(1, 0)
-        purse.left = left
-        (found,) = cards_of(list(results.cases.values()), results, purse)
+        budget = PageBudget(1, 0)
+        budget.left = left
+        (found,) = cards_of(list(results.cases.values()), results, budget)
         spent = sum(len(image) for figure in found.figures for image in figure.images)
-        assert purse.left == left - spent - (len(found.model["data"]) if found.model else 0)
+        assert budget.left == left - spent - (len(found.model["data"]) if found.model else 0)
         return found
 
     roomy = card(1e6)
@@ -110,14 +110,17 @@ def test_views_are_simplified_or_left_out_to_stay_within_the_size(
 
 
 def test_each_view_gets_its_share() -> None:
-    purse = Purse(40, 300_000)
-    first = purse.allowance()
+    budget = PageBudget(40, 300_000)
+    first = budget.allowance()
     assert 20_000 < first < 60_000
     for _ in range(38):
-        purse.spend(10_000 + int(purse.allowance()))
-    assert 0 <= purse.allowance() <= purse.left
+        budget.spend(10_000 + int(budget.allowance()))
+    assert 0 <= budget.allowance() <= budget.left
     # A long table leaves cards their part of the page.
-    assert Purse(40, 10**9).left > 300_000 and Purse(80, 0).left > 1.9 * Purse(40, 0).left
+    assert (
+        PageBudget(40, 10**9).left > 300_000
+        and PageBudget(80, 0).left > 1.9 * PageBudget(40, 0).left
+    )
 
 
 @pytest.mark.parametrize(

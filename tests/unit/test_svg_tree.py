@@ -169,7 +169,7 @@ def test_uses_that_show_too_much_are_refused(
     assert is_box(region_of(tmp_path, uses_of_uses(2, 3)), (0, 0, 10, 10))
     with pytest.raises(b.FormatError, match="show too much"):
         region_of(tmp_path, uses_of_uses(12, 10))
-    monkeypatch.setattr(svg_tree, "_MOST_SHOWN", 8)
+    monkeypatch.setattr(svg_tree, "_MAX_ELEMENTS_SHOWN", 8)
     with pytest.raises(b.FormatError, match="show too much"):
         region_of(tmp_path, uses_of_uses(2, 3))
 

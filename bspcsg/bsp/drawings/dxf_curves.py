@@ -18,12 +18,15 @@ from .left_out import LeftOut
 _CURVES = frozenset(["LINE", "ARC", "CIRCLE", "ELLIPSE", "SPLINE", "LWPOLYLINE", "POLYLINE"])
 _BLOCK = "INSERT"
 
-#: Entities in all blocks, counted at each insertion: ezdxf places some ten thousand in a second.
-MOST_IN_BLOCKS = 1 << 17
+#: The largest number of entities in all blocks, counted at each insertion. ezdxf places some ten
+#: thousand in a second.
+MAX_BLOCK_ENTITIES = 1 << 17
 
-#: Blocks in blocks, and chords of one arc.
-_DEEPEST_BLOCK = 64
-_MOST_CHORDS = 1 << 20
+#: The largest number of blocks that may contain one another.
+_MAX_BLOCK_DEPTH = 64
+
+#: The largest number of chords of one arc.
+_MAX_ARC_CHORDS = 1 << 20
 
 #: The corners of what is no outline.
 _NONE = np.zeros((0, 2))
@@ -80,12 +83,12 @@ def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
             waiting.pop()
             continue
         count += len(waiting) > 1
-        if count > MOST_IN_BLOCKS:
+        if count > MAX_BLOCK_ENTITIES:
             raise ValueError("its blocks hold too much")
         layer = entity.dxf.get("layer") or ANY_LAYER
         layer = outer if layer == ANY_LAYER else layer
         if entity.dxftype() == _BLOCK and is_placed:
-            if len(waiting) > _DEEPEST_BLOCK:
+            if len(waiting) > _MAX_BLOCK_DEPTH:
                 raise ValueError("its blocks contain each other too often")
             waiting.append((inserted(entity), layer))
         else:
@@ -165,7 +168,7 @@ def _chords(radius: float, turn: float, chord: float) -> int:
     """Return how many chords of an arc stay within a distance, each of a quarter turn at most."""
     half = 2 * math.asin(math.sqrt(min(chord / (2 * radius), 1.0))) if radius else math.pi
     count = math.ceil(abs(turn) / min(2 * half, math.pi / 2))
-    if count > _MOST_CHORDS:
+    if count > _MAX_ARC_CHORDS:
         raise ValueError(f"an arc would have {count} chords; a larger tolerance leaves fewer")
     return max(count, 1)
 

@@ -10,8 +10,8 @@ import numpy as np
 from ..._types import FloatArray
 from ..sets.region import Region
 
-#: Kinds that are named, and letters of each.
-_MOST_KINDS, _LONGEST = 12, 40
+#: The largest number of kinds that a message names, and of characters of each name.
+_MAX_KINDS_NAMED, _MAX_KIND_CHARACTERS = 12, 40
 
 
 class DrawingWarning(UserWarning):
@@ -61,8 +61,8 @@ class LeftOut:
     def _kinds(self) -> str:
         """Return the kinds with their counts; files may call theirs anything."""
         names = sorted(self.counts)
-        kinds = [f"{_harmless(name)} ({self.counts[name]})" for name in names[:_MOST_KINDS]]
-        more = sum(self.counts[name] for name in names[_MOST_KINDS:])
+        kinds = [f"{_harmless(name)} ({self.counts[name]})" for name in names[:_MAX_KINDS_NAMED]]
+        more = sum(self.counts[name] for name in names[_MAX_KINDS_NAMED:])
         return ", ".join([*kinds, *([f"others ({more})"] if more else [])])
 
     def tell(self, path: str | os.PathLike[str], region: Region) -> None:
@@ -73,5 +73,7 @@ class LeftOut:
 
 
 def _harmless(name: str) -> str:
-    letters = (c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name[:_LONGEST])
+    letters = (
+        c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in name[:_MAX_KIND_CHARACTERS]
+    )
     return "".join(letters)

@@ -15,11 +15,11 @@ from .svg_paths import Segments
 #: Points as complex numbers.
 _Points: TypeAlias = np.ndarray[Any, Any]
 
-#: Most chords of a curve.
-_MOST_STEPS = 1 << 12
+#: The largest number of chords of a curve.
+_MAX_CHORDS = 1 << 12
 
-#: Points that are looked at together.
-_TOGETHER = 1 << 16
+#: The number of points that are computed together, which bounds the memory.
+_POINTS_PER_BATCH = 1 << 16
 
 
 class Cubics(NamedTuple):
@@ -118,7 +118,7 @@ def within(chords: FloatArray) -> Steps:
         counts = np.full(len(curves.owner), 2)
         middle = curves.at(np.arange(len(counts)), np.array([0.5]))[:, 0]
         left, count = np.flatnonzero(np.isfinite(middle)), 2
-        while len(left) and count < _MOST_STEPS:
+        while len(left) and count < _MAX_CHORDS:
             far = [
                 _distance(curves.at(some, _shares(4 * count))) for some in _some(left, 4 * count)
             ]
@@ -136,7 +136,7 @@ def _shares(count: int) -> FloatArray:
 
 def _some(which: IndexArray, points: int) -> Iterator[IndexArray]:
     """Yield as many of some curves as are looked at together, each with so many points."""
-    size = max(1, _TOGETHER // points)
+    size = max(1, _POINTS_PER_BATCH // points)
     return (which[start : start + size] for start in range(0, len(which), size))
 
 

@@ -33,9 +33,11 @@ _LANGUAGE = "en"
 #: Sizes that must not be negative, by the elements that have them.
 _SIZES = {"rect": ("width", "height"), "circle": ("r",), "ellipse": ("rx", "ry")}
 
-#: Most elements that uses show, each at each of them, and most uses in one another.
-_MOST_SHOWN = 1 << 17
-_DEEPEST_USE = 64
+#: The largest number of elements that uses show, counted at each use.
+_MAX_ELEMENTS_SHOWN = 1 << 17
+
+#: The largest number of uses that may contain one another.
+_MAX_USE_DEPTH = 64
 
 #: Attributes that name what is used.
 HREF = ("href", "{http://www.w3.org/1999/xlink}href")
@@ -114,7 +116,7 @@ def _check_uses(root: Element) -> None:
     known: dict[str, tuple[int, int]] = {}
 
     def shown(element: Element, outer: int) -> tuple[int, int]:
-        if outer > _DEEPEST_USE:
+        if outer > _MAX_USE_DEPTH:
             raise ValueError("its uses contain each other too often")
         count = depth = 0
         for inner in element.iter():
@@ -126,9 +128,9 @@ def _check_uses(root: Element) -> None:
         return count, depth
 
     count, depth = shown(root, 0)
-    if depth > _DEEPEST_USE:
+    if depth > _MAX_USE_DEPTH:
         raise ValueError("its uses contain each other too often")
-    if count > _MOST_SHOWN + sum(1 for _ in root.iter()):
+    if count > _MAX_ELEMENTS_SHOWN + sum(1 for _ in root.iter()):
         raise ValueError("its uses show too much")
 
 

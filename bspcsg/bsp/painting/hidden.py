@@ -15,11 +15,12 @@ Stretch: TypeAlias = tuple[float, float]
 #: later is seen, one below the seam of two polygons is not.
 _ASIDE = 0.02
 
-#: Visible parts of fewer pixels come from looking aside, at the ends of hidden edges.
-_SHORTEST = 0.2
+#: The shortest visible part of an edge, in pixels. Edges are looked at to either side, which
+#: makes shorter parts appear at the ends of hidden ones.
+_MIN_VISIBLE_PIXELS = 0.2
 
-#: Pairs of an edge and a polygon near it above which the answer would take seconds.
-_MOST_PAIRS = 4_000_000
+#: The largest number of pairs of an edge and a polygon near it: more would take seconds.
+_MAX_NEAR_PAIRS = 4_000_000
 
 #: Width of the squares, in pixels, by which pairs are found.
 _SQUARE = 12.0
@@ -54,7 +55,7 @@ def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArr
     parts, rows = [], []
     for row in np.flatnonzero(kept).tolist():
         hidden = _common(left.get(row, []), right.get(row, []))
-        seen = _gaps(hidden, _SHORTEST / float(lengths[row]))
+        seen = _gaps(hidden, _MIN_VISIBLE_PIXELS / float(lengths[row]))
         parts += seen
         rows += [row] * len(seen)
     shares = np.array(parts).reshape(-1, 2, 1)
@@ -73,7 +74,7 @@ def _near_pairs(
     squares, members = squares[order], members[order]
     asked, segments = _squares(ends.min(axis=1), ends.max(axis=1))
     first, last = (np.searchsorted(squares, asked, side) for side in ("left", "right"))
-    if (last - first).sum() > _MOST_PAIRS:
+    if (last - first).sum() > _MAX_NEAR_PAIRS:
         return None
     segment = np.repeat(segments, last - first)
     polygon = members[ranges(first, last)]

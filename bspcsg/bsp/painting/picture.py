@@ -24,22 +24,23 @@ from .png import canvas_size, line_samples, png, png_of_samples
 from .raster import Triangles, in_front, raster
 from .svg import svg
 
-#: Facets up to which the tree of a picture cuts as few as it can.
-_FEW = 3000
+#: The tree of a picture of at most this many facets is built so that it cuts as few as it can,
+#: which takes long for more.
+_MAX_FACETS_LEAST_SPLITS = 3000
 
-#: Polygons up to which a notebook shows a picture as SVG, above as PNG.
-_MOST_IN_SVG = 5000
+#: The largest number of polygons of a picture that a notebook shows as SVG; it shows more as PNG.
+_MAX_SVG_POLYGONS = 5000
 
-#: Triangles up to which a tree orders them for PNG, above which a z-buffer finds what is seen: the
-#: tree takes 2.3 s of processor for as many and the buffer 0.6 s; thirteen times as many take 47 s
-#: and 3.5 s.
-_MOST_ORDERED = 100_000
+#: The largest number of triangles that a tree orders for a PNG. For more a z-buffer finds what is
+#: seen. The tree takes 2.3 s of processor time for this many and the buffer 0.6 s; thirteen times
+#: as many take 47 s and 3.5 s.
+_MAX_TRIANGLES_ORDERED = 100_000
 
-#: The largest lattice of a tree ends well below this coordinate.
-_FARTHEST = 1e60
+#: The largest coordinate. The coarsest lattice of a tree ends well below it.
+_MAX_COORDINATE = 1e60
 
-#: Pixels along a side above which a picture is refused.
-_LARGEST = 16384
+#: The largest number of pixels along a side of a picture.
+_MAX_SIDE_PIXELS = 16384
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +110,7 @@ class Picture:
 
     @property
     def _is_large(self) -> bool:
-        return self.polygons > _MOST_IN_SVG
+        return self.polygons > _MAX_SVG_POLYGONS
 
     def __repr__(self) -> str:
         """Say how large the picture is."""
@@ -123,30 +124,30 @@ class _LargePicture(Picture):
     Parameters
     ----------
     scene : Triangles
-    looks : Looks
+    settings : Looks
     """
 
     _scene: Triangles
-    _looks: "_Looks"
+    _settings: "_PictureSettings"
 
-    def __init__(self, scene: Triangles, looks: "_Looks") -> None:
+    def __init__(self, scene: Triangles, settings: "_PictureSettings") -> None:
         names = ("background", "line_width", "samples")
-        self.__dict__.update({name: getattr(looks, name) for name in names})
-        self.__dict__.update(_scene=scene, _looks=looks)
+        self.__dict__.update({name: getattr(settings, name) for name in names})
+        self.__dict__.update(_scene=scene, _settings=settings)
 
     @cached_property
     def painting(self) -> Painting:
         """Polygons in pixels, the farthest first."""
         scene = self._scene
-        return _ordered(_facets((scene.vertices, scene.faces)), None, scene.colours, self._looks)
+        return _ordered(_facets((scene.vertices, scene.faces)), None, scene.colours, self._settings)
 
     @cached_property
     def png(self) -> bytes:
         """The picture as a PNG file; needs Pillow."""
-        looks = self._looks
-        size = canvas_size(looks.frame, self.samples)
+        settings = self._settings
+        size = canvas_size(settings.frame, self.samples)
         line = line_samples(self.line_width, self.samples)
-        seen = raster(self._scene, looks.camera, size, line=line, **looks.ways)
+        seen = raster(self._scene, settings.camera, size, line=line, **settings.ways)
         return png_of_samples(*seen, self.background, self.samples)
 
     @property
@@ -157,11 +158,11 @@ class _LargePicture(Picture):
     @property
     def size(self) -> tuple[int, int]:
         """Width and height in pixels."""
-        return self._looks.frame
+        return self._settings.frame
 
 
 @dataclass(frozen=True)
-class _Looks:
+class _PictureSettings:
     """How a scene is to be seen, all of it checked."""
 
     camera: Camera
@@ -259,7 +260,7 @@ def picture(
     facets, mesh = _shapes_of(scene)
     points, count = (facets.corners, len(facets)) if mesh is None else (mesh[0], len(mesh[1]))
     base = colours(DEFAULT if colors is None else colors, count, "colors")
-    looks = _Looks(
+    settings = _PictureSettings(
         _camera(camera, view, points, frame),
         frame,
         style,
@@ -270,27 +271,27 @@ def picture(
         positive(line_width, "line_width"),
         at_least(1, samples, "samples"),
     )
-    if mesh is not None and style != "edges" and in_front(points, looks.camera):
-        return _LargePicture(Triangles(*mesh, base), looks)
+    if mesh is not None and style != "edges" and in_front(points, settings.camera):
+        return _LargePicture(Triangles(*mesh, base), settings)
     tree = scene if isinstance(scene, PartitionTree) else None
-    painting = _ordered(facets, tree, base, looks)
-    return Picture(painting, looks.background, looks.line_width, looks.samples)
+    painting = _ordered(facets, tree, base, settings)
+    return Picture(painting, settings.background, settings.line_width, settings.samples)
 
 
 def _ordered(
-    facets: Facets, tree: PartitionTree | None, base: ColourArray, looks: _Looks
+    facets: Facets, tree: PartitionTree | None, base: ColourArray, settings: _PictureSettings
 ) -> Painting:
     """Return the polygons of a scene from back to front."""
-    camera, style = looks.camera, looks.style
+    camera, style = settings.camera, settings.style
     front = facing(facets, camera)
-    scene = Scene(facets, base, _drawn(facets, front, style, looks.edges, looks.crease))
-    culled = _is_culled(facets, camera, style) if looks.cull is None else looks.cull
+    scene = Scene(facets, base, _drawn(facets, front, style, settings.edges, settings.crease))
+    culled = _is_culled(facets, camera, style) if settings.cull is None else settings.cull
     hidden = ~front if culled else None
     if tree is None and hidden is not None:
         scene, hidden = scene.take(np.flatnonzero(front)), None
     if tree is None:
         tree = _tree(scene.facets)
-    return painted(tree, scene, camera, looks.frame, style, hidden)
+    return painted(tree, scene, camera, settings.frame, style, hidden)
 
 
 def _camera(
@@ -318,7 +319,7 @@ def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
     vertices, faces = mesh_of(scene)
     facets = _facets((vertices, faces))
     _check_coordinates(facets.corners.reshape(-1, 3, 3))
-    if len(facets) <= _MOST_ORDERED:
+    if len(facets) <= _MAX_TRIANGLES_ORDERED:
         return facets, None
     points, same = welded(vertices)
     used, renumbered = compacted(same[faces])
@@ -337,14 +338,14 @@ def _check_coordinates(triangles: FloatArray) -> None:
         where = np.flatnonzero(~finite)[:10].tolist()
         message = f"Face {where[0]} has a coordinate that is not a finite number."
         raise InvalidMeshError(message, "non_finite", where)
-    if len(triangles) and np.abs(triangles).max() > _FARTHEST:
-        message = f"Coordinates beyond {_FARTHEST:g} do not fit any lattice; scale the mesh."
+    if len(triangles) and np.abs(triangles).max() > _MAX_COORDINATE:
+        message = f"Coordinates beyond {_MAX_COORDINATE:g} do not fit any lattice; scale the mesh."
         raise LimitError(message, "too_large")
 
 
 def _tree(facets: Facets) -> PartitionTree:
     triangles = facets.corners.reshape(-1, 3, 3)
-    if len(facets) <= _FEW:
+    if len(facets) <= _MAX_FACETS_LEAST_SPLITS:
         return PartitionTree(triangles, "least-splits", degenerate="drop")
     return PartitionTree(triangles, "random", top=16, degenerate="drop")
 
@@ -376,8 +377,8 @@ def checked_size(size: Any) -> tuple[int, int]:
     except (TypeError, ValueError) as error:
         raise invalid_parameter("The size must be a width and a height in pixels.") from error
     frame = at_least(1, width, "width"), at_least(1, height, "height")
-    if max(frame) > _LARGEST:
+    if max(frame) > _MAX_SIDE_PIXELS:
         raise invalid_parameter(
-            f"A picture has at most {_LARGEST} pixels a side, not {max(frame)}."
+            f"A picture has at most {_MAX_SIDE_PIXELS} pixels a side, not {max(frame)}."
         )
     return frame

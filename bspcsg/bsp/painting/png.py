@@ -15,8 +15,9 @@ from .painting import Painting
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-#: Pixels before the mean of samples is taken: about a gigabyte.
-_MOST = 300_000_000
+#: The largest number of pixels of the canvas on which a picture is painted before samples are
+#: averaged: about a gigabyte.
+_MAX_CANVAS_PIXELS = 300_000_000
 
 _INK = (26, 28, 32)
 
@@ -76,8 +77,10 @@ def png_of_samples(
 def canvas_size(size: tuple[int, int], samples: int) -> tuple[int, int]:
     """Return how many samples a picture has across and down, if they are not too many."""
     width, height = size
-    if width * height * samples**2 > _MOST:
-        message = f"A picture is painted on at most {_MOST} pixels; choose fewer samples."
+    if width * height * samples**2 > _MAX_CANVAS_PIXELS:
+        message = (
+            f"A picture is painted on at most {_MAX_CANVAS_PIXELS} pixels; choose fewer samples."
+        )
         raise LimitError(message, "too_large")
     return samples * width, samples * height
 

@@ -20,8 +20,9 @@ from .camera import Camera
 from .colours import ColourArray, lit
 from .painting import EDGE_ON, Edges, Style
 
-#: Rows of triangles, and samples, that are looked at together: arrays of some megabytes.
-_MOST_AT_ONCE = 1 << 20
+#: The largest number of samples, or of rows of triangles, that are computed together: each array
+#: then takes some megabytes.
+_MAX_SAMPLES_PER_BATCH = 1 << 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +140,7 @@ class Buffer:
 
     def fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
         """Let the chosen triangles be seen where nothing is nearer."""
-        for some in _shares(self._rows(placed, faces[chosen]), _MOST_AT_ONCE):
+        for some in _shares(self._rows(placed, faces[chosen]), _MAX_SAMPLES_PER_BATCH):
             self._fill(placed, faces, chosen[some])
 
     def _rows(self, placed: FloatArray, faces: IndexArray) -> IndexArray:
@@ -179,7 +180,7 @@ class Buffer:
         low, high = np.minimum(np.minimum(z0, z1), z2), np.maximum(np.maximum(z0, z1), z2)
         owner, row, left, right = owner[seen], row[seen], left[seen], right[seen]
         at_left = z0[owner] + down[owner] * (row - y0[owner]) - across[owner] * x0[owner]
-        for some in _shares(right - left, _MOST_AT_ONCE):
+        for some in _shares(right - left, _MAX_SAMPLES_PER_BATCH):
             span, column = _expanded((right - left)[some])
             span += some.start
             mine = owner[span]
@@ -207,7 +208,7 @@ class Buffer:
         ends = self._framed(ends)
         counts = np.ceil(np.abs(ends[:, 1, :2] - ends[:, 0, :2]).max(axis=1, initial=0)) + 1
         counts = counts.astype(np.int64)
-        for some in _shares(counts, _MOST_AT_ONCE):
+        for some in _shares(counts, _MAX_SAMPLES_PER_BATCH):
             owner, step = _expanded(counts[some])
             owner += some.start
             share = (step / np.maximum(counts[owner] - 1, 1))[:, None]

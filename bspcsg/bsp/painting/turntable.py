@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from .picture import Picture
 from .png import image
 
-#: The shortest time that browsers show a picture for, in milliseconds.
-_SHORTEST = 20
+#: The shortest time for which browsers show a picture, in milliseconds.
+_MIN_FRAME_MILLISECONDS = 20
 
 
 def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
@@ -39,7 +39,7 @@ def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
         "GIF",
         save_all=True,
         append_images=flat[1:],
-        duration=max(_SHORTEST, round(1000 * seconds / len(flat))),
+        duration=max(_MIN_FRAME_MILLISECONDS, round(1000 * seconds / len(flat))),
         loop=0,
         optimize=False,
     )

@@ -305,7 +305,7 @@ class StaticTree(StabTree):
             )
 
 
-#: More nodes than memory holds.
+#: No limit on nodes: memory does not hold as many.
 _UNLIMITED = 2**62
 
 

@@ -17,8 +17,8 @@ from ...parameters import function_of
 from .adaptive import StaticTree
 from .targets import RayTargets, facets_from, ray_arrays
 
-#: Rays whose scores are added up at a time.
-_CHUNK = 256
+#: The number of rays whose scores are added up together.
+_RAYS_PER_BATCH = 256
 
 #: A density of rays: ω(origins, directions) of (n, d) arrays gives n weights.
 Density = Callable[[FloatArray, FloatArray], Any]
@@ -87,8 +87,8 @@ def _scores(
     omega = _weights(starts, heads, weights, density)
     heads = _unit(heads)
     normals, total = facets.normals(), np.zeros(len(facets.corners))
-    for first in range(0, len(heads), _CHUNK):
-        rows = slice(first, first + _CHUNK)
+    for first in range(0, len(heads), _RAYS_PER_BATCH):
+        rows = slice(first, first + _RAYS_PER_BATCH)
         total += np.abs(normals @ heads[rows].T) @ omega[rows]
     sizes = facets.sizes()
     whole = sizes.sum()

@@ -8,9 +8,10 @@ from ...errors import core_errors
 from .objects import ObjectTree, merge
 from .tree_set import TreeSet, set_of
 
-#: A result is built anew when its tree is this many times larger than its operands' were.
-_GROWTH = 4
-_SMALL = 64
+#: A result is built anew if its tree has more nodes than this multiple of its operands' nodes and
+#: so many more.
+_MAX_GROWTH = 4
+_FREE_NODES = 64
 
 
 class FlatSet(TreeSet):
@@ -49,7 +50,7 @@ class FlatSet(TreeSet):
         """
         merged = merge(self.tree, other.tree, op)
         base = max(_built_nodes(self), _built_nodes(other))
-        if merged.stats()["nodes"] > _GROWTH * base + _SMALL:
+        if merged.stats()["nodes"] > _MAX_GROWTH * base + _FREE_NODES:
             return self._of(merged.condensed()._tree)
         made = self._of(merged._tree)
         made._built_size = base

@@ -8,8 +8,8 @@ from ..._types import FloatArray
 from ...mesh.distance import nearest_on_triangles
 from .pieces import Pieces
 
-#: Most pairs of point and piece that are looked at together.
-_PAIRS = 1 << 20
+#: The number of pairs of a point and a piece that are computed together, which bounds the memory.
+_PAIRS_PER_BATCH = 1 << 20
 
 
 def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
@@ -48,7 +48,7 @@ def _nearest(
 ) -> FloatArray:
     """Return the nearest of each point's candidates, block by block."""
     nearest = np.empty_like(points)
-    step = max(_PAIRS // pieces, 1)
+    step = max(_PAIRS_PER_BATCH // pieces, 1)
     for start in range(0, len(points), step):
         block = points[start : start + step]
         found = candidates(block)

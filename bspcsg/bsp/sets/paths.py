@@ -13,9 +13,9 @@ from .region import Region
 #: A corner, exactly.
 _Point = tuple[Fraction, Fraction]
 
-#: Half the side of the square in steps: so that it still lies on the lattice when its double, the
-#: nearest to it, is snapped.
-_FARTHEST = 2**53 - 2
+#: Half the side of the square in lattice steps. The double that is nearest to it still lies on the
+#: lattice after it is snapped.
+_HALF_SIDE_STEPS = 2**53 - 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +78,7 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
     """
     if of_kind(Region, region, "region").is_bounded:
         return tuple(BoundaryPath(outline.points) for outline in region.outlines)
-    side = float(_FARTHEST * Fraction(10) ** region.pitch)
+    side = float(_HALF_SIDE_STEPS * Fraction(10) ** region.pitch)
     corners = [(-side, -side), (side, -side), (side, side), (-side, side)]
     square = Region(corners, pitch=region.pitch)
     border = abs(square.exact_outlines[0][0][0])

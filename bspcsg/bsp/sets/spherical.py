@@ -26,8 +26,9 @@ from .operators import SetOperators
 #: The lattice of cones: directions are whole numbers.
 _WHOLE = 0
 
-#: Directions up to this have normals of 106 bits between them, which the core takes as they are.
-_LARGEST = 1 << 52
+#: The largest coordinate of a direction. Normals between such directions have 106 bits, which the
+#: core takes unrounded.
+_MAX_DIRECTION = 1 << 52
 
 
 class SphericalRegion(SetOperators):
@@ -321,9 +322,9 @@ def _snapped(direction: Any) -> list[int]:
     """Return the nearest whole numbers, not beyond 2**52, in about the same direction."""
     whole = _whole(direction)
     largest = max(map(abs, whole))
-    if largest <= _LARGEST:
+    if largest <= _MAX_DIRECTION:
         return whole
-    grain = 1 << ((largest - 1).bit_length() - (_LARGEST - 1).bit_length())
+    grain = 1 << ((largest - 1).bit_length() - (_MAX_DIRECTION - 1).bit_length())
     return _whole([round(Fraction(entry, grain)) for entry in whole])
 
 

@@ -26,8 +26,9 @@ InnerSet: TypeAlias = Intervals | Region
 #: Hyperplanes count as one if their normals and offsets differ by no more than their rounding.
 _SAME = 1e-12
 
-#: Steps from the origin at which a set reaches to the lattice's border, rounded or not.
-_FARTHEST = 2**53 - 4
+#: A set that reaches this many steps from the origin reaches the border of the lattice, even if its
+#: corners are rounded.
+_BORDER_STEPS = 2**53 - 4
 
 
 class SubHyperplane(SetOperators):
@@ -405,7 +406,7 @@ def _lattice_part(
         raise LimitError("The hyperplane lies beyond all doubles.", "too_large") from error
     if pieces is None:
         return whole
-    border = _FARTHEST * step
+    border = _BORDER_STEPS * step
     flat = [whole._flattened(piece) for piece in pieces]
     if tree.dimension == 2:
         beyond = [np.abs(piece).max(axis=1) > border for piece in pieces]

@@ -125,8 +125,8 @@ def to_dot(tree: "PartitionTree") -> str:
     return "\n".join([*lines, "}", ""])
 
 
-#: Pixels of the widest picture: coordinates have three digits after the point in doubles.
-_WIDEST = 1 << 20
+#: The largest width of a picture in pixels: doubles still hold three digits after the point.
+_MAX_WIDTH_PIXELS = 1 << 20
 
 
 def to_svg(tree: "PartitionTree", size: int = 480) -> str:
@@ -134,8 +134,10 @@ def to_svg(tree: "PartitionTree", size: int = 480) -> str:
     if tree.dimension != 2:
         raise invalid_parameter("Only trees in the plane are drawn as SVG.")
     width = at_least(1, size, "size")
-    if width > _WIDEST:
-        raise LimitError(f"size must be {_WIDEST} at most, not {shown(size)}.", "too_large")
+    if width > _MAX_WIDTH_PIXELS:
+        raise LimitError(
+            f"size must be {_MAX_WIDTH_PIXELS} at most, not {shown(size)}.", "too_large"
+        )
     outline = np.asarray(tree.region())
     low, high = outline.min(axis=0), outline.max(axis=0)
     scale = width / float(high[0] - low[0])

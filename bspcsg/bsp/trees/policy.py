@@ -44,7 +44,7 @@ Policy: TypeAlias = Literal[
 POLICIES: tuple[Policy, ...] = get_args(Policy)[:-1]
 
 
-#: More facets than there are.
+#: All facets: no tree has as many as this.
 _ALL = 2**31
 
 

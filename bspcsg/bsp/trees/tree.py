@@ -35,8 +35,9 @@ if TYPE_CHECKING:
 #: Margin around the facets for regions, as a share of their largest extent.
 MARGIN = 0.05
 
-#: Nodes of the largest tree that notebooks draw: so many take a second, and two megabytes.
-_MOST_DRAWN = 10_000
+#: The largest number of nodes of a tree that notebooks draw. The picture takes a second and two
+#: megabytes.
+_MAX_NODES_DRAWN = 10_000
 
 
 @owning
@@ -507,7 +508,7 @@ class PartitionTree(Ordered):
 
     def _repr_svg_(self) -> str | None:
         """Return the picture for notebooks; None for trees that are not in the plane."""
-        return self.to_svg() if self.dimension == 2 and len(self) <= _MOST_DRAWN else None
+        return self.to_svg() if self.dimension == 2 and len(self) <= _MAX_NODES_DRAWN else None
 
     # As a value
 

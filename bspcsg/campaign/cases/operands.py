@@ -13,8 +13,9 @@ from ...solid.solid import Solid
 from .case import Case, Operand
 from .poses import OF_THE_FIRST, placed, pose_matrix, shuffled
 
-#: Files that a worker keeps: the cases of a pair follow one another.
-_KEPT = 8
+#: The largest number of files that a worker keeps in memory: the cases of a pair follow one
+#: another.
+_MAX_FILES_KEPT = 8
 
 
 def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
@@ -71,7 +72,7 @@ def _mesh_of(operand: Operand) -> MeshArrays:
     return _read(operand.file, operand.sha256)
 
 
-@lru_cache(maxsize=_KEPT)
+@lru_cache(maxsize=_MAX_FILES_KEPT)
 def _read(file: str, sha256: str) -> MeshArrays:
     del sha256  # what tells a file from itself after it was changed
     raw = read(file)

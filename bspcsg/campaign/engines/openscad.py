@@ -20,11 +20,11 @@ _DIGITS = 6
 #: Its grid for plane figures, in units.
 _PLANE_GRID = 2.0**-16
 
-#: Triangles up to which it is asked: its exact engine takes minutes for more.
-_MOST = 3000
+#: OpenSCAD is not asked about more triangles than this: its exact engine takes minutes for them.
+_MAX_TRIANGLES = 3000
 
-#: Seconds in which it says its version.
-_PATIENCE = 30
+#: The longest time for OpenSCAD to print its version, in seconds.
+_VERSION_TIMEOUT = 30
 
 
 def ask_openscad(question: Question) -> EngineAnswer:
@@ -36,7 +36,7 @@ def ask_openscad(question: Question) -> EngineAnswer:
         If it is not installed, fails or takes too long, or the operands are too large for it.
     """
     count = sum(len(mesh.faces) for mesh in question.operands)
-    if count > _MOST:
+    if count > _MAX_TRIANGLES:
         raise NoOpinionError(f"{count} triangles are too many for its exact engine")
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         script = Path(name, "question.csg")
@@ -66,7 +66,7 @@ def _polyhedron(mesh: Mesh) -> str:
 def _scad_version() -> str:
     if shutil.which("openscad") is None:
         raise NoOpinionError("openscad is not on the PATH")
-    done = _ran(["openscad", "--version"], _PATIENCE)
+    done = _ran(["openscad", "--version"], _VERSION_TIMEOUT)
     return (done.stderr or done.stdout).strip().rpartition(" ")[2]
 
 

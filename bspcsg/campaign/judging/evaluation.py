@@ -42,8 +42,8 @@ _DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_
 #: Verdicts whose meshes nobody needs to look at.
 _DULL = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
 
-#: Part of a case's time that one further engine may take.
-_SHARE = 0.4
+#: The largest share of a case's time that one further engine may take.
+_MAX_ENGINE_SHARE = 0.4
 
 
 @dataclass(frozen=True)
@@ -204,7 +204,7 @@ class _Evaluation:
     ) -> list[OracleRecord]:
         """Return what the engines that have to be asked besides manifold3d say."""
         wanted = [name for name in self._settings.against if name != "manifold3d"]
-        limit = self._settings.timeout * _SHARE
+        limit = self._settings.timeout * _MAX_ENGINE_SHARE
         if self._is_script:
             path = Path(str(self._case.operands[0].file))
             ask = "openscad" in wanted or is_installed("openscad")

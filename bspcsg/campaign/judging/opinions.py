@@ -31,8 +31,8 @@ ENGINES = {
     "openscad": "apt-get install openscad",
 }
 
-#: Points at which crossings are counted, half of them beside the surfaces.
-_POINTS = 24
+#: The number of points at which crossings are counted, half of them beside the surfaces.
+_POINTS_COUNTED = 24
 
 #: The distance of these from the surfaces, by the size of the model.
 _BESIDE = 1e-4
@@ -135,9 +135,9 @@ def _points(question: Question, rng: np.random.Generator) -> np.ndarray:
         return np.zeros((0, 3))
     used = np.concatenate([mesh.vertices[np.unique(mesh.faces)] for mesh in meshes])
     low, high = used.min(axis=0), used.max(axis=0)
-    anywhere = rng.uniform(low, high, (_POINTS // 2, 3))
+    anywhere = rng.uniform(low, high, (_POINTS_COUNTED // 2, 3))
     beside = []
-    for _ in range(_POINTS // 2):
+    for _ in range(_POINTS_COUNTED // 2):
         mesh = meshes[int(rng.integers(len(meshes)))]
         corners = mesh.vertices[mesh.faces[int(rng.integers(len(mesh.faces)))]]
         on_face = rng.dirichlet((1, 1, 1)) @ corners

@@ -8,8 +8,8 @@ import os
 import select
 import signal
 
-#: More than the numbers of files that are open in a process that begins.
-_MOST_OPEN = 1024
+#: In a process that has just begun, all open file descriptors have lower numbers than this.
+_MAX_DESCRIPTORS = 1024
 
 
 def end_with_runner() -> None:
@@ -21,7 +21,7 @@ def end_with_runner() -> None:
         return
     try:
         # Who reads what the worker says must not wait for the end of this process.
-        os.closerange(1, _MOST_OPEN)
+        os.closerange(1, _MAX_DESCRIPTORS)
         waiting = select.poll()
         waiting.register(0, 0)
         waiting.poll()

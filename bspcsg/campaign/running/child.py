@@ -14,12 +14,12 @@ from typing import Any, Self
 
 from ...errors import held
 
-#: Seconds that a worker may take to start: it imports the package, which takes a quarter of a
-#: second on an idle machine, and a hundred times as long on one that is much too busy.
-_START = 300.0
+#: The longest time for a worker to start, in seconds. It imports the package, which takes a quarter
+#: of a second on an idle machine and a hundred times as long on an overloaded one.
+_START_TIMEOUT = 300.0
 
-#: Seconds that a process may take to end after it has closed its output.
-_LAST_WORDS = 5.0
+#: The longest time for a process to end after it has closed its output, in seconds.
+_EXIT_TIMEOUT = 5.0
 
 
 _BOOT = Path(__file__).with_name("boot.py")
@@ -129,18 +129,18 @@ class Child:
     def _await_start(self) -> None:
         """Wait until the process has imported what it needs: that is no part of a case's time."""
         try:
-            if not self._lines.get(timeout=_START):
+            if not self._lines.get(timeout=_START_TIMEOUT):
                 raise CrashedError(self._buried())
         except queue.Empty:
             self._kill()
-            raise CrashedError(f"the process did not start within {_START:g} s") from None
+            raise CrashedError(f"the process did not start within {_START_TIMEOUT:g} s") from None
 
     def _buried(self) -> str:
         """Return how the process has ended, and forget it."""
         process, code = self._process, None
         if process is not None:
             try:
-                code = process.wait(_LAST_WORDS)
+                code = process.wait(_EXIT_TIMEOUT)
             except subprocess.TimeoutExpired:
                 code = None
         self._kill()

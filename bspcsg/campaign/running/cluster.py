@@ -16,11 +16,11 @@ from ...errors import MissingPartError, missing_part
 from .child import Child
 from .pool import answer_of
 
-#: Seconds to wait for a scheduler, and for a worker where there is none.
-_PATIENCE = 30
+#: The longest wait for a scheduler, and for a worker while there is none, in seconds.
+_TIMEOUT = 30
 
-#: Seconds between two looks for answers.
-_PAUSE = 0.05
+#: The time between two looks for answers, in seconds.
+_POLL_INTERVAL = 0.05
 
 _children: dict[tuple[int, str], Child] = {}
 _lock = threading.Lock()
@@ -102,12 +102,12 @@ class Cluster:
         """Wait until an answer is there, as long as somebody works on it."""
         seen = looked = time.monotonic()
         while not completed.has_ready():
-            time.sleep(_PAUSE)
+            time.sleep(_POLL_INTERVAL)
             now = time.monotonic()
-            if now - looked >= _PATIENCE / 10:
+            if now - looked >= _TIMEOUT / 10:
                 looked = now
                 seen = now if client.nthreads() else seen
-            if now - seen >= _PATIENCE:
+            if now - seen >= _TIMEOUT:
                 message = f"{self._scheduler}: the scheduler there has no workers (any more)."
                 advice = "Start some, and go on with --results FILE --resume."
                 raise MissingPartError(f"{message} {advice}", "no_workers")
@@ -119,7 +119,7 @@ class Cluster:
         is_file = Path(self._scheduler).is_file()
         place = {"scheduler_file": self._scheduler} if is_file else {"address": self._scheduler}
         try:
-            return client(**place, timeout=_PATIENCE, set_as_default=False)
+            return client(**place, timeout=_TIMEOUT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:
             message = f"{self._scheduler}: no scheduler answers there ({error})."
             raise MissingPartError(message, "no_scheduler") from error

@@ -33,8 +33,8 @@ INTERRUPTED = 130
 CLOSED_PIPE = 141
 
 
-#: Most faces or vertices that a message names.
-_FEW = 3
+#: The largest number of faces or vertices that a message names.
+_MAX_PLACES_NAMED = 3
 
 #: Codes of errors that say which optional package or program is not installed.
 _MISSING_CODES = frozenset({"missing_dependency", "missing_package", "missing_program"})
@@ -115,8 +115,8 @@ def _places(finding: Finding) -> str:
     """Return the first numbers of what a message calls these faces or vertices."""
     if " these" not in finding.message or not finding.where:
         return ""
-    first = ", ".join(map(str, finding.where[:_FEW]))
-    return f": {first}, …" if finding.count > _FEW else f": {first}"
+    first = ", ".join(map(str, finding.where[:_MAX_PLACES_NAMED]))
+    return f": {first}, …" if finding.count > _MAX_PLACES_NAMED else f": {first}"
 
 
 def exit_code_of(error: BspcsgError) -> int:

@@ -12,15 +12,15 @@ import sys
 from collections.abc import Callable, Iterable
 from typing import Any
 
-#: Bytes that are gathered before they are written.
-_PIECE = 1 << 16
+#: The number of bytes that are buffered before they are written.
+_BUFFER_BYTES = 1 << 16
 
 
 class FullOutputError(OSError):
     """Standard output cannot be written: no error of a file that is read or written meanwhile."""
 
 
-class _Whole(io.RawIOBase):
+class _CompleteWriter(io.RawIOBase):
     """The end of a stream: takes all that it is given.
 
     Parameters
@@ -75,7 +75,7 @@ def take_over(errors: str) -> None:
         raw = _raw_of(stream)
         if raw is not None:
             stream.flush()
-            whole = io.BufferedWriter(_Whole(raw, stream, fail), _PIECE)
+            whole = io.BufferedWriter(_CompleteWriter(raw, stream, fail), _BUFFER_BYTES)
             made = io.TextIOWrapper(whole, stream.encoding, errors, line_buffering=True)
             setattr(sys, name, made)
         elif isinstance(stream, io.TextIOWrapper):

@@ -10,8 +10,8 @@ import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
-#: Seconds after which a line appears, and between two looks at the clock.
-_PATIENCE, _PAUSE = 1.0, 0.1
+#: The time until a line appears, and the time between two looks at the clock, in seconds.
+_LINE_DELAY, _POLL_INTERVAL = 1.0, 0.1
 
 #: To the start of the line, and nothing behind it.
 _ERASE = "\r\033[K"
@@ -43,9 +43,9 @@ class _Line:
             yield
 
     def _run(self) -> None:
-        while not self._is_over.wait(_PAUSE):
+        while not self._is_over.wait(_POLL_INTERVAL):
             seconds = time.monotonic() - self._began
-            if seconds >= _PATIENCE:
+            if seconds >= _LINE_DELAY:
                 with self._lock:
                     self._put(f"{self.what} … {seconds:.0f} s")
 

@@ -16,8 +16,8 @@ _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
 #: The options that silence notes, for what is said before options are read.
 QUIET = frozenset({"-q", "--quiet"})
 
-#: The least width that a table is fitted to.
-_NARROWEST = 40
+#: The smallest width that a table is fitted to, in characters.
+_MIN_TABLE_WIDTH = 40
 
 
 def wants_colour(stream: TextIO) -> bool:
@@ -54,7 +54,7 @@ def width() -> int | None:
     """Return the columns of the terminal that standard output goes to, or None if it is none."""
     if not sys.stdout.isatty():
         return None
-    return max(_NARROWEST, shutil.get_terminal_size().columns)
+    return max(_MIN_TABLE_WIDTH, shutil.get_terminal_size().columns)
 
 
 def thousands() -> str:

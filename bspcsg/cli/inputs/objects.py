@@ -13,8 +13,9 @@ if TYPE_CHECKING:
     from ...mesh.mesh import Mesh
     from ...solid.solid import Solid
 
-#: Between the names of objects that became one part, and how many are named.
-_AND, _FEW = " + ", 3
+#: What separates the names of objects that became one part, and the largest number of names that
+#: are shown.
+_NAME_SEPARATOR, _MAX_NAMES_SHOWN = " + ", 3
 
 
 class ObjectNames:
@@ -78,9 +79,9 @@ class ObjectNames:
                 faces = part.source[part.source[:, 0] == slot, 1]
                 rows = np.unique(np.searchsorted(ends, faces, side="right")).tolist()
                 found |= dict.fromkeys(names[min(row, len(names) - 1)] for row in rows)
-        few = list(found)[:_FEW]
-        more = [f"{len(found) - _FEW} more"] if len(found) > _FEW else []
-        return _AND.join([*few, *more])
+        shown = list(found)[:_MAX_NAMES_SHOWN]
+        more = [f"{len(found) - _MAX_NAMES_SHOWN} more"] if len(found) > _MAX_NAMES_SHOWN else []
+        return _NAME_SEPARATOR.join([*shown, *more])
 
 
 def _raw(part: "Mesh", name: str) -> "RawMesh":

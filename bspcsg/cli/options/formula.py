@@ -23,8 +23,8 @@ _LEVELS: tuple[dict[str, str], ...] = (
     {"+": "union", "-": "difference"},
 )
 
-#: Most parentheses and complements that may lie in one another.
-_DEEPEST = 100
+#: The largest number of parentheses and complements inside one another.
+_MAX_DEPTH = 100
 
 
 class FormulaError(Exception):
@@ -191,7 +191,7 @@ class _Parser:
 
     def _operand(self, depth: int) -> Formula:
         token = self._peek()
-        if depth > _DEEPEST:
+        if depth > _MAX_DEPTH:
             raise FormulaError("this lies too deep in parentheses.", token.column)
         if token.kind == "~":
             self._take()

@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 
 from ...meant import question
-from ...parameters import MOST_PITCH, MOST_SECONDS, MOST_THREADS
+from ...parameters import MAX_PITCH, MAX_SECONDS, MAX_THREADS
 from ..inputs.lengths import MILLIMETRES, as_length
 from ..inputs.scripts import STREAMED, SUFFIXES
 
@@ -116,7 +116,7 @@ class Words(_Choice):
             raise click.BadParameter(error.message + asks, ctx, param) from error
 
 
-SECONDS = FiniteRange(0, MOST_SECONDS, min_open=True)
+SECONDS = FiniteRange(0, MAX_SECONDS, min_open=True)
 
 #: Numbers of points to measure distances from; ten million take some seconds and a gigabyte.
 SAMPLES = click.IntRange(0, 10_000_000)
@@ -127,7 +127,7 @@ _THREADS = further(
     "--threads",
     "threads",
     metavar="N",
-    type=click.IntRange(0, MOST_THREADS),
+    type=click.IntRange(0, MAX_THREADS),
     default=0,
     help="Number of threads; 0, the default, for all cores.",
 )
@@ -195,7 +195,7 @@ _SETS = [
     further(
         "--pitch",
         metavar="PITCH",
-        type=click.IntRange(-MOST_PITCH, MOST_PITCH),
+        type=click.IntRange(-MAX_PITCH, MAX_PITCH),
         help="Lattice step 10^PITCH units; by default -9, or what the size asks for.",
     ),
     click.option(

@@ -20,17 +20,17 @@ _HERE = "127.0.0.1"
 #: into asking here.
 _OWN_NAMES = (_HERE, "localhost")
 
-#: Requests that are answered at the same time; a browser sends six.
-_MOST_AT_ONCE = 8
+#: The largest number of requests that are answered at the same time; a browser sends six.
+_MAX_CONCURRENT_REQUESTS = 8
 
-#: Seconds after which a silent connection is closed.
-_PATIENCE = 30
+#: A connection that is silent for so many seconds is closed.
+_IDLE_TIMEOUT = 30
 
-#: Files of a folder that are looked at for changes.
-_MOST_FILES = 2000
+#: The largest number of files that are watched for changes.
+_MAX_FILES_WATCHED = 2000
 
-#: Seconds between two looks at whether the server has to end.
-_LOOK = 0.2
+#: The time between two checks of whether the server has to end, in seconds.
+_POLL_INTERVAL = 0.2
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class LiveServer(ThreadingHTTPServer):
             message = f"port {port}: cannot listen here: {error.strerror}; leave out --port."
             raise FormatError(message, "unwritable") from error
         self.site = site
-        self.places = threading.BoundedSemaphore(_MOST_AT_ONCE)
+        self.places = threading.BoundedSemaphore(_MAX_CONCURRENT_REQUESTS)
         self.making = threading.Lock()
 
     @property
@@ -88,14 +88,14 @@ class LiveServer(ThreadingHTTPServer):
     def serve(self) -> None:
         """Answer until Ctrl-C."""
         with contextlib.suppress(KeyboardInterrupt):
-            self.serve_forever(_LOOK)
+            self.serve_forever(_POLL_INTERVAL)
         self.server_close()
 
 
 class _Handler(BaseHTTPRequestHandler):
     """One connection."""
 
-    timeout = _PATIENCE
+    timeout = _IDLE_TIMEOUT
     server: LiveServer
 
     def do_GET(self) -> None:
@@ -151,4 +151,4 @@ def _files(paths: Iterable[Path]) -> list[Path]:
                 found += sorted(Path(entry.path) for entry in entries if not entry.is_dir())
         else:
             found.append(path)
-    return found[:_MOST_FILES]
+    return found[:_MAX_FILES_WATCHED]

@@ -33,7 +33,7 @@ def page_of(files: Sequence[Path], scene: Showing) -> str:
 
 def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
     """Return a site of one page that shows some files together."""
-    kept = _Kept(lambda: stamp(files), lambda: stamp(folders_of(files)))
+    kept = _PageCache(lambda: stamp(files), lambda: stamp(folders_of(files)))
 
     def page(path: str) -> str | None:
         return kept.page(path, lambda: page_of(files, scene)) if path == "/" else None
@@ -43,7 +43,7 @@ def site_of_files(files: Sequence[Path], scene: Showing) -> Site:
 
 def site_of_folder(folder: Path, scene: Showing) -> Site:
     """Return a site with a list of the files in a folder that can be seen, and a page for each."""
-    kept = _Kept(lambda: stamp([folder]), str)
+    kept = _PageCache(lambda: stamp([folder]), str)
 
     def page(path: str) -> str | None:
         names = seen_in(folder)
@@ -81,7 +81,7 @@ def _list(folder: Path, names: Sequence[str]) -> str:
     return rendered("live.html", title=title, error="", folder=str(folder), files=files)
 
 
-class _Kept:
+class _PageCache:
     """The page that was made last, as long as nothing has changed.
 
     Parameters

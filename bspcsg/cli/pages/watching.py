@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from ...report.viewer.layer import Layer
     from ...solid.solid import Solid
 
-#: Seconds between two looks at the files.
-_LOOK = 0.2
+#: The time between two looks at the files, in seconds.
+_POLL_INTERVAL = 0.2
 
 
 class Watching:
@@ -89,7 +89,7 @@ class Watching:
 
     def _go_on(self) -> None:
         while True:
-            time.sleep(_LOOK)
+            time.sleep(_POLL_INTERVAL)
             now = stamp([self._script]), stamp(folders_of([self._script]))
             if self._goes_on and now != (self._before, self._around):
                 self._once()
@@ -97,7 +97,7 @@ class Watching:
     def _serve(self, port: int, opens: bool) -> LiveServer:
         site = Site(self._page, lambda: str(self._runs))
         server = LiveServer(site, port)
-        threading.Thread(target=server.serve_forever, args=(_LOOK,), daemon=True).start()
+        threading.Thread(target=server.serve_forever, args=(_POLL_INTERVAL,), daemon=True).start()
         self._out.note(f"{server.address} shows the result until Ctrl-C")
         if opens:
             opened(server.address)

@@ -30,8 +30,8 @@ Examples:
 
 _PATH = FilePath(dir_okay=False, readable=True)
 
-#: GiB that may be asked for: a bound in bytes is a number of 64 bits.
-_MOST_MEMORY = 2**20
+#: The largest bound on memory, in GiB: in bytes it must fit into 64 bits.
+_MAX_MEMORY_GIB = 2**20
 
 
 def _as_engines(
@@ -118,7 +118,7 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
     "--memory",
     "memory_gb",
     metavar="GIB",
-    type=FiniteRange(0, _MOST_MEMORY),
+    type=FiniteRange(0, _MAX_MEMORY_GIB),
     default=12.0,
     show_default=True,
     help="GiB of addresses beyond which an engine gets none; 0 for no bound.",

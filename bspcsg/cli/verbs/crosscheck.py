@@ -41,11 +41,11 @@ Examples:
   bspcsg crosscheck model.csg cases.json --against pymeshlab,openscad
 """
 
-#: Most failures that are named at the end; the results file has all.
-_NAMED = 20
+#: The largest number of failures that are listed at the end; the results file has all.
+_MAX_FAILURES_LISTED = 20
 
-#: Most reasons for refusing operands that are told without -v.
-_REASONS = 3
+#: The largest number of reasons for refusing operands that are listed without -v.
+_MAX_REASONS_LISTED = 3
 
 _FILE = FilePath()
 
@@ -368,9 +368,9 @@ class _Campaign:
         """Say why nothing was compared in some cases, each reason once."""
         refused = [record["reason"] for record in records if record["verdict"] == "refused"]
         reasons = list(dict.fromkeys(refused))
-        for reason in reasons[:_REASONS]:
+        for reason in reasons[:_MAX_REASONS_LISTED]:
             self._out.note(f"refused: {reason.rstrip('.')}.")
-        if len(reasons) > _REASONS:
+        if len(reasons) > _MAX_REASONS_LISTED:
             self._out.note(
                 f"refused for other reasons as well ({len(reasons)} in all); -v tells them"
             )
@@ -383,9 +383,9 @@ class _Campaign:
         rows = [(verdict, str(count)) for verdict, count in counts.items()]
         lines = [table_text(("verdict", "cases"), rows, right=("cases",))] if rows else []
         failures = [record for record in records if is_failure(record)]
-        lines += [_failure(record) for record in failures[:_NAMED]]
-        if len(failures) > _NAMED:
-            lines.append(f"and {len(failures) - _NAMED} more")
+        lines += [_failure(record) for record in failures[:_MAX_FAILURES_LISTED]]
+        if len(failures) > _MAX_FAILURES_LISTED:
+            lines.append(f"and {len(failures) - _MAX_FAILURES_LISTED} more")
         return "\n".join([*lines, conclusion(records)])
 
 

@@ -48,8 +48,8 @@ _MODULES = {"pillow": "PIL"}
 #: Optional programs, what each is for, and how to install it.
 _PROGRAMS = (("openscad", ".scad files, crosscheck", "apt-get install openscad"),)
 
-#: Seconds to wait for a program that says its version or loads its plug-ins.
-_PATIENCE = 30
+#: The longest time for a program to print its version or load its plug-ins, in seconds.
+_PROGRAM_TIMEOUT = 30
 
 _ASK_PLUGINS = "import pymeshlab; print('plugins', pymeshlab.plugin_number())"
 
@@ -151,7 +151,7 @@ def _programs() -> list[_Part]:
 
 def _output_of(command: list[str]) -> str:
     try:
-        done = subprocess.run(command, capture_output=True, timeout=_PATIENCE, check=False)
+        done = subprocess.run(command, capture_output=True, timeout=_PROGRAM_TIMEOUT, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return ""
     return (done.stdout + done.stderr).decode("utf-8", "replace")

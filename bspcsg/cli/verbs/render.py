@@ -38,11 +38,11 @@ _TEXTURES = (
     "of its texture a face shows one colour, that in its middle; bspcsg view shows all of it."
 )
 
-#: Pictures of one turn at most, and how many there are unless that is said.
-_MOST_FRAMES, _FRAMES = 360, 36
+#: The largest number of pictures of one turn, and the number by default.
+_MAX_FRAMES, _DEFAULT_FRAMES = 360, 36
 
-#: Seconds for which a GIF can show a picture: two bytes of hundredths.
-_LONGEST = 655
+#: The longest time for which a GIF can show a picture, in seconds: two bytes count hundredths.
+_MAX_FRAME_SECONDS = 655
 
 #: Points of the circle that a turning corner runs through.
 _AROUND = 72
@@ -148,8 +148,8 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
 @further(
     "--frames",
     metavar="N",
-    type=click.IntRange(2, _MOST_FRAMES),
-    default=_FRAMES,
+    type=click.IntRange(2, _MAX_FRAMES),
+    default=_DEFAULT_FRAMES,
     show_default=True,
     help="Pictures of one turn around z, in a GIF.",
 )
@@ -182,9 +182,10 @@ class _Rendering(Drawing):
             for name in ("frames", "seconds"):
                 if is_given(name):
                     raise click.UsageError(f"--{name} is for a GIF only.")
-        elif settings["seconds"] > _LONGEST * settings["frames"]:
+        elif settings["seconds"] > _MAX_FRAME_SECONDS * settings["frames"]:
             message = (
-                f"--seconds: a GIF shows a picture for {_LONGEST} s at most; say more --frames."
+                f"--seconds: a GIF shows a picture for {_MAX_FRAME_SECONDS} s at most;"
+                " say more --frames."
             )
             raise click.UsageError(message)
         self._files = files

@@ -27,8 +27,8 @@ Examples:
   bspcsg view parts/
 """
 
-#: Bytes above which a page takes a browser seconds to open.
-_LARGE = 20_000_000
+#: The largest number of bytes of a page that browsers open at once; a longer one takes seconds.
+_MAX_QUICK_PAGE_BYTES = 20_000_000
 
 
 @verb("view", short_help="Show meshes in a browser, as one page.", epilog=_EPILOG)
@@ -89,7 +89,7 @@ class _Viewing:
         stem = "view" if str(first) == STREAM else first.stem
         target = self._target or temporary_page(stem)
         size = write_page(target, page)
-        if size > _LARGE:
+        if size > _MAX_QUICK_PAGE_BYTES:
             self._out.note(f"the page has {size / 1e6:.0f} MB; browsers take a while for it.")
         opens = self._settings["opens"] and not is_dropped(target)
         is_open = opens and self._opened(target.resolve().as_uri())

@@ -10,8 +10,9 @@ from ..syntax.tree import Node, Value
 #: Nodes that combine their children where they stand.
 COMBINING = frozenset({"group", "union", "color", "render", "difference", "intersection"})
 
-#: Moves within each other, at most: each part gets all of those around it.
-_MOST_MOVES = 64
+#: The largest number of moves inside one another that are taken apart: each part repeats all of the
+#: moves around it.
+_MAX_NESTED_MOVES = 64
 
 
 def moved_apart(root: Node) -> Node:
@@ -32,7 +33,7 @@ def moved_apart(root: Node) -> Node:
             done.append(_combined(node, children))
         elif node.is_ignored:
             done.append(node)
-        elif node.name in COMBINING or (len(moves) < _MOST_MOVES and _keeps_axes(node)):
+        elif node.name in COMBINING or (len(moves) < _MAX_NESTED_MOVES and _keeps_axes(node)):
             inner = moves if node.name in COMBINING else (*moves, node)
             waiting.append((node, moves, True))
             waiting.extend((child, inner, False) for child in reversed(node.children))

@@ -10,15 +10,15 @@ import numpy as np
 from ..._types import FloatArray
 from ...bsp import Region
 from ...bsp.drawings.dxf import read_document
-from ...bsp.drawings.dxf_curves import MOST_IN_BLOCKS, inserted
+from ...bsp.drawings.dxf_curves import MAX_BLOCK_ENTITIES, inserted
 from ...bsp.drawings.dxf_layouts import ANY_LAYER, WINDOW, drawn_layout
 from ...bsp.drawings.left_out import LeftOut
 from ...errors import format_errors
 from ..syntax.arguments import Arguments
 from .tessellation import Fineness
 
-#: Blocks in blocks in blocks: deeper ones are left out.
-_DEEPEST_BLOCK = 16
+#: The largest number of blocks inside one another; deeper ones are left out.
+_MAX_BLOCK_DEPTH = 16
 
 #: Ends of lines closer than this are one corner.
 _JOINED = 2.0**-10
@@ -130,7 +130,7 @@ def _walk(
 def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
     """Yield entities, and those of inserted blocks in the place of these."""
     waiting: list[Iterator[tuple[Any, bool]]] = [((entity, True) for entity in entities)]
-    left = MOST_IN_BLOCKS
+    left = MAX_BLOCK_ENTITIES
     while waiting:
         entity, is_placed = next(waiting[-1], (None, False))
         left -= len(waiting) > 1
@@ -138,7 +138,7 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
             raise ValueError("its blocks hold too much")
         if entity is None:
             waiting.pop()
-        elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _DEEPEST_BLOCK):
+        elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _MAX_BLOCK_DEPTH):
             lost.add(entity.dxftype())
         elif entity.dxftype() == "INSERT":
             # OpenSCAD knows no rows of them.

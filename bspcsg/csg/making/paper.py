@@ -31,8 +31,8 @@ _TURN_STEPS = 10
 #: The rest that rounding leaves of a whole number of steps.
 _ROUNDING = 1e-6
 
-#: Lines that say less of their width, in user units, are one wide.
-_THINNEST = 0.01
+#: The smallest width of a line in user units. A line with a smaller one is drawn one unit wide.
+_MIN_LINE_WIDTH = 0.01
 
 #: Ends of a subpath that are closer than this, in user units, close it.
 _CLOSED = 0.1
@@ -128,7 +128,7 @@ def _meets(corners: FloatArray) -> bool:
 
 def _stroke(shape: Any, corners: FloatArray) -> Region:
     width = float(shape.implicit_stroke_width or 0.0)
-    width = width if width >= _THINNEST else 1.0
+    width = width if width >= _MIN_LINE_WIDTH else 1.0
     cap = shape.values.get("stroke-linecap")
     join = str(shape.values.get("stroke-linejoin"))
     return stroked(corners, width, cap if cap in ("butt", "round") else "square", join)

@@ -9,10 +9,10 @@ twisted extrusions follow OpenSCAD 2021.01, ``$fe`` its development snapshots.
 import math
 from dataclasses import dataclass
 
-from ..syntax.arguments import LARGEST, Arguments
+from ..syntax.arguments import MAX_NUMBER, Arguments
 
-#: No angle in degrees, and no length, of a side is smaller.
-_FINEST = 0.01
+#: The smallest angle of a side in degrees, and its smallest length.
+_MIN_SIDE = 0.01
 
 #: Lengths below are zero: a 2**20th of a unit.
 _NOTHING = 2.0**-20
@@ -54,7 +54,7 @@ class Fineness:
         if self.fn > 0:
             return math.floor(max(self.fn, 3))
         if self.fe >= _NOTHING:
-            finest = min(360 / _FINEST, radius * 2 * math.pi / _FINEST)
+            finest = min(360 / _MIN_SIDE, radius * 2 * math.pi / _MIN_SIDE)
             return math.ceil(max(min(math.tau / self._step_within(radius), finest), 5))
         return math.ceil(max(min(360 / self.fa, radius * 2 * math.pi / self.fs), 5))
 
@@ -103,8 +103,8 @@ def _step(arguments: Arguments, name: str, default: float) -> float:
     """Return the smallest angle or length of a side; what is no number counts as very small."""
     value = arguments.value(name)
     if isinstance(value, float) and not math.isfinite(value):
-        return LARGEST if value == math.inf else _FINEST
-    return max(arguments.number(name, default), _FINEST)
+        return MAX_NUMBER if value == math.inf else _MIN_SIDE
+    return max(arguments.number(name, default), _MIN_SIDE)
 
 
 def _helix_length(reach: float, height: float, turn: float, scale: float) -> float:

@@ -24,12 +24,12 @@ from ..syntax.tree import Node, Value
 from .registry import Evaluation, Geometry, node
 from .signature import Signature
 
-#: Pixels per inch of drawings that do not say, and the fewest that count.
-_DPI, _LEAST_DPI = 72.0, 0.001
+#: The pixels per inch of drawings that do not give them, and the smallest number that is accepted.
+_DEFAULT_DPI, _MIN_DPI = 72.0, 0.001
 
 #: Arguments that concern some kinds of files, with the values that dumps of OpenSCAD have anyway.
 _ASKING_NOTHING: dict[str, Value] = {
-    "id": "", "layer": "", "origin": (0.0, 0.0), "scale": 1.0, "dpi": _DPI,
+    "id": "", "layer": "", "origin": (0.0, 0.0), "scale": 1.0, "dpi": _DEFAULT_DPI,
 }  # fmt: skip
 
 
@@ -84,13 +84,13 @@ def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
 
 
 def _svg(path: Path, owner: Node, arguments: Arguments, run: Evaluation) -> Region:
-    dpi = arguments.number("dpi", _DPI)
-    if dpi < _LEAST_DPI:
-        run.warn(owner, f"its dpi must be {_LEAST_DPI:g} or more; it is {_DPI:g} instead")
-        dpi = _DPI
+    dpi = arguments.number("dpi", _DEFAULT_DPI)
+    if dpi < _MIN_DPI:
+        run.warn(owner, f"its dpi must be {_MIN_DPI:g} or more; it is {_DEFAULT_DPI:g} instead")
+        dpi = _DEFAULT_DPI
     lost = LeftOut()
     region = svg_region(path, dpi, arguments.flag("center"), lost)
-    return _told(owner, run, arguments.text("file"), lost, region)
+    return _with_warning(owner, run, arguments.text("file"), lost, region)
 
 
 def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: float) -> Region:
@@ -98,10 +98,10 @@ def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: 
     layer = arguments.text("layer", "")
     lost = LeftOut()
     region = dxf_region(path, layer, np.array(origin), scale, arguments, lost)
-    return _told(owner, run, arguments.text("file"), lost, region)
+    return _with_warning(owner, run, arguments.text("file"), lost, region)
 
 
-def _told(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
+def _with_warning(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
     """Return the region of a drawing; the caller is told what it lacks."""
     words = lost.words(region)
     if words:

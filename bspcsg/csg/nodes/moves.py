@@ -11,14 +11,14 @@ from ...errors import invalid_parameter
 from ...geometry.transform import determinant_sign
 from ...solid.solid import Solid
 from ..making.polish import polished_matrix
-from ..syntax.arguments import LARGEST, Arguments, is_number
+from ..syntax.arguments import MAX_NUMBER, Arguments, is_number
 from ..syntax.tree import Node
 from .registry import Evaluation, Geometry, node
 from .sets import union_of
 from .signature import Signature
 
-#: Entries of matrices beyond this may move a body beyond all lattices.
-_FAR = 1e15
+#: A matrix with an entry above this may move a body beyond all lattices.
+_MAX_SAFE_ENTRY = 1e15
 
 
 @node("multmatrix", takes=Signature(("m",)), makes_corners=False)
@@ -42,7 +42,7 @@ def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> 
     if isinstance(body, Region):
         return body.transform(matrix[:2, [0, 1, 3]])
     moved = body.transform(matrix)
-    if np.abs(matrix).max() > _FAR:
+    if np.abs(matrix).max() > _MAX_SAFE_ENTRY:
         moved.tree  # noqa: B018  builds it, so that what no lattice holds is this node's error
     return moved
 
@@ -68,7 +68,7 @@ def _matrix(arguments: Arguments) -> FloatArray | None:
         raise arguments.error("the last row of its matrix must be 0, 0, 0, 1.")
     with np.errstate(over="ignore"):
         matrix /= matrix[3, 3]
-    if np.abs(matrix).max() > LARGEST:
+    if np.abs(matrix).max() > MAX_NUMBER:
         raise arguments.error("its matrix has an entry beyond ±1e100.")
     return matrix
 

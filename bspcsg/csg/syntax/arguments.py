@@ -4,19 +4,19 @@ import math
 from typing import Any, TypeGuard
 
 from ...errors import FormatError
-from ...parameters import MOST_CORNERS, MOST_SEGMENTS
+from ...parameters import MAX_CORNERS, MAX_SEGMENTS
 from .source import error_at
 from .tree import Node, Value
 from .writer import value_text
 
-#: Larger numbers stand for no length or angle; products of three still are doubles.
-LARGEST = 1e100
+#: The largest number that may be a length or an angle: the product of three still fits a double.
+MAX_NUMBER = 1e100
 
 #: The type of the numbers in trees and of defaults; that of true and false is another.
 _FLOAT = frozenset({float})
 
-#: Most characters of a value that an error shows.
-_QUOTED = 40
+#: The largest number of characters of a value that an error quotes.
+_MAX_QUOTED_CHARACTERS = 40
 
 
 class Arguments:
@@ -124,15 +124,15 @@ class Arguments:
 
     def limited(self, count: float, what: str) -> int:
         """Return a number of corners, or raise an error if it would not fit into memory."""
-        if not count <= MOST_CORNERS:
-            message = f"{what} would take more than {MOST_CORNERS:,} corners."
+        if not count <= MAX_CORNERS:
+            message = f"{what} would take more than {MAX_CORNERS:,} corners."
             raise self.error(message, "too_large")
         return int(count)
 
     def sides(self, count: float, what: str) -> int:
         """Return a number of sides around, or raise an error if it is absurd."""
-        if not count <= MOST_SEGMENTS:
-            message = f"{what} would have more than {MOST_SEGMENTS:,} sides."
+        if not count <= MAX_SEGMENTS:
+            message = f"{what} would have more than {MAX_SEGMENTS:,} sides."
             raise self.error(message, "too_large")
         return int(count)
 
@@ -144,7 +144,9 @@ class Arguments:
 
     def _wrong(self, name: str, expected: str, value: Any) -> FormatError:
         shown = value_text(value)
-        shown = shown if len(shown) <= _QUOTED else shown[:_QUOTED] + "…"
+        shown = (
+            shown if len(shown) <= _MAX_QUOTED_CHARACTERS else shown[:_MAX_QUOTED_CHARACTERS] + "…"
+        )
         code = "bad_argument" if _is_finite(value) else "not_finite"
         return self.error(f"{name} must be {expected}, not {shown}.", code)
 
@@ -167,9 +169,9 @@ def _is_finite(value: Any) -> bool:
 
 
 def _is_usable(value: float) -> bool:
-    return abs(value) <= LARGEST  # false for NaN
+    return abs(value) <= MAX_NUMBER  # false for NaN
 
 
 def _all_usable(values: tuple[Any, ...]) -> bool:
     # Long lists are looked at by functions written in C alone.
-    return _FLOAT.issuperset(map(type, values)) and all(map(LARGEST.__ge__, map(abs, values)))
+    return _FLOAT.issuperset(map(type, values)) and all(map(MAX_NUMBER.__ge__, map(abs, values)))

@@ -8,11 +8,11 @@ from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 from .writer import value_text
 
-#: Letters of a value that are shown.
-_SHOWN = 64
+#: The largest number of characters of a value that are shown.
+_MAX_VALUE_CHARACTERS = 64
 
-#: Levels that are indented; deeper nodes say their depth instead.
-_DEEPEST_INDENT = 40
+#: The largest number of levels that are indented; deeper nodes show their depth as a number.
+_MAX_INDENT_DEPTH = 40
 
 
 class _Place(NamedTuple):
@@ -41,7 +41,7 @@ def outline(tree: CsgTree) -> str:
     for place in _walk(tree):
         indent = "".join("   " if last else "│  " for last in place.ended)
         branch = "└─ " if place.is_last else "├─ "
-        number = f"({place.depth}) " if place.depth > _DEEPEST_INDENT else ""
+        number = f"({place.depth}) " if place.depth > _MAX_INDENT_DEPTH else ""
         lines.append(f"{indent}{branch}{number}{_label(place.node)}")
     return "\n".join(lines) + "\n"
 
@@ -65,7 +65,7 @@ def _walk(tree: CsgTree) -> Iterator[_Place]:
     while waiting:
         place = waiting.pop()
         yield place
-        ended = (*place.ended, place.is_last)[:_DEEPEST_INDENT]
+        ended = (*place.ended, place.is_last)[:_MAX_INDENT_DEPTH]
         waiting += _siblings(place.node.children, place.depth + 1, ended)
 
 
@@ -85,9 +85,13 @@ def _argument(argument: Argument) -> str:
 
 
 def _short(value: Value) -> str:
-    if isinstance(value, tuple) and len(value) > _SHOWN:
+    if isinstance(value, tuple) and len(value) > _MAX_VALUE_CHARACTERS:
         return f"[{len(value)} values]"
     text = value_text(value)
-    if len(text) <= _SHOWN:
+    if len(text) <= _MAX_VALUE_CHARACTERS:
         return text
-    return f"[{len(value)} values]" if isinstance(value, tuple) else text[: _SHOWN - 1] + "…"
+    return (
+        f"[{len(value)} values]"
+        if isinstance(value, tuple)
+        else text[: _MAX_VALUE_CHARACTERS - 1] + "…"
+    )

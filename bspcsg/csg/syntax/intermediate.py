@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from ...errors import BspcsgError
 
-#: Most characters of a line that an error quotes.
-_QUOTED = 100
+#: The largest number of characters of a line that an error quotes.
+_MAX_QUOTED_CHARACTERS = 100
 
 _COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 _OTHER_FILES = re.compile(r"^\s*(?:use|include)\s*<", re.MULTILINE)
@@ -46,7 +46,9 @@ class Intermediate:
             return error
         number, column = map(int, place.groups())
         line = lines[number - 1]
-        message = f"{error.message}\n  line {number} of the .csg: {line.strip()[:_QUOTED]}"
+        message = (
+            f"{error.message}\n  line {number} of the .csg: {line.strip()[:_MAX_QUOTED_CHARACTERS]}"
+        )
         own = self._own_line(line[column - 1 :])
         if own is not None:
             message = f"{message}\n  from {self.script}:{own}"

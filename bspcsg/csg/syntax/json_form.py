@@ -14,21 +14,21 @@ from typing import Any, TypeGuard
 
 from ...errors import FormatError
 from ...parameters import at_least, file_path, of_kind, text_value
-from .tree import DEEPEST_VECTOR, WORDS, Argument, CsgTree, Node, Value, is_name
+from .tree import MAX_VECTOR_DEPTH, WORDS, Argument, CsgTree, Node, Value, is_name
 
 FORMAT = "bspcsg-csg"
 VERSION = 1
 
-#: Deeper trees are refused here; the text form holds any depth. Python's own reader of JSON, and
-#: what makes nodes of its answer, take up to three calls a node, and a program has 1000 to itself
-#: unless it asks for more: this leaves it a third.
-DEEPEST_NODE = 200
+#: The largest number of nodes inside one another in JSON; the text form allows any depth. Python's
+#: reader of JSON, and the code that makes nodes of its answer, take up to three nested calls for a
+#: node. Python allows 1000 by default, so this leaves a third of them to the caller.
+MAX_NODE_DEPTH = 200
 
 _ODD = {"inf": math.inf, "-inf": -math.inf, "nan": math.nan}
 
 
-#: Blanks before a line for each level; more of them, and files are nothing else.
-_DEEPEST_INDENT = 64
+#: The largest number of blanks by which a level is indented: with more, files are mostly blanks.
+_MAX_INDENT = 64
 
 
 def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
@@ -39,7 +39,7 @@ def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
     FormatError
         If nodes nest deeper than 200, which readers of JSON do not all take; code "too_deep".
     """
-    steps = None if indent is None else min(at_least(0, indent, "indent"), _DEEPEST_INDENT)
+    steps = None if indent is None else min(at_least(0, indent, "indent"), _MAX_INDENT)
     nodes = [_node_data(node, 1, tree.name) for node in of_kind(CsgTree, tree, "tree").nodes]
     document = {"format": FORMAT, "version": VERSION, "nodes": nodes}
     return json.dumps(document, indent=steps, ensure_ascii=False, allow_nan=False)
@@ -69,8 +69,8 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
 
 
 def _node_data(node: Node, depth: int, name: str) -> dict[str, Any]:
-    if depth > DEEPEST_NODE:
-        message = f"{name}: nodes nest deeper than {DEEPEST_NODE}; write .csg instead of JSON."
+    if depth > MAX_NODE_DEPTH:
+        message = f"{name}: nodes nest deeper than {MAX_NODE_DEPTH}; write .csg instead of JSON."
         raise FormatError(message, "too_deep")
     data: dict[str, Any] = {"node": node.name}
     if node.modifiers:
@@ -98,8 +98,8 @@ def _value_data(value: Value) -> Any:
 def _nodes(data: Any, where: str, name: str, depth: int) -> tuple[Node, ...]:
     if not isinstance(data, list):
         raise _wrong(name, where, "a list of nodes")
-    if data and depth > DEEPEST_NODE:
-        raise FormatError(f"{name}: nodes nest deeper than {DEEPEST_NODE}.", "too_deep")
+    if data and depth > MAX_NODE_DEPTH:
+        raise FormatError(f"{name}: nodes nest deeper than {MAX_NODE_DEPTH}.", "too_deep")
     return tuple(_node(entry, f"{where}[{k}]", name, depth) for k, entry in enumerate(data))
 
 
@@ -127,7 +127,7 @@ def _argument(data: Any, where: str, name: str) -> Argument:
 
 
 def _value(data: Any, where: str, name: str, depth: int) -> Value:
-    if isinstance(data, list) and depth <= DEEPEST_VECTOR:
+    if isinstance(data, list) and depth <= MAX_VECTOR_DEPTH:
         return tuple(
             _value(entry, f"{where}[{k}]", name, depth + 1) for k, entry in enumerate(data)
         )

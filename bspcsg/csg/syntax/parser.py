@@ -20,7 +20,7 @@ from ...errors import FormatError
 from ...parameters import file_path, text_value
 from .source import Script
 from .tokens import Token, Words, unquoted
-from .tree import DEEPEST_VECTOR, WORDS, Argument, CsgTree, Node, Place, Value
+from .tree import MAX_VECTOR_DEPTH, WORDS, Argument, CsgTree, Node, Place, Value
 
 
 def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> CsgTree:
@@ -172,13 +172,13 @@ class _Parser:
             value: Value
             if self._next.text != "[" or self._next.kind != "mark":
                 value = self._scalar()
-            elif (numbers := self._numbers(DEEPEST_VECTOR - len(vectors))) is not None:
+            elif (numbers := self._numbers(MAX_VECTOR_DEPTH - len(vectors))) is not None:
                 value = numbers
             else:
                 self._take()
                 vectors.append([])
-                if len(vectors) > DEEPEST_VECTOR:
-                    raise self._error(f"vectors are nested deeper than {DEEPEST_VECTOR}.")
+                if len(vectors) > MAX_VECTOR_DEPTH:
+                    raise self._error(f"vectors are nested deeper than {MAX_VECTOR_DEPTH}.")
                 if self._next.text != "]":
                     continue
                 value = self._end_of(vectors)

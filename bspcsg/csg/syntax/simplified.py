@@ -31,7 +31,7 @@ def simplified(tree: CsgTree) -> CsgTree:
     return replace(tree, nodes=_with_children(Node("union", (), roots)))
 
 
-class _Done(NamedTuple):
+class _SimplifiedNode(NamedTuple):
     """A simplified node.
 
     Parameters
@@ -50,7 +50,7 @@ class _Done(NamedTuple):
 
 def _with_children(root: Node) -> tuple[Node, ...]:
     """Return the simplified children of a node that unites; trees may be any depth."""
-    done: list[_Done] = []
+    done: list[_SimplifiedNode] = []
     waiting: list[tuple[Node, bool]] = [(root, False)]
     while waiting:
         node, children_done = waiting.pop()
@@ -67,11 +67,11 @@ def _with_children(root: Node) -> tuple[Node, ...]:
         is_mixed = len(set(kinds)) > 1 or any(
             child.is_mixed and child.node is rebuilt for child in made
         )
-        done.append(_Done(rebuilt, _is_flat(node, kinds), is_mixed))
+        done.append(_SimplifiedNode(rebuilt, _is_flat(node, kinds), is_mixed))
     return done[0].node.children
 
 
-def _rebuilt(node: Node, made: Sequence[_Done], at_top: bool) -> Node:
+def _rebuilt(node: Node, made: Sequence[_SimplifiedNode], at_top: bool) -> Node:
     children = tuple(child.node for child in made)
     if node.name in _UNITING:
         children = tuple(part for child in made for part in _parts(child))
@@ -90,7 +90,7 @@ def _is_flat(node: Node, kinds: Sequence[bool]) -> bool | None:
     return node.name in _FIGURES or (node.name == "import" and is_drawing)
 
 
-def _parts(child: _Done) -> tuple[Node, ...]:
+def _parts(child: _SimplifiedNode) -> tuple[Node, ...]:
     """Return what a child of a node that unites may be replaced by."""
     is_loose = _is_plain(child.node) and not child.is_mixed
     return child.node.children if is_loose else (child.node,)

@@ -23,8 +23,8 @@ _WORD = re.compile(
 _ESCAPE = re.compile(r"\\(x[0-7][0-9a-fA-F]|u[0-9a-fA-F]{4}|U[0-9a-fA-F]{6}|.)", re.DOTALL)
 _CONTROLS = {"n": "\n", "t": "\t", "r": "\r"}
 
-#: Most characters of an offending word that an error quotes.
-_QUOTED = 24
+#: The largest number of characters of an offending word that an error quotes.
+_MAX_QUOTED_CHARACTERS = 24
 
 
 class Token(NamedTuple):
@@ -39,9 +39,10 @@ class Token(NamedTuple):
         if self.kind == "end":
             return "the end of the file"
         text = "".join(
-            c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in self.text[:_QUOTED]
+            c if c.isprintable() else "\N{REPLACEMENT CHARACTER}"
+            for c in self.text[:_MAX_QUOTED_CHARACTERS]
         )
-        return f"“{text}{'…' if len(self.text) > _QUOTED else ''}”"
+        return f"“{text}{'…' if len(self.text) > _MAX_QUOTED_CHARACTERS else ''}”"
 
 
 class Words:

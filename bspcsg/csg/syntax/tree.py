@@ -26,8 +26,8 @@ WORDS: dict[str, Value] = {
     "nan": math.nan,
 }
 
-#: Deepest vector in a vector; OpenSCAD writes two, for matrices and paths.
-DEEPEST_VECTOR = 64
+#: The largest number of vectors inside one another. OpenSCAD writes two, for matrices and paths.
+MAX_VECTOR_DEPTH = 64
 
 _SCALAR = frozenset({float, str, bool, NoneType})
 _NAME = re.compile(r"\$?[A-Za-z_]\w*")
@@ -56,7 +56,7 @@ def _plain(value: Any, depth: int = 0) -> "Value":
     """Return a value as trees hold it: numbers as doubles, vectors as tuples."""
     if type(value) in _SCALAR:
         return value  # type: ignore[no-any-return]
-    if isinstance(value, (tuple, list)) and depth < DEEPEST_VECTOR:
+    if isinstance(value, (tuple, list)) and depth < MAX_VECTOR_DEPTH:
         if isinstance(value, tuple) and _SCALAR.issuperset(map(type, value)):
             return value
         return tuple([_plain(entry, depth + 1) for entry in value])
@@ -69,7 +69,7 @@ def _plain(value: Any, depth: int = 0) -> "Value":
             return float(value)
     raise invalid_parameter(
         "A value in a script is a number, a text, true, false, None or a vector of these, within"
-        f" each other up to {DEEPEST_VECTOR} times, not {shown(value)}."
+        f" each other up to {MAX_VECTOR_DEPTH} times, not {shown(value)}."
     )
 
 

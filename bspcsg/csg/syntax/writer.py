@@ -7,8 +7,9 @@ from ...parameters import of_kind, truth_value
 from .tokens import quoted
 from .tree import Argument, CsgTree, Node, Value
 
-#: Lines are indented no further, so that a deep tree does not become mostly white.
-_DEEPEST_INDENT = 40
+#: The largest number of levels that are indented: otherwise the text of a deep tree is mostly
+#: blanks.
+_MAX_INDENT_DEPTH = 40
 
 
 #: Numbers that are no literals, as dumps of a tree have them, and as OpenSCAD's own language does.
@@ -48,7 +49,7 @@ def written(tree: CsgTree, *, scad: bool = False) -> str:
 
 
 def _indent(depth: int) -> str:
-    return "\t" * min(depth, _DEEPEST_INDENT)
+    return "\t" * min(depth, _MAX_INDENT_DEPTH)
 
 
 def _call(node: Node, odd: Mapping[float, str]) -> str:

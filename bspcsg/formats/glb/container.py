@@ -16,9 +16,11 @@ _JSON, _BINARY = b"JSON", b"BIN\0"
 COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
 ELEMENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 
-#: Most triangles that all nodes together may show, and most nodes that may lie in one another.
-_MOST_TRIANGLES = 1 << 27
-_DEEPEST = 64
+#: The largest number of triangles that all nodes together may show.
+_MAX_TRIANGLES = 1 << 27
+
+#: The largest number of nodes that may contain one another.
+_MAX_NODE_DEPTH = 64
 
 #: Shows the mesh of a node several times, at places that accessors tell.
 _INSTANCES = "EXT_mesh_gpu_instancing"
@@ -221,11 +223,11 @@ class _Claims:
             steps, above = 0, number
             while (above := parents[above]) != -1:
                 steps += 1
-                if steps > _DEEPEST:
+                if steps > _MAX_NODE_DEPTH:
                     message = "the nodes contain each other too often."
                     raise self._source.error(message, "too_large")
         shown = sum(self._triangles_of(node) for node in nodes)
-        if shown > _MOST_TRIANGLES:
+        if shown > _MAX_TRIANGLES:
             raise self._source.error("the nodes show too many triangles.", "too_large")
 
     def _triangles_of(self, node: dict[str, Any]) -> int:

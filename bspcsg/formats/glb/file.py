@@ -23,7 +23,7 @@ from ..raw import RawMesh, compacted, parts_of, says_empty_set
 from ..said import said_of
 from ..source import Source
 from .container import container_of
-from .nodes import Shown, shown
+from .nodes import NodeMesh, shown
 from .said import Pictures, called, columns_of, dropped_pictures
 
 #: Millimetres with z upwards to metres with y upwards, for column vectors, and back.
@@ -62,7 +62,7 @@ def read(source: Source) -> RawMesh:
     return replace(mesh, findings=findings, unit="mm", dropped=dropped)
 
 
-def _placed(one: Shown) -> PlacedMesh:
+def _placed(one: NodeMesh) -> PlacedMesh:
     """Return the mesh of a node in millimetres; a mirrored one is turned right side out."""
     placing = TO_MILLIMETRES @ one.matrix
     linear = placing[:3, :3]

@@ -22,7 +22,7 @@ _IDENTITY = np.eye(4)
 
 
 @dataclass(frozen=True, eq=False)
-class Shown:
+class NodeMesh:
     """A mesh at a node.
 
     Parameters
@@ -44,7 +44,7 @@ class Shown:
     attributes: Attributes | None = None
 
 
-def shown(container: Container) -> tuple[list[Shown], int]:
+def shown(container: Container) -> tuple[list[NodeMesh], int]:
     """Return what the scene shows, and how many nodes with a mesh it does not show.
 
     A mesh at several nodes is shown at each of them. The nodes come in the order of the file,
@@ -72,7 +72,7 @@ def shown(container: Container) -> tuple[list[Shown], int]:
         name = mesh.get("name") or node.get("name") or ""
         vertices, faces, said = meshes[node["mesh"]]
         for place in places_of(container, node):
-            found.append(Shown(str(name), vertices, faces, matrix @ place, said))
+            found.append(NodeMesh(str(name), vertices, faces, matrix @ place, said))
     return found, sum("mesh" in node for node in nodes) - seen
 
 

@@ -142,18 +142,18 @@ def read_columns(
         values = stored(container, number)
         if len(values) == count and _fits(name, values):
             some = values if used is None else values[used]
-            found[name] = _meant(name, some, bool(accessor.get("normalized")))
+            found[name] = _decoded(name, some, bool(accessor.get("normalized")))
     return found
 
 
-def _meant(name: str, values: Values, is_fraction: bool) -> Values:
+def _decoded(name: str, values: Values, is_fraction: bool) -> Values:
     """Return the values of an attribute that numbers in a file mean."""
     if name == "color":
         return shown(fractions(values), is_whole=values.dtype.kind != "f")
-    meant = numbers(values, is_fraction)
+    decoded = numbers(values, is_fraction)
     if name == "uv":
-        return _upright(meant.astype(np.float32))
-    return meant[:, 0] if meant.shape[1] == 1 else meant
+        return _upright(decoded.astype(np.float32))
+    return decoded[:, 0] if decoded.shape[1] == 1 else decoded
 
 
 def _fits(name: str, values: Values) -> bool:

@@ -98,17 +98,17 @@ class _Reading:
 
 def as_written(root: SceneNode) -> SceneNode:
     """Return a tree with the colours and attributes that are read after it was written."""
-    return _Holding().node(root)
+    return _AsGlb().node(root)
 
 
-class _Holding:
+class _AsGlb:
     """A tree as GLB holds it; what nodes share stays shared."""
 
     def __init__(self) -> None:
         self._meshes: dict[int, tuple[RawMesh, tuple[float, ...] | None]] = {}
 
     def node(self, node: SceneNode) -> SceneNode:
-        """Return a node as it is held."""
+        """Return a node as GLB holds it."""
         mesh, painted = (None, None) if node.mesh is None else self._mesh(node.mesh)
         color = painted if node.color is None else as_read(node.color)
         return SceneNode(node.name, node.matrix, mesh, color, tuple(map(self.node, node.children)))
@@ -156,7 +156,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
         if node.mesh is not None and len(node.mesh.faces):
             key = (id(node.mesh), node.color)
             if key not in meshes:
-                said = _said(node.mesh, node.color)
+                said = _attributes_of(node.mesh, node.color)
                 meshes[key] = (len(meshes), said.among(taken), node.mesh)
             nodes[number]["mesh"] = meshes[key][0]
         waiting.extend((child, number) for child in reversed(node.children))
@@ -167,7 +167,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
     yield from container(described.text(further), described.blocks)
 
 
-def _said(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
+def _attributes_of(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
     said = Attributes(mesh.faces) if mesh.attributes is None else mesh.attributes
     if color is None or {"color", "material"}.intersection(said.names):
         return said

@@ -6,12 +6,12 @@ from ..glb.container import container_of
 from ..glb.file import TO_METRES
 from ..glb.nodes import shown
 from ..source import Source
-from .layout import Held
+from .layout import StoredMesh
 
 
-def objects(file: BinaryIO) -> list[Held]:
+def objects(file: BinaryIO) -> list[StoredMesh]:
     """Return what the nodes show, in metres each."""
     found, hidden = shown(container_of(Source("file", file.read())))
     if hidden or any((one.matrix != TO_METRES).any() for one in found):
         raise ValueError("a node is not where it should be")
-    return [Held(one.vertices, one.faces, one.name) for one in found]
+    return [StoredMesh(one.vertices, one.faces, one.name) for one in found]

@@ -9,11 +9,11 @@ import numpy.typing as npt
 
 from ..._core import are_words, numbers_in_rows, whole_numbers_in_rows
 from ..._types import IndexArray
-from ..blocks import OF_FILE, blocks
+from ..blocks import ROWS_PER_FILE_BLOCK, blocks
 
 
 @dataclass(frozen=True, eq=False)
-class Held:
+class StoredMesh:
     """One object as it stands in a file.
 
     Parameters
@@ -40,7 +40,7 @@ class Held:
             return False
         return bool((self.faces == faces).all() and (self.vertices == vertices).all())
 
-    def loaded(self) -> "Held":
+    def loaded(self) -> "StoredMesh":
         """Return it with all of its numbers in memory, where they are."""
         return self
 
@@ -109,7 +109,9 @@ class Rows:
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows are these."""
-        return all(self.hold(block, expected[block]) for block in blocks(self._count, OF_FILE))
+        return all(
+            self.hold(block, expected[block]) for block in blocks(self._count, ROWS_PER_FILE_BLOCK)
+        )
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows of a block, of numbers of eight bytes, are these, bit by bit."""
@@ -133,7 +135,7 @@ class Rows:
 
 
 @dataclass(frozen=True, eq=False)
-class HeldRows:
+class StoredRows:
     """One object whose numbers are still in the file.
 
     Parameters
@@ -162,11 +164,11 @@ class HeldRows:
         self.check_end()
         return found
 
-    def loaded(self) -> Held:
+    def loaded(self) -> StoredMesh:
         """Return it with all of its numbers in memory."""
         vertices, faces = self.vertices.everything(), self.faces.everything()
         self.check_end()
-        return Held(vertices, faces, self.name)
+        return StoredMesh(vertices, faces, self.name)
 
     def check_end(self) -> None:
         """Refuse a file that goes on where it should end."""
@@ -188,11 +190,11 @@ def size_of(file: BinaryIO) -> int:
     return file.seek(0, os.SEEK_END)
 
 
-#: More bytes than the lines between two blocks of numbers have.
-_LINES = 1 << 12
+#: The lines between two blocks of numbers have fewer bytes than this.
+_MAX_LINE_BYTES = 1 << 12
 
 
-def text_at(file: BinaryIO, start: int, count: int = _LINES) -> bytes:
+def text_at(file: BinaryIO, start: int, count: int = _MAX_LINE_BYTES) -> bytes:
     """Return bytes of a file: unless told, enough for all lines before the next numbers."""
     file.seek(start)
     return file.read(count)

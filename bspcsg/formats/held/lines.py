@@ -11,8 +11,9 @@ from .layout import size_of, text_at
 #: Returns the rows of three numbers in whole lines; raises an exception where they have others.
 Reader: TypeAlias = Callable[[bytes], npt.NDArray[Any]]
 
-#: Bytes that are read together: they fit into a processor's cache with the numbers in them.
-_TOGETHER = 1 << 18
+#: The number of bytes that are read together: with the numbers in them they fit into the
+#: processor's cache.
+_BYTES_PER_READ = 1 << 18
 
 
 class Lines:
@@ -73,7 +74,7 @@ class Lines:
         """Yield all lines, many at a time."""
         at, left = self._start(), self._count
         while left:
-            text, count = _first_lines(text_at(self._file, at, _TOGETHER), left)
+            text, count = _first_lines(text_at(self._file, at, _BYTES_PER_READ), left)
             if not count:
                 raise ValueError(f"it ends at byte {at}")
             yield text

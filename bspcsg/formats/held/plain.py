@@ -9,9 +9,9 @@ import numpy.typing as npt
 
 from ..._core import are_triangles
 from .layout import (
-    Held,
-    HeldRows,
     Rows,
+    StoredMesh,
+    StoredRows,
     after,
     header_of,
     rows_of,
@@ -20,17 +20,17 @@ from .layout import (
 from .lines import Lines, Reader
 
 
-def binary_stl(file: BinaryIO) -> list[Held]:
+def binary_stl(file: BinaryIO) -> list[StoredMesh]:
     """Return the triangles after the header and the count, which must be those that follow."""
     data = file.read()
     count = int.from_bytes(data[80:84], "little")
     if len(data) != 84 + 50 * count:
         raise ValueError(f"it has {len(data)} bytes, which are not {count} triangles")
     records = np.frombuffer(data, np.dtype("12<f4,<u2"), count, 84)["f0"]
-    return [Held(records[:, 3:].reshape(-1, 3))]
+    return [StoredMesh(records[:, 3:].reshape(-1, 3))]
 
 
-def text_stl(file: BinaryIO) -> list[Held]:
+def text_stl(file: BinaryIO) -> list[StoredMesh]:
     """Return the solids, one after another."""
     data, found, at = file.read(), [], 0
     while at < len(data):
@@ -41,7 +41,7 @@ def text_stl(file: BinaryIO) -> list[Held]:
         if after(b"endsolid ", data[end : at - 1]) != name:
             raise ValueError("a solid ends by another name")
         rows = rows_of(data[head:end], _FACET)
-        found.append(Held(rows[:, 3:].reshape(-1, 3), None, name))
+        found.append(StoredMesh(rows[:, 3:].reshape(-1, 3), None, name))
     return found
 
 
@@ -51,7 +51,7 @@ _FACET = (
 )
 
 
-def obj(file: BinaryIO) -> list[Held] | list[HeldRows]:
+def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
     """Return the objects; all have the same vertices."""
     data = file.read()
     start = data.index(b"\n") + 1 if data.startswith(b"#") else 0
@@ -64,11 +64,11 @@ def obj(file: BinaryIO) -> list[Held] | list[HeldRows]:
             start = data.index(b"\n", start) + 1
             name = after(b"o ", data[end : start - 1])
         end = _first(data, start, b"o")
-        found.append(HeldRows(vertices, _lines(data, start, end, _named_faces), name))
+        found.append(StoredRows(vertices, _lines(data, start, end, _named_faces), name))
     if len(found) == 1:
         return found
     points = vertices.everything()
-    return [Held(points, one.faces.everything(), one.name) for one in found]
+    return [StoredMesh(points, one.faces.everything(), one.name) for one in found]
 
 
 def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
@@ -92,13 +92,13 @@ def _first(data: bytes, start: int, letters: bytes) -> int:
     return min((at for at in found if at >= 0), default=len(data))
 
 
-def off(file: BinaryIO) -> list[HeldRows]:
+def off(file: BinaryIO) -> list[StoredRows]:
     """Return the faces between the vertices."""
     head = re.match(rb"OFF\n(?:#[^\n]*\n)?(\d+) (\d+) 0\n", header_of(file))
     return [_table(file, head)]
 
 
-def text_ply(file: BinaryIO) -> list[HeldRows]:
+def text_ply(file: BinaryIO) -> list[StoredRows]:
     """Return the faces after the vertices."""
     return [_table(file, _PLY.match(header_of(file)))]
 
@@ -110,14 +110,14 @@ _PLY = re.compile(
 )
 
 
-def binary_ply(file: BinaryIO) -> list[HeldRows]:
+def binary_ply(file: BinaryIO) -> list[StoredRows]:
     """Return the records after the header."""
     head = _PLY.match(header_of(file))
     if head is None:
         raise ValueError("its header is another one")
     vertices = Rows(file, head.end(), "3<f8", int(head[1]))
     faces = _Faces(file, vertices.end, "u1,3<i4", int(head[2]))
-    return [_complete(HeldRows(vertices, faces, ends=True))]
+    return [_complete(StoredRows(vertices, faces, ends=True))]
 
 
 class _Faces(Rows):
@@ -134,13 +134,13 @@ class _Faces(Rows):
         return corners
 
 
-def _table(file: BinaryIO, head: re.Match[bytes] | None) -> HeldRows:
+def _table(file: BinaryIO, head: re.Match[bytes] | None) -> StoredRows:
     """Return the vertices and faces that follow a header that counts them."""
     if head is None:
         raise ValueError("its header is another one")
     vertices = Lines(file, head.end, int(head[1]), _bare_points)
     faces = Lines(file, vertices.end, int(head[2]), _counted_faces)
-    return _complete(HeldRows(vertices, faces, ends=True))
+    return _complete(StoredRows(vertices, faces, ends=True))
 
 
 def _bare_points(text: bytes) -> npt.NDArray[Any]:
@@ -151,7 +151,7 @@ def _counted_faces(text: bytes) -> npt.NDArray[Any]:
     return whole_rows_of(text, b"3 # # #\n")
 
 
-def _complete(held: HeldRows) -> HeldRows:
+def _complete(held: StoredRows) -> StoredRows:
     """Return what is held, looked at in full if it has no faces: nobody will compare it."""
     if not held.count:
         held.loaded()

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 from typing import BinaryIO
 from xml.etree import ElementTree
 
-from .layout import Held, rows_of, whole_rows_of
+from .layout import StoredMesh, rows_of, whole_rows_of
 
 
-def archive(file: BinaryIO) -> list[Held]:
+def archive(file: BinaryIO) -> list[StoredMesh]:
     """Return the objects of the model in the archive, each of which is built once."""
     with zipfile.ZipFile(file) as archive:
         parts = {name: _read(archive, name) for name in archive.namelist()}
@@ -24,14 +24,14 @@ def archive(file: BinaryIO) -> list[Held]:
 def _read(archive: zipfile.ZipFile, name: str) -> bytes:
     """Return a part, whose sum is checked; by pieces, so that a signal is heard between them."""
     with archive.open(name) as part:
-        return b"".join(iter(lambda: part.read(_PIECE), b""))
+        return b"".join(iter(lambda: part.read(_CHUNK_BYTES), b""))
 
 
-#: Bytes that are unpacked at once.
-_PIECE = 1 << 20
+#: The number of bytes that are unpacked at a time.
+_CHUNK_BYTES = 1 << 20
 
 
-def _objects(model: bytes) -> Iterator[Held]:
+def _objects(model: bytes) -> Iterator[StoredMesh]:
     opening, between, closing = (
         b"<mesh><vertices>\n",
         b"</vertices><triangles>\n",
@@ -48,7 +48,7 @@ def _objects(model: bytes) -> Iterator[Held]:
             raise ValueError(f"its object {number} is another one")
         vertices = rows_of(model[start + len(opening) : middle], _VERTEX)
         faces = whole_rows_of(model[middle + len(between) : end], _TRIANGLE)
-        yield Held(vertices, faces, told.get("name", ""))
+        yield StoredMesh(vertices, faces, told.get("name", ""))
         at = end + len(closing)
     if not model.startswith(b"</resources>", at):
         raise ValueError(f"something else follows its object {number}")

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import vtk
-from ..blocks import OF_FILE, blocks
-from .layout import Held, HeldRows, Rows, header_of, piece, size_of, text_at
+from ..blocks import ROWS_PER_FILE_BLOCK, blocks
+from .layout import Rows, StoredMesh, StoredRows, header_of, piece, size_of, text_at
 
 _HEAD = re.compile(
     rb"# vtk DataFile Version 5\.1\nwritten by [^\n]*\nBINARY\n"
@@ -23,7 +23,7 @@ _TRIANGLE = 5
 _KIND = _TRIANGLE.to_bytes(4, "big")
 
 
-def legacy(file: BinaryIO) -> list[HeldRows]:
+def legacy(file: BinaryIO) -> list[StoredRows]:
     """Return the triangles of a VTK file, whose blocks hold big-endian numbers."""
     start = header_of(file)
     if start == vtk.EMPTY[".vtk"]:
@@ -43,7 +43,7 @@ def legacy(file: BinaryIO) -> list[HeldRows]:
     if _behind(b"\n", file, kinds.end) != size_of(file) or int(cells[2]) != 3 * count:
         raise ValueError(f"its {count} cells are not all it holds")
     _check_triangles(offsets, kinds)
-    return [HeldRows(vertices, faces)]
+    return [StoredRows(vertices, faces)]
 
 
 def _behind(key: bytes, file: BinaryIO, at: int) -> int:
@@ -54,11 +54,11 @@ def _behind(key: bytes, file: BinaryIO, at: int) -> int:
 
 def _check_triangles(offsets: Rows, kinds: Rows) -> None:
     """Refuse cells that are no triangles, one after another."""
-    for block in blocks(len(offsets), OF_FILE):
+    for block in blocks(len(offsets), ROWS_PER_FILE_BLOCK):
         rows = np.arange(*block.indices(len(offsets)), dtype=np.int64)
         if not offsets.hold(block, 3 * rows[:, None]):
             raise ValueError("a cell has not three corners")
-    for block in blocks(len(kinds), OF_FILE):
+    for block in blocks(len(kinds), ROWS_PER_FILE_BLOCK):
         data = kinds.data(block)
         if data != _KIND * (len(data) // len(_KIND)):
             raise ValueError("a cell is no triangle")
@@ -81,7 +81,7 @@ _END_OF_ARRAY = b"\n</DataArray>\n"
 _END = b"</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"
 
 
-def xml(file: BinaryIO) -> list[Held]:
+def xml(file: BinaryIO) -> list[StoredMesh]:
     """Return the triangles of a VTU file, whose arrays are packed."""
     data = file.read()
     if data == vtk.EMPTY[".vtu"]:
@@ -98,7 +98,7 @@ def xml(file: BinaryIO) -> list[Held]:
         raise ValueError("a cell has not three corners")
     if (kinds != _TRIANGLE).any():
         raise ValueError("a cell is no triangle")
-    return [Held(vertices.reshape(-1, 3), faces.reshape(-1, 3))]
+    return [StoredMesh(vertices.reshape(-1, 3), faces.reshape(-1, 3))]
 
 
 def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArray[Any]]:

@@ -46,8 +46,8 @@ TYPES = {
 _NAME = re.compile(r"[!-~]+")
 _NUMBERED = re.compile(r"(.+)_(\d+)")
 
-#: The length of a list is a byte.
-_LONGEST = 255
+#: The largest number of values in a list, whose length is stored in one byte.
+_MAX_LIST_LENGTH = 255
 
 
 def kept(said: Attributes) -> Attributes:
@@ -65,7 +65,7 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
     known = _KNOWN.get(name)
     if known and shape not in ((len(known),), (3,) if name == "color" else (len(known),)):
         return None
-    if kind == "corner" and (shape == (1,) or 3 * (shape or (1,))[0] > _LONGEST):
+    if kind == "corner" and (shape == (1,) or 3 * (shape or (1,))[0] > _MAX_LIST_LENGTH):
         return None
     return _of_known_type(values)
 

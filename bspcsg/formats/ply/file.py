@@ -11,7 +11,7 @@ from ..._types import FloatArray, IndexArray
 from ...attributes.attributes import Attributes, Values
 from ...errors import Finding, FormatError
 from ...mesh.mesh import Mesh
-from ..blocks import OF_FILE, blocks, encoded_lines, listed
+from ..blocks import ROWS_PER_FILE_BLOCK, blocks, encoded_lines, listed
 from ..raw import IndexPolygons, RawMesh, says_empty_set
 from ..said import said_of
 from ..source import Source, integral, quoted
@@ -79,7 +79,9 @@ def read(source: Source) -> RawMesh:
         raise source.error("this PLY has no vertices with x, y and z.", line=header.lines)
     if found.polygons is None or found.polygon_error is None:
         raise source.error("this PLY has no face lists.", line=header.lines)
-    faces, said = _said(found, found.polygons, found.vertices, found.polygon_error)
+    faces, said = _triangles_and_attributes(
+        found, found.polygons, found.vertices, found.polygon_error
+    )
     dropped = (*_more_than_a_shape(header, said, found.element), *found.polygons.dropped)
     told = (*_no_statements(header), *rest)
     return RawMesh(found.vertices, faces, "", told, dropped=dropped, attributes=said)
@@ -92,7 +94,7 @@ def _no_statements(header: Header) -> tuple[Finding, ...]:
     return (Finding("ignored", "warning", message, header.unknown[:1], len(header.unknown)),)
 
 
-def _said(
+def _triangles_and_attributes(
     found: _Found,
     polygons: IndexPolygons,
     vertices: FloatArray,
@@ -426,7 +428,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     yield _header(mesh, "binary_little_endian")
     vertex, face, lists = _columns(mesh)
     row = np.dtype([("xyz", "<f8", 3), *_fields(vertex)])
-    for block in blocks(len(mesh.vertices), OF_FILE):
+    for block in blocks(len(mesh.vertices), ROWS_PER_FILE_BLOCK):
         points = np.empty(len(mesh.vertices[block]), row)
         points["xyz"] = mesh.vertices[block]
         _fill(points, vertex, block)
@@ -435,7 +437,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
     for k, (_, values) in enumerate(lists):
         further += [(f"n{k}", "u1"), (f"l{k}", _little(values), values.shape[1:])]
     row = np.dtype([("count", "u1"), ("corners", "<i4", 3), *further])
-    for block in blocks(len(mesh.faces), OF_FILE):
+    for block in blocks(len(mesh.faces), ROWS_PER_FILE_BLOCK):
         records = np.empty(len(mesh.faces[block]), row)
         records["count"] = 3
         records["corners"] = mesh.faces[block]

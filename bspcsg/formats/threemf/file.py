@@ -17,8 +17,8 @@ from .package import Package, opened
 from .part import MILLIMETRES, ModelPart
 from .slicers import NEGATIVE, Slicing, settled
 
-#: Most triangles that a build may have.
-_MOST_TRIANGLES = 1 << 27
+#: The largest number of triangles of a build.
+_MAX_BUILD_TRIANGLES = 1 << 27
 
 
 def read(source: Source) -> RawMesh:
@@ -57,7 +57,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
             continue
         mesh = objects.mesh(path, item)
         triangles += len(mesh.faces)
-        if triangles > _MOST_TRIANGLES:
+        if triangles > _MAX_BUILD_TRIANGLES:
             raise package.source.error("the build has too many triangles.", "too_large")
         pieces.append(_moved(mesh, (*transforms, unit)))
     findings += _other_units(package, part.unit)

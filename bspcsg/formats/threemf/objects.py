@@ -20,12 +20,15 @@ from .package import Package
 from .part import INSTANCE, Object, PlacedObject
 from .properties import properties_of
 
-#: Most objects that a build may place, and most that may lie in one another.
-_MOST_PLACED = 100_000
-_DEEPEST = 64
+#: The largest number of objects that a build may place.
+_MAX_OBJECTS_PLACED = 100_000
 
-#: Most triangles of all operands of a boolean shape: evaluating them takes some gigabytes.
-_MOST_TRIANGLES = 1 << 24
+#: The largest number of objects that may contain one another.
+_MAX_OBJECT_DEPTH = 64
+
+#: The largest number of triangles of all operands of a boolean shape: to evaluate them takes some
+#: gigabytes.
+_MAX_BOOLEAN_TRIANGLES = 1 << 24
 
 #: The part that names an object, the object, and the transforms around it, innermost first.
 _Waiting: TypeAlias = tuple[str, PlacedObject, tuple[FloatArray, ...]]
@@ -70,9 +73,9 @@ class Objects:
             transforms: tuple[FloatArray, ...] = (placed.transform, *outer)
             path, known = self._named(here, placed)
             # An assembly's parts of two names lie in objects of their own.
-            deepest = _DEEPEST + (known.part_number == INSTANCE)
+            deepest = _MAX_OBJECT_DEPTH + (known.part_number == INSTANCE)
             is_deep = bool(known.components) and len(transforms) >= deepest
-            if visited > _MOST_PLACED or is_deep:
+            if visited > _MAX_OBJECTS_PLACED or is_deep:
                 raise self._too_deep()
             if not known.components:
                 found.append((path, placed.item, transforms))
@@ -144,14 +147,14 @@ class Objects:
 
     def _evaluated(self, path: str, item: str) -> RawMesh:
         here = PlacedObject("", item, np.eye(4, 3))
-        with self._told(item):
+        with self._errors_with_name(item):
             mesh = self._solid(path, here, 0)[0].normalized().to_mesh()
         is_nothing = len(mesh.faces) == 0
         return RawMesh(mesh.vertices, mesh.faces, attributes=said_of(mesh), is_empty_set=is_nothing)
 
     def _solid(self, here: str, placed: PlacedObject, depth: int) -> tuple[Solid, int]:
         """Return a mesh or a boolean shape as a set, in its place, and the triangles it is of."""
-        if depth > _DEEPEST:
+        if depth > _MAX_OBJECT_DEPTH:
             raise self._too_deep()
         path, known = self._named(here, placed)
         if known.kind != "model" or not known.is_body:
@@ -167,10 +170,10 @@ class Objects:
 
     def _combined(self, path: str, item: str, depth: int) -> tuple[Solid, int]:
         shape = held(self._package.part(path).objects[item].shape, "the shape")
-        with self._told(item):
+        with self._errors_with_name(item):
             parts = [self._solid(path, one, depth + 1) for one in (shape.base, *shape.operands)]
         triangles = sum(count for _, count in parts)
-        if triangles > _MOST_TRIANGLES:
+        if triangles > _MAX_BOOLEAN_TRIANGLES:
             message = f"the boolean shape {item} is of too many triangles."
             raise self._package.source.error(message, "too_large")
         base, *others = [solid for solid, _ in parts]
@@ -182,11 +185,11 @@ class Objects:
 
     def _meshed(self, path: str, item: str, _: int) -> tuple[Solid, int]:
         mesh = self.mesh(path, item)
-        with self._told(item):
+        with self._errors_with_name(item):
             return solid_with(mesh.vertices, mesh.faces, mesh.attributes), len(mesh.faces)
 
     @contextmanager
-    def _told(self, item: str) -> Iterator[None]:
+    def _errors_with_name(self, item: str) -> Iterator[None]:
         """Let errors about the shape of an object name the file and the object."""
         try:
             yield

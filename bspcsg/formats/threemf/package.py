@@ -17,19 +17,23 @@ from ..source import Source
 from .part import ModelPart, PartReader, Start, parse_xml
 from .write import NOTHING
 
-#: Parts in an archive: some 16 MB of its directory. The largest projects of slicers have hundreds.
-_MOST_PARTS = 1 << 14
+#: The largest number of parts in an archive, whose directory then takes some 16 MB. The largest
+#: projects of slicers have hundreds of parts.
+_MAX_PARTS = 1 << 14
 
-#: Most bytes that the parts may unpack to: 64 times the archive, and this much for small ones. The
-#: XML of meshes shrinks to a fifth, that of one small part written again and again to a 13th, and
-#: a part of nothing but one letter to a thousandth.
-_MOST_GROWTH, _SMALL = 64, 1 << 26
+#: The parts of an archive may unpack to this many times its bytes. The XML of meshes shrinks to a
+#: fifth, that of one small part written again and again to a 13th, and a part of nothing but one
+#: letter to a thousandth.
+_MAX_UNPACKING_RATIO = 64
 
-#: And 2 GiB in all, some 20 million triangles.
-_LARGEST = 1 << 31
+#: The smallest bound on the bytes that parts unpack to, which lets small archives grow more.
+_MIN_BYTE_LIMIT = 1 << 26
 
-#: Bytes that are unpacked at a time.
-_CHUNK = 1 << 20
+#: The largest bound on the bytes that parts unpack to: 2 GiB, some 20 million triangles.
+_MAX_BYTE_LIMIT = 1 << 31
+
+#: The number of bytes that are unpacked at a time.
+_CHUNK_BYTES = 1 << 20
 
 #: The bytes that begin the entry of a part in an archive's directory.
 _ENTRY = b"PK\x01\x02"
@@ -64,7 +68,9 @@ class Package:
         self._archive = archive
         self._pictures: dict[str, bytes] = {}
         self._entries = {entry.filename.lower(): entry for entry in archive.infolist()}
-        self._left = min(max(_MOST_GROWTH * len(source.data), _SMALL), _LARGEST)
+        self._left = min(
+            max(_MAX_UNPACKING_RATIO * len(source.data), _MIN_BYTE_LIMIT), _MAX_BYTE_LIMIT
+        )
 
     def root(self) -> str:
         """Return the name of the part that the package's relationships call its model."""
@@ -83,7 +89,7 @@ class Package:
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False
-        with _damage_told(self.source), self._archive.open(entry) as stream:
+        with _damage_as_error(self.source), self._archive.open(entry) as stream:
             return stream.read(len(NOTHING) + 1) == NOTHING
 
     def named(self, pattern: re.Pattern[str]) -> list[str]:
@@ -120,8 +126,8 @@ class Package:
 
     def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
         """Yield the bytes of a part, which may be others than the directory promises."""
-        with _damage_told(self.source), self._archive.open(entry) as stream:
-            while chunk := stream.read(_CHUNK):
+        with _damage_as_error(self.source), self._archive.open(entry) as stream:
+            while chunk := stream.read(_CHUNK_BYTES):
                 self._left -= len(chunk)
                 if self._left < 0:
                     raise self._too_large(entry.filename)
@@ -130,7 +136,8 @@ class Package:
     def _too_large(self, name: str) -> FormatError:
         message = (
             f"the part {name} unpacks to far more than meshes do: all parts together may have"
-            f" {_MOST_GROWTH} times the bytes of the archive, and {_LARGEST >> 30} GiB."
+            f" {_MAX_UNPACKING_RATIO} times the bytes of the archive, and"
+            f" {_MAX_BYTE_LIMIT >> 30} GiB."
         )
         return self.source.error(message, "too_large")
 
@@ -144,17 +151,17 @@ def opened(source: Source) -> Iterator[Package]:
     FormatError
         If the archive is damaged or has too many parts.
     """
-    if source.data.count(_ENTRY) > _MOST_PARTS:
-        message = f"the archive has more than {_MOST_PARTS:,} parts."
+    if source.data.count(_ENTRY) > _MAX_PARTS:
+        message = f"the archive has more than {_MAX_PARTS:,} parts."
         raise source.error(message, "too_large")
-    with _damage_told(source):
+    with _damage_as_error(source):
         archive = zipfile.ZipFile(io.BytesIO(source.data))
     with archive:
         yield Package(source, archive)
 
 
 @contextmanager
-def _damage_told(source: Source) -> Iterator[None]:
+def _damage_as_error(source: Source) -> Iterator[None]:
     """Tell of an archive that cannot be unpacked; what is said in it is no matter of this."""
     try:
         yield

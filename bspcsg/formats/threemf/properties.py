@@ -57,7 +57,7 @@ def properties_of(
 
 
 class _Reading:
-    """The sayings of the triangles of an object, so far."""
+    """The properties of the triangles of an object, so far."""
 
     def __init__(self, part: ModelPart, count: int) -> None:
         self._part = part

@@ -57,8 +57,8 @@ class Slicing:
 
 
 @dataclass
-class _Said:
-    """What slicers say of objects by their numbers: of ranges of triangles, and of components."""
+class _SlicerSettings:
+    """The settings of slicers by the numbers of objects: for ranges of triangles and components."""
 
     volumes: dict[str, list[tuple[int, int, dict[str, str]]]] = field(default_factory=dict)
     components: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -85,25 +85,25 @@ def settled(package: Package, root: str) -> Slicing:
     What is no material is left out; what is taken away becomes part of a boolean shape.
     """
     slicing, part = Slicing(), package.part(root)
-    said = _said(package, slicing)
-    for item, volumes in said.volumes.items():
+    settings = _settings_of(package, slicing)
+    for item, volumes in settings.volumes.items():
         if item in part.objects:
             _divide(slicing, root, part, item, volumes)
-    for item, kinds in said.components.items():
+    for item, kinds in settings.components.items():
         if item in part.objects:
             _sort(slicing, package, root, item, kinds)
     return slicing
 
 
-def _said(package: Package, slicing: Slicing) -> _Said:
-    said = _Said()
+def _settings_of(package: Package, slicing: Slicing) -> _SlicerSettings:
+    settings = _SlicerSettings()
     for name in package.named(_SETTINGS):
         try:
-            package.parse(name, said.take)
+            package.parse(name, settings.take)
         except FormatError as error:
             message = f"the settings of a slicer cannot be read: {error.message}"
             slicing.findings.append(Finding("ignored", "warning", message, (), 1))
-    return said
+    return settings
 
 
 def _kind(slicing: Slicing, word: str) -> str:

@@ -20,12 +20,13 @@ _NOISE = 1e-14
 #: Rounded meshes lie within this of the solids, relative to the size of the coordinates: by far.
 _ROUNDING = 1e-9
 
-#: Most pairs of triangles that are compared in fractions because doubles cannot tell them apart;
-#: each takes about a millisecond.
-_MOST_EXACT = 64
+#: The largest number of pairs of triangles whose distances are compared in fractions because
+#: doubles cannot tell which is less. Each takes about a millisecond.
+_MAX_EXACT_PAIRS = 64
 
-#: Pairs of triangles that are compared together, which bounds the memory to some 100 MB.
-_CHUNK = 1 << 16
+#: The number of pairs of triangles that are compared together: this bounds the memory to some 100
+#: MB.
+_PAIRS_PER_BATCH = 1 << 16
 
 
 @uncounted
@@ -108,8 +109,8 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
     best, found = np.inf, []
     for leaves in search.leaves():
         pairs = _pairs(trees, leaves)
-        for k in range(0, len(pairs[0]), _CHUNK):
-            i, j = (one[k : k + _CHUNK] for one in pairs)
+        for k in range(0, len(pairs[0]), _PAIRS_PER_BATCH):
+            i, j = (one[k : k + _PAIRS_PER_BATCH] for one in pairs)
             (low, high), (low_b, high_b) = boxes
             near = squared_gaps(low[i], high[i], low_b[j], high_b[j]) <= search.limit
             i, j = i[near], j[near]
@@ -123,7 +124,7 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
                 found.append((gaps[kept], i[kept], j[kept]))
     gaps, i, j = (np.concatenate(column) for column in zip(*found, strict=True))
     order = np.lexsort((j, i, gaps))
-    order = order[gaps[order] <= _bounded(best, scale)][:_MOST_EXACT]
+    order = order[gaps[order] <= _bounded(best, scale)][:_MAX_EXACT_PAIRS]
     return i[order], j[order]
 
 

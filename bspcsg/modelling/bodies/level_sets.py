@@ -18,11 +18,12 @@ from ...solid.solid import Solid
 #: A function of many points at once: (n, 3) float64 to (n,).
 Field: TypeAlias = Callable[[FloatArray], Any]
 
-#: Points at which a function is asked; they and what is made of them take some 100 bytes each.
-_MOST_POINTS = 50_000_000
+#: The largest number of points at which a function is sampled. Each takes some 100 bytes, with what
+#: is made of it.
+_MAX_SAMPLE_POINTS = 50_000_000
 
-#: Points of one call of the function.
-_AT_ONCE = 1 << 20
+#: The number of points in one call of the function.
+_POINTS_PER_CALL = 1 << 20
 
 #: Corners of the quadrilateral between two middles along each axis, as steps from a corner.
 _AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
@@ -121,10 +122,10 @@ class _Grid:
             # A whole number of cubes stays one where the quotient was rounded up.
             counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-12)), 1.0)
             points = 2 * float(np.prod(counts + 5))
-        if points > _MOST_POINTS:
+        if points > _MAX_SAMPLE_POINTS:
             message = (
-                f"edge_length asks for {points:.3g} points, and {_MOST_POINTS:,} are the most."
-                " Choose a longer one."
+                f"edge_length asks for {points:.3g} points, and {_MAX_SAMPLE_POINTS:,} are the"
+                " most. Choose a longer one."
             )
             raise LimitError(message, "too_large")
         return cls(low, (high - low) / counts, counts.astype(np.int64))
@@ -141,8 +142,8 @@ class _Grid:
         """Return the function at all points; beyond the box that of the nearest point in it."""
         total = self._first_middle + int(np.prod(self._middles))
         found = np.empty(total)
-        for start in range(0, total, _AT_ONCE):
-            numbers = np.arange(start, min(start + _AT_ONCE, total))
+        for start in range(0, total, _POINTS_PER_CALL):
+            numbers = np.arange(start, min(start + _POINTS_PER_CALL, total))
             points = np.clip(self.points(numbers), low, high)
             found[numbers] = _asked(f, points)
         return found

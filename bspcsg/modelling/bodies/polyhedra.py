@@ -20,8 +20,9 @@ Marks: TypeAlias = np.ndarray[Any, np.dtype[np.bool_]]
 #: The product of two rounded vectors of length 1 errs by less.
 _DOUBT = 2e-15
 
-#: So many signs are found at once: some ten bytes each, and a hundred for each that is not clear.
-_AT_ONCE = 1 << 22
+#: The number of signs that are computed together. Each takes some ten bytes, and a hundred if
+#: doubles do not decide it.
+_SIGNS_PER_BATCH = 1 << 22
 
 #: The faces of a tetrahedron whose corners 1, 2, 3 are seen from corner 0 clockwise.
 _TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
@@ -247,7 +248,7 @@ def _is_positive(first: LongArray, second: LongArray) -> Marks:
 
 def blocks(count: int, width: int) -> Iterator[slice]:
     """Yield parts of a range of rows of some width, of which each is done at once."""
-    step = max(1, _AT_ONCE // max(width, 1))
+    step = max(1, _SIGNS_PER_BATCH // max(width, 1))
     return (slice(start, start + step) for start in range(0, count, step))
 
 

@@ -22,8 +22,9 @@ Finer: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
 #: Triangles, and the rows of those that they are parts of.
 _Piece: TypeAlias = tuple[IndexArray, IndexArray]
 
-#: Triangles of a result. While its solid is made each takes some 300 bytes, all of them 3 GB.
-_MOST_TRIANGLES = 10_000_000
+#: The largest number of triangles of a result. Each takes some 300 bytes while the solid is made,
+#: all of them 3 GB.
+_MAX_TRIANGLES = 10_000_000
 
 
 @counted
@@ -204,7 +205,7 @@ def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
 
 def refuse_many(count: int, about: str = "") -> None:
     """Raise `LimitError` for more triangles than a result may have; `about` precedes the number."""
-    if count > _MOST_TRIANGLES:
-        amount = f"{about}{count:,}" if count < _MOST_TRIANGLES**2 else "far too many"
-        message = f"The result would have {amount} triangles; {_MOST_TRIANGLES:,} are the most."
+    if count > _MAX_TRIANGLES:
+        amount = f"{about}{count:,}" if count < _MAX_TRIANGLES**2 else "far too many"
+        message = f"The result would have {amount} triangles; {_MAX_TRIANGLES:,} are the most."
         raise LimitError(message, "too_large")

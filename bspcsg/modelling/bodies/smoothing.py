@@ -7,7 +7,7 @@ from ...attributes.attributes import NORMALS
 from ...mesh.mesh import Mesh
 from ...parameters import at_least
 from ...solid.counting import counted
-from ...solid.moving import SaidMesh
+from ...solid.moving import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 from .refining import attributes_on, divided, refuse_many, small_triangles
 from .shading import half_edges, next_side, normals, unit
@@ -36,7 +36,7 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
     said = None
     if mesh.carried is not None:
         said = attributes_on(mesh, flat, faces, origins).without(NORMALS)
-    bent = SaidMesh(vertices, faces, said)
+    bent = AttributedMesh(vertices, faces, said)
     return solid_with(vertices, faces, said, pitch=bent.held_pitch(given_pitch(solid)))
 
 

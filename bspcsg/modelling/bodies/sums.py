@@ -27,11 +27,12 @@ ConvexParts: TypeAlias = list[FloatArray]
 #: By how much of its volume, and by how many steps a corner, rounding makes a convex solid another.
 _LARGER, _MOVED = 1e-9, 4
 
-#: More pairs of faces of two solids, neither of which is convex, would take hours.
-_MOST_PAIRS = 4_000_000
+#: The largest number of pairs of faces of two solids that are not convex: more would take hours.
+_MAX_FACE_PAIRS = 4_000_000
 
-#: So many sums are united at once: the result has less surface than all of them.
-_AT_ONCE = 64
+#: The number of sums that are united together: the result has less surface than all of them, so
+#: this bounds the memory.
+_SUMS_PER_UNION = 64
 
 
 @overload
@@ -158,18 +159,18 @@ def _swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
     combined = setops.intersection if is_inside else setops.union
     hulls = (hull_of(part, tool.pitch) for part in convex_parts(tool))
     sums = (swept(solid, hull, is_inside) for hull in hulls if not hull.is_empty)
-    found = combined(islice(sums, _AT_ONCE))
-    while more := list(islice(sums, _AT_ONCE)):
+    found = combined(islice(sums, _SUMS_PER_UNION))
+    while more := list(islice(sums, _SUMS_PER_UNION)):
         found = combined(found.normalized(), *more)
     return found
 
 
 def _refuse_many(solid: Solid, tool: Solid) -> None:
     pairs = _face_count(solid) * _face_count(tool)
-    if pairs > _MOST_PAIRS and not is_convex(tool):
+    if pairs > _MAX_FACE_PAIRS and not is_convex(tool):
         message = (
             f"neither solid is convex, and they have {_face_count(solid):,} and"
-            f" {_face_count(tool):,} faces; the most pairs of two are {_MOST_PAIRS:,}."
+            f" {_face_count(tool):,} faces; the most pairs of two are {_MAX_FACE_PAIRS:,}."
         )
         raise LimitError(message, "too_large")
 

@@ -15,8 +15,9 @@ from ..._types import IndexArray
 from ...errors import LimitError
 from .polyhedra import Marks, Polyhedron, blocks, rising, rising_in_pairs
 
-#: Faces of pieces that are kept at once: 24 bytes each and some times as many to cancel them, 2 GB.
-_MOST_FACES = 10_000_000
+#: The largest number of faces of pieces in memory. Each takes 24 bytes, and several times as many
+#: while faces cancel each other: 2 GB in all.
+_MAX_PIECE_FACES = 10_000_000
 
 #: In place of a corner of the tool.
 _ORIGIN = -1
@@ -62,10 +63,10 @@ def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexAr
     for triangles in _pieces(solid, tool, tops, sums):
         parts.append(triangles)
         count += len(triangles)
-        if count > _MOST_FACES:
+        if count > _MAX_PIECE_FACES:
             message = (
                 f"what a tool of {len(tool.faces):,} faces touches at a solid of"
-                f" {len(solid.faces):,} has more than {_MOST_FACES:,}; give coarser ones."
+                f" {len(solid.faces):,} has more than {_MAX_PIECE_FACES:,}; give coarser ones."
             )
             raise LimitError(message, "too_large")
     left = _cancelled(np.concatenate(parts))

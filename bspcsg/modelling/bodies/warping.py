@@ -12,14 +12,14 @@ from ...mesh.crossing import Crossings, crossings
 from ...mesh.interop import points_array
 from ...parameters import shown, winding_rule
 from ...solid.counting import counted
-from ...solid.moving import SaidMesh
+from ...solid.moving import AttributedMesh
 from ...solid.solid import Solid, given_pitch, solid_with
 
 #: A function of all corners at once: (n, 3) float64 to the same shape.
 PointMap: TypeAlias = Callable[[FloatArray], Any]
 
-#: Faces that an error names.
-_FEW = 20
+#: The largest number of points, or of pairs of faces, that an error lists.
+_MAX_PLACES_LISTED = 20
 
 #: Of the largest coordinate: a mended vertex moves by a few roundings, 2**-53 each.
 _ROUNDING = 2.0**-40
@@ -35,7 +35,7 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     if len(mesh.faces) == 0:
         return solid
     said = None if mesh.carried is None else mesh.attributes.without(NORMALS)
-    moved = SaidMesh(_moved(f, mesh.vertices), mesh.faces, said)
+    moved = AttributedMesh(_moved(f, mesh.vertices), mesh.faces, said)
     if rule is None:
         moved = _uncrossed(moved, mesh.vertices, given_pitch(solid))
     pitch = moved.held_pitch(given_pitch(solid))
@@ -44,7 +44,7 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
     )
 
 
-def _uncrossed(moved: SaidMesh, before: FloatArray, given: int | None) -> SaidMesh:
+def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> AttributedMesh:
     """Return a mesh that does not cross itself, given its vertices before they were moved.
 
     Surfaces that touched are mended where rounding makes them cross; more is refused.
@@ -79,7 +79,7 @@ def _moved(f: PointMap, points: FloatArray) -> FloatArray:
         message = (
             f"f returned numbers that are not finite for {len(bad)} points, first for {place}."
         )
-        raise InvalidMeshError(message, "non_finite", bad[:_FEW].tolist())
+        raise InvalidMeshError(message, "non_finite", bad[:_MAX_PLACES_LISTED].tolist())
     return moved + 0.0
 
 
@@ -99,4 +99,6 @@ def _refusal(
         f"{when}, pairs of faces cross or overlap ({least}{len(found.pairs)}), one near {first}."
         " Refine the solid first; warp can let winding numbers decide what is inside."
     )
-    return InvalidMeshError(message, "self_crossing", np.unique(found.pairs[:_FEW]).tolist())
+    return InvalidMeshError(
+        message, "self_crossing", np.unique(found.pairs[:_MAX_PLACES_LISTED]).tolist()
+    )

@@ -31,11 +31,12 @@ from .rooms import has_room, no_room, refuse_no_room
 from .skeleton import Skeleton, flatness, skeleton_of
 from .stages import carried, ready, refused
 
-#: Edges of one call: each is a mesh and four half-spaces of one expression.
-_MOST_EDGES = 10_000
+#: The largest number of edges in one call. Each adds a mesh and four half-spaces to one expression.
+_MAX_EDGES = 10_000
 
-#: A share of the size; stations that are nearer to each other do not tell the edge's direction.
-_SHORTEST = 1e-6
+#: The smallest distance between two stations, as a share of the size of the blend: nearer ones do
+#: not show the direction of the edge.
+_MIN_STATION_GAP = 1e-6
 
 #: The least sine between an edge and a plane at its end: the cutter must reach a hundred times as
 #: far beyond the end as it is wide.
@@ -262,7 +263,7 @@ class _Blend:
     def _prism(self, edge: int) -> Solid:
         arcs = [self._snapped(self._station(edge, place)) for place in (0, 1)]
         rings = np.array([self._ring(edge, arc) for arc in arcs])
-        if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _SHORTEST * self.profile.size:
+        if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _MIN_STATION_GAP * self.profile.size:
             # Nothing is left between the balls at both ends.
             rings[1] = rings[0] + self.profile.size * self.skeleton.directions[edge]
         step = rings[1] - rings[0]
@@ -379,8 +380,8 @@ def _selected(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
     if not isinstance(edges, EdgeSelection):
         raise invalid_parameter("Edges are those of a selection: solid.edges().")
     skeleton, chosen = selection(edges)
-    if len(chosen) > _MOST_EDGES:
-        message = f"{len(chosen)} edges are chosen, and {_MOST_EDGES} are the most."
+    if len(chosen) > _MAX_EDGES:
+        message = f"{len(chosen)} edges are chosen, and {_MAX_EDGES} are the most."
         raise LimitError(f"{message} Choose fewer by where().", "too_many")
     return skeleton, chosen
 

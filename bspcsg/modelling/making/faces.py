@@ -17,8 +17,8 @@ from .skeleton import Skeleton, groups, members, skeleton_of
 #: this many times its neighbour is a plane one beside a round edge.
 _AS_WIDE = 2.0
 
-#: Corners that are measured at a time: three doubles each make 24 MB.
-_AT_A_TIME = 1_000_000
+#: The number of corners that are measured together: three doubles for each make 24 MB.
+_CORNERS_PER_BATCH = 1_000_000
 
 
 @owning
@@ -153,7 +153,7 @@ def _widths(skeleton: Skeleton, edges: IndexArray, side: int) -> FloatArray:
     widths = np.zeros(len(edges))
     counts = np.bincount(skeleton.face, minlength=len(skeleton.normals))
     sizes = counts[skeleton.sides[edges, side]]
-    parts = np.cumsum(sizes) // _AT_A_TIME
+    parts = np.cumsum(sizes) // _CORNERS_PER_BATCH
     for part in np.split(np.arange(len(edges)), np.flatnonzero(np.diff(parts)) + 1):
         own = edges[part]
         triangles, pair = members(skeleton.face, skeleton.sides[own, side])

@@ -16,8 +16,9 @@ from ...parameters import at_least, number, shown, truth_value
 from ...solid.counting import counted
 from ...solid.solid import Solid
 
-#: Copies in one pattern: each is a node of the expression, some 2 kB with its transform.
-_MOST_COPIES = 100_000
+#: The largest number of copies in one pattern. Each is a node of the expression and takes some 2 kB
+#: with its transform.
+_MAX_COPIES = 100_000
 
 _Shape = TypeVar("_Shape", Solid, Region)
 
@@ -203,6 +204,6 @@ def _copies(count: int) -> int:
 
 
 def _refuse_many(copies: int) -> None:
-    if copies > _MOST_COPIES:
-        message = f"A pattern has {_MOST_COPIES} copies at most, not {shown(copies)}."
+    if copies > _MAX_COPIES:
+        message = f"A pattern has {_MAX_COPIES} copies at most, not {shown(copies)}."
         raise LimitError(message, "too_many")

@@ -13,8 +13,8 @@ from ...operations import setops
 from ...solid.solid import Solid
 from .fronts import Front, Meeting, Piece, Walls, meeting
 
-#: Corners of a figure, at most: time grows with the third power of them.
-_MOST_CORNERS = 1000
+#: The largest number of corners of one part of a figure: time grows with their third power.
+_MAX_CORNERS = 1000
 
 #: What is closer than this part of the figure's size has met.
 _NEAR = 1e-8
@@ -61,8 +61,8 @@ def corner_speeds(figure: Region) -> FloatArray:
 
 def _roof_of_part(loops: Sequence[FloatArray]) -> Solid:
     count = sum(map(len, loops))
-    if count > _MOST_CORNERS:
-        message = f"this roof has a part of {count:,} corners; {_MOST_CORNERS:,} is the limit."
+    if count > _MAX_CORNERS:
+        message = f"this roof has a part of {count:,} corners; {_MAX_CORNERS:,} is the limit."
         raise LimitError(message, "too_large")
     building = _Building(loops)
     building.raise_sides()

@@ -11,7 +11,7 @@ from ...geometry.arrays import doubles
 from ...geometry.polygon import contours_of, directed_edges, triangulate
 from ...geometry.transform import cos_sin
 from ...parameters import (
-    MOST_CORNERS,
+    MAX_CORNERS,
     SEGMENTS,
     not_negative,
     number,
@@ -30,8 +30,9 @@ from .spine import Along, Frame, Spine, divided, path_points, slipped, spine_of
 #: are the same.
 _SAME = 1e-9
 
-#: Corners that are compared with each other: so many squared, as three doubles, make 100 MB.
-_MOST_COMPARED = 2000
+#: The largest number of corners that are compared each with each. A pair takes three doubles, so
+#: this many corners take 100 MB.
+_MAX_CORNERS_COMPARED = 2000
 
 
 @counted
@@ -166,7 +167,7 @@ def _slices(twist: Along, scale: Along, around: int) -> int:
     """Return how many parts the path must have at least."""
     if callable(twist) or callable(scale):
         return around
-    return math.ceil(min(abs(number(twist, "twist")) / 360 * around, MOST_CORNERS)) or 1
+    return math.ceil(min(abs(number(twist, "twist")) / 360 * around, MAX_CORNERS)) or 1
 
 
 def _along(given: Along, start: float, spine: Spine, name: str) -> FloatArray:
@@ -197,7 +198,7 @@ def _same_corners(last: FloatArray, first: FloatArray, edges: IndexArray) -> Ind
     same = np.arange(len(first))
     if np.abs(last - first).max() <= tolerance:
         return same
-    if len(first) <= _MOST_COMPARED:
+    if len(first) <= _MAX_CORNERS_COMPARED:
         gaps = np.abs(last[:, None] - first[None]).max(axis=2)
         same = np.asarray(gaps.argmin(axis=1), dtype=np.int64)
         fits = gaps.min(axis=1).max() <= tolerance and len(np.unique(same)) == len(same)

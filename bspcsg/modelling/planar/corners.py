@@ -85,7 +85,7 @@ def _recut_loop(points: FloatArray, cut: _Cut, corners: Corners) -> FloatArray:
     after = np.roll(ahead, -1, axis=0)
     across = ahead[:, 0] * after[:, 1] - ahead[:, 1] * after[:, 0]
     turns = np.arctan2(across, (ahead * after).sum(axis=1))
-    chosen = (np.abs(turns) > math.radians(_SMOOTH)) & _meant(corners, points)
+    chosen = (np.abs(turns) > math.radians(_SMOOTH)) & _selected(corners, points)
     reach = np.where(chosen, cut.setbacks(turns), 0.0)
     for k in np.flatnonzero(reach + np.roll(reach, -1) > lengths * (1 + _SAME)):
         raise _no_room(points[k] if chosen[k] else points[(k + 1) % len(points)])
@@ -103,7 +103,7 @@ def _turned(vector: FloatArray, angles: FloatArray) -> FloatArray:
     return np.column_stack([x * cosines - y * sines, x * sines + y * cosines])
 
 
-def _meant(corners: Corners, points: FloatArray) -> BoolArray:
+def _selected(corners: Corners, points: FloatArray) -> BoolArray:
     if corners is None:
         return np.ones(len(points), dtype=np.bool_)
     answer = corners(points.copy())

@@ -12,8 +12,9 @@ from ...geometry.arrays import doubles
 from ...geometry.transform import cos_sin
 from ...parameters import number, positive, refuse_many_corners
 
-#: Control points that a curve may have; its points come of sums that cancel ever more beyond.
-_MOST_CONTROLS = 32
+#: The largest number of control points of a curve. With more of them, the sums that give its points
+#: cancel so far that rounding errors show.
+_MAX_CONTROL_POINTS = 32
 
 
 def arc(
@@ -122,10 +123,14 @@ def bezier_points(controls: FloatArray, steps: int) -> FloatArray:
 
 def _controls(points: Any) -> FloatArray:
     array = doubles(points, invalid_parameter("A curve is made of control points."))
-    if array.ndim != 2 or array.shape[1] not in (2, 3) or not 2 <= len(array) <= _MOST_CONTROLS:
+    if (
+        array.ndim != 2
+        or array.shape[1] not in (2, 3)
+        or not 2 <= len(array) <= _MAX_CONTROL_POINTS
+    ):
         raise invalid_parameter(
-            f"Control points have shape (k, 2) or (k, 3) with k from 2 to {_MOST_CONTROLS}, not"
-            f" {array.shape}."
+            f"Control points have shape (k, 2) or (k, 3) with k from 2 to {_MAX_CONTROL_POINTS},"
+            f" not {array.shape}."
         )
     if not np.isfinite(array).all():
         raise invalid_parameter("A control point is not finite.")

@@ -25,8 +25,9 @@ _REACH = 2.0**40
 #: manifold3d counts in steps of 1e-8, of which 64 bits hold 2**36.
 _MANIFOLD_REACH = 2.0**30
 
-#: A figure that grows by this many times its size still has 2**20 of the steps that are counted in.
-_FARTHEST = 2.0**20
+#: The largest distance of an offset as a multiple of the size of the figure, which then still has
+#: 2**20 steps of the grid that Clipper counts in.
+_MAX_GROWTH = 2.0**20
 
 #: OpenSCAD 2021.01 rounds the corners of figures that it combines to this part of a unit.
 _GRID = 2.0**16
@@ -68,7 +69,7 @@ def offset_region(
 def refuse_far(figure: Region, delta: float) -> None:
     """Raise `LimitError` if the figure would be lost in the rounding of what it grows to."""
     size = max(float(np.abs(loop).max()) for loop in figure.to_polygons())
-    if delta > _FARTHEST * size:
+    if delta > _MAX_GROWTH * size:
         message = f"delta is too many times the size of the region: {delta:g}, and {size:g}."
         raise LimitError(message, "too_large")
 

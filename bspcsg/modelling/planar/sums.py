@@ -7,8 +7,8 @@ from ...bsp import Region
 from ...errors import LimitError
 from .hulls import hull_region
 
-#: More pairs of convex parts than this would take hours.
-_MOST_PAIRS = 20_000
+#: The largest number of pairs of convex parts: more would take hours.
+_MAX_PART_PAIRS = 20_000
 
 
 def sum_of_regions(a: Region, b: Region) -> Region:
@@ -25,10 +25,10 @@ def sum_of_regions(a: Region, b: Region) -> Region:
         If there are more than 20 000 pairs of parts ("too_large").
     """
     first, second = a.convex_parts(), b.convex_parts()
-    if len(first) * len(second) > _MOST_PAIRS:
+    if len(first) * len(second) > _MAX_PART_PAIRS:
         message = (
             f"the regions fall into convex parts of which {len(first) * len(second):,} pairs would"
-            f" have to be added; the most are {_MOST_PAIRS:,}."
+            f" have to be added; the most are {_MAX_PART_PAIRS:,}."
         )
         raise LimitError(message, "too_large")
     pitch = min(a.pitch, b.pitch)

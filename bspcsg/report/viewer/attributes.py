@@ -10,11 +10,11 @@ from ...attributes.colours import as_bytes, hexadecimal, is_color, opaque
 from ...attributes.material import Material
 from .paint import DISTANCE, PALETTE, Colours, Labels, Paint, Scale
 
-#: Attributes that a page offers; more are of no use to somebody who looks.
-_MOST = 6
+#: The largest number of attributes that a page offers to paint by: nobody looks through more.
+_MAX_PAINTS = 6
 
-#: Labels that can be told apart.
-_MOST_LABELS = 1000
+#: The largest number of labels of one attribute: nobody tells more of them apart.
+_MAX_LABELS = 1000
 
 #: The colour of faces without a material.
 _PLAIN = Material((0.7, 0.76, 0.82, 1.0))
@@ -25,7 +25,7 @@ def paints_of(said: Attributes | None) -> tuple[Paint, ...]:
     if said is None or said.is_empty:
         return ()
     found = [paint for paint in _each(said) if paint is not None]
-    return tuple(sorted(found, key=lambda paint: isinstance(paint, Scale))[:_MOST])
+    return tuple(sorted(found, key=lambda paint: isinstance(paint, Scale))[:_MAX_PAINTS])
 
 
 def _each(said: Attributes) -> Iterator[Paint | None]:
@@ -45,7 +45,7 @@ def _each(said: Attributes) -> Iterator[Paint | None]:
 def _materials(said: Attributes) -> Labels:
     names, numbers = np.unique(said.face["material"], return_inverse=True)
     used = [said.materials.get(name, _PLAIN) for name in names.tolist()]
-    colours = [_told(material.color) for material in used]
+    colours = [_hexadecimal(material.color) for material in used]
     labels = [name or "no material" for name in names.tolist()]
     has_images = said.kind_of("uv") not in (None, "face") and any(one.texture for one in used)
     if not has_images:
@@ -60,7 +60,7 @@ def _labels(name: str, values: Values) -> Paint | None:
     if values.dtype.kind == "f":
         return _scale(name, values)
     kinds, numbers = np.unique(values, return_inverse=True)
-    if len(kinds) > _MOST_LABELS:
+    if len(kinds) > _MAX_LABELS:
         return _scale(name, values) if values.dtype.kind in "iu" else None
     colours = [PALETTE[k % len(PALETTE)] for k in range(len(kinds))]
     return Labels(name, numbers.ravel(), [str(kind) for kind in kinds.tolist()], colours)
@@ -73,6 +73,6 @@ def _scale(name: str, values: Values) -> Paint | None:
     return Scale(name, numbers, DISTANCE)
 
 
-def _told(colour: tuple[float, ...]) -> str:
+def _hexadecimal(colour: tuple[float, ...]) -> str:
     """Return a colour of four numbers as ``"#rrggbb"``, or ``"#rrggbbaa"`` if it is not opaque."""
     return hexadecimal(colour[:3] if round(colour[3] * 255) == 255 else colour)

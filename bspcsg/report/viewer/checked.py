@@ -18,8 +18,8 @@ from .thickness import thickness
 
 _RED, _VIOLET, _PINK, _ORANGE, _YELLOW = "#e0202f", "#8b3fd1", "#d13fa6", "#f08a24", "#d6b400"
 
-#: Places of one kind that a page offers to look at.
-_MOST = 30
+#: The largest number of places of one kind that a page offers to look at.
+_MAX_LANDMARKS_PER_KIND = 30
 
 #: Opacity of the mesh where something in it is marked.
 _BEHIND = 0.45
@@ -59,7 +59,7 @@ def assembled(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
     layers = told_apart(layers_of_file(whole.mesh, whole.mesh.name))
     places = [
         Landmark(f"clash: {one.first}, {one.second}", one.place, 2 * one.volume ** (1 / 3))
-        for one in whole.clashes[:_MOST]
+        for one in whole.clashes[:_MAX_LANDMARKS_PER_KIND]
     ]
     return layers, places
 
@@ -117,13 +117,15 @@ def _holes(marks: Marks) -> Iterator[Landmark]:
     if not len(marks.open):
         return
     counts = np.bincount(marks.holes)
-    for number, hole in enumerate(np.argsort(-counts, kind="stable")[:_MOST].tolist()):
+    for number, hole in enumerate(
+        np.argsort(-counts, kind="stable")[:_MAX_LANDMARKS_PER_KIND].tolist()
+    ):
         ends = marks.open[marks.holes == hole]
         yield _around(f"hole {number + 1}: {counts[hole]} edges", marks.vertices[ends.ravel()])
 
 
 def _crossings(marks: Marks) -> Iterator[Landmark]:
-    for number, pair in enumerate(marks.crossings[:_MOST]):
+    for number, pair in enumerate(marks.crossings[:_MAX_LANDMARKS_PER_KIND]):
         corners = marks.vertices[marks.faces[pair].ravel()]
         one, other = pair.tolist()
         yield _around(f"crossing {number + 1}: triangles {one} and {other}", corners)

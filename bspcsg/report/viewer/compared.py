@@ -19,8 +19,8 @@ _ONLY = ("#d7301f", "#2b62b3")
 #: Opacity of the two solids, where they differ.
 _BEHIND = 0.35
 
-#: Vertices whose distance from the other surface is measured.
-_MOST_MEASURED = 20_000
+#: The distances of vertices from the other surface are measured if there are no more than this.
+_MAX_VERTICES_MEASURED = 20_000
 
 #: The paint that shows how far the other surface is.
 DIFFERENCE = "difference"
@@ -78,7 +78,7 @@ def _landmarks(found: SetComparison) -> list[Landmark]:
 def _distances(mesh: Mesh, other: Mesh) -> tuple[Scale, ...]:
     """Return how far the corners of a mesh are from another, unless there are too many."""
     used = np.unique(mesh.faces)
-    if len(used) > _MOST_MEASURED or not len(other.faces):
+    if len(used) > _MAX_VERTICES_MEASURED or not len(other.faces):
         return ()
     values: FloatArray = np.zeros(len(mesh.vertices))
     values[used] = distances(other, mesh.vertices[used])

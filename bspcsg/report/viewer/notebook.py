@@ -14,14 +14,15 @@ if TYPE_CHECKING:
     from ...bsp import Picture, Region
     from ...solid.solid import Solid
 
-#: Triangles above which a cell gets a picture alone; the view of so many has about two megabytes.
-_MOST_IN_VIEW = 200_000
+#: The largest number of triangles in an interactive view, which then takes about two megabytes. A
+#: cell shows a picture of more.
+_MAX_VIEW_TRIANGLES = 200_000
 
-#: Triangles above which a picture shows the shape roughly.
-_MOST_IN_PICTURE = 2_000
+#: The largest number of triangles in a picture of a solid; of more it shows a simplified shape.
+_MAX_PICTURE_TRIANGLES = 2_000
 
-#: Triangles above which a picture of a region shows it roughly: flat ones are painted sooner.
-_MOST_IN_FIGURE = 20_000
+#: The same for a picture of a region, whose flat triangles are painted faster.
+_MAX_REGION_TRIANGLES = 20_000
 
 #: Of the view in a cell, in pixels.
 _HEIGHT = 440
@@ -39,7 +40,7 @@ def solid_html(solid: "Solid") -> str | None:
         return _paragraph(sentence)
     layer = _layer(solid)
     count = f"{len(layer.faces):,} triangles"
-    if len(layer.faces) > _MOST_IN_VIEW:
+    if len(layer.faces) > _MAX_VIEW_TRIANGLES:
         said = f"{count} are too many for a notebook; save the solid and use bspcsg view."
         return _picture(solid).svg + _paragraph(said)
     try:
@@ -90,7 +91,7 @@ def region_png(region: "Region") -> bytes | None:
 
 
 def _picture(solid: "Solid") -> "Picture":
-    return rough_picture(_layer(solid), _SIZE, _MOST_IN_PICTURE)
+    return rough_picture(_layer(solid), _SIZE, _MAX_PICTURE_TRIANGLES)
 
 
 def slab(region: "Region") -> Layer:
@@ -101,7 +102,7 @@ def slab(region: "Region") -> Layer:
 
 
 def _figure(region: "Region") -> "Picture":
-    return rough_picture(slab(region), _SIZE, _MOST_IN_FIGURE, "top")
+    return rough_picture(slab(region), _SIZE, _MAX_REGION_TRIANGLES, "top")
 
 
 def _png(picture: "Picture") -> bytes | None:

@@ -16,11 +16,12 @@ from .layer import COLOURS, RESULT, Layer
 from .paint import PALETTE, THICKNESS, Labels, Scale
 from .thickness import thickness
 
-#: Objects of one file that become parts with a button each; a file with more is one part.
-_MOST_PARTS = 60
+#: The largest number of objects of one file that become parts with a button each. A file with more
+#: objects becomes one part.
+_MAX_PARTS = 60
 
-#: Operands that have a colour each.
-_MOST_OPERANDS = 200
+#: The largest number of operands that get a colour each. With more of them no operand gets one.
+_MAX_OPERANDS_COLOURED = 200
 
 #: The paint that says which operand a face is from.
 ORIGIN = "origin"
@@ -36,7 +37,7 @@ def layers_of_file(raw: RawMesh, name: str) -> list[Layer]:
     if len(vertices):
         vertices, same = welded(raw.vertices)
         faces = same[raw.faces]
-    if not 1 < len(objects) <= _MOST_PARTS or sum(n for _, n in objects) != len(faces):
+    if not 1 < len(objects) <= _MAX_PARTS or sum(n for _, n in objects) != len(faces):
         return [Layer(name, vertices, faces, paints=paints_of(raw.attributes))]
     ends = np.cumsum([count for _, count in objects])
     layers = []
@@ -85,7 +86,7 @@ def with_origin(solid: Solid) -> Solid:
 def _operands(solid: Solid) -> list[str]:
     """Return what to call the operands of the operation that made a solid; none if it was none."""
     last = solid.last_operation
-    if last is None or not 1 < len(last.operands) <= _MOST_OPERANDS:
+    if last is None or not 1 < len(last.operands) <= _MAX_OPERANDS_COLOURED:
         return []
     return [f"operand {k + 1}{_size(operand)}" for k, operand in enumerate(last.operands)]
 

@@ -13,19 +13,21 @@ from ...bsp.painting.picture import picture
 from .faces import face_colours, joined
 from .layer import DIFFERENCE, Layer, drawn_points
 
-#: Triangles above which a mesh is simplified first, to so many cells a side: more are smaller than
-#: a pixel.
-_MOST_TRIANGLES, _CELLS = 6_000, 96
+#: Meshes with more triangles than this are simplified first, to so many cells a side: the triangles
+#: would be smaller than a pixel.
+_MAX_TRIANGLES_DRAWN, _CELLS_PER_SIDE = 6_000, 96
 
-#: Triangles above which edges are left out of small pictures, which they would blacken.
-_MOST_WITH_EDGES = 1_500
+#: The largest number of triangles of a picture 320 pixels wide that shows edges; those of more
+#: triangles would blacken it.
+_MAX_TRIANGLES_WITH_EDGES = 1_500
 
-#: Characters up to which a picture stays SVG, which is sharp at every size, and how many a polygon
-#: has at least.
-_FEW_CHARACTERS, _POLYGON = 5_000, 40
+#: The largest number of characters of a picture that stays SVG, which is sharp at every size, and
+#: the smallest number of characters of one polygon.
+_MAX_PREFERRED_SVG_CHARACTERS, _MIN_POLYGON_CHARACTERS = 5_000, 40
 
-#: Characters of SVG above which there is no picture if none of pixels can be made.
-_MOST_CHARACTERS = 150_000
+#: The largest number of characters of an SVG picture where no picture of pixels can be made. Above
+#: it there is no picture.
+_MAX_SVG_CHARACTERS = 150_000
 
 #: Of WebP: from 0 to 100, and how long to search, from 0 to 6.
 _QUALITY, _EFFORT = 66, 3
@@ -57,13 +59,14 @@ def still(
     if not any(len(layer.faces) for layer in layers):
         return ""
     painted = _painted(layers, camera or camera_for(layers, size), size, edges)
-    few = len(painted.painting.source) * _POLYGON <= _FEW_CHARACTERS
-    if few and len(painted.svg) <= _FEW_CHARACTERS:
+    least = len(painted.painting.source) * _MIN_POLYGON_CHARACTERS
+    # The lower bound first: it avoids writing a long SVG that is thrown away.
+    if least <= _MAX_PREFERRED_SVG_CHARACTERS and len(painted.svg) <= _MAX_PREFERRED_SVG_CHARACTERS:
         return _vector(painted.svg)
     pixels = _pixels(painted)
     if pixels:
         return pixels
-    return _vector(painted.svg) if len(painted.svg) <= _MOST_CHARACTERS else ""
+    return _vector(painted.svg) if len(painted.svg) <= _MAX_SVG_CHARACTERS else ""
 
 
 def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "iso") -> Picture:
@@ -78,7 +81,7 @@ def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "
     view : str
         From where.
     """
-    shape, cells = layer, _CELLS
+    shape, cells = layer, _CELLS_PER_SIDE
     while len(shape.faces) > most and cells > 1:
         cells = cells * 2 // 3
         shape = layer.simplified(cells)
@@ -105,14 +108,14 @@ def _painted(
     layers: Sequence[Layer], camera: Camera, size: tuple[int, int], edges: bool
 ) -> Picture:
     count = sum(len(layer.faces) for layer in layers)
-    whole = count <= _MOST_TRIANGLES
-    meshes = list(layers) if whole else [layer.simplified(_CELLS) for layer in layers]
+    whole = count <= _MAX_TRIANGLES_DRAWN
+    meshes = list(layers) if whole else [layer.simplified(_CELLS_PER_SIDE) for layer in layers]
     colours = face_colours(meshes)
     return picture(
         joined(meshes),
         camera=camera,
         size=size,
-        edges="feature" if edges and count <= _MOST_WITH_EDGES * size[0] / 320 else "none",
+        edges="feature" if edges and count <= _MAX_TRIANGLES_WITH_EDGES * size[0] / 320 else "none",
         colors=colours if len(colours) else None,
         background=None,
         line_width=1.0,

@@ -18,8 +18,8 @@ from ....parameters import file_path, shown
 FAMILY = "Liberation Sans"
 _FACES = {"regular": "LiberationSans-Regular.ttf", "bold": "LiberationSans-Bold.ttf"}
 
-#: Names of fonts are no longer, in letters.
-_LONGEST_NAME = 200
+#: The largest number of characters in the name of a font.
+_MAX_NAME_CHARACTERS = 200
 
 #: Suffixes of font files.
 _SUFFIXES = (".ttf", ".otf", ".ttc", ".otc")
@@ -168,7 +168,7 @@ def _equals(name: str) -> list[str]:
 def _answer(program: str, *arguments: str) -> str:
     """Return what a program of fontconfig says; nothing without it, or if the name is no name."""
     path, name = shutil.which(program), arguments[-1]
-    if path is None or not name.isprintable() or len(name) > _LONGEST_NAME:
+    if path is None or not name.isprintable() or len(name) > _MAX_NAME_CHARACTERS:
         return ""
     try:
         done = subprocess.run(

@@ -1,4 +1,4 @@
-"""Attributes of the sources of a tree, which are said of them through operations and motions."""
+"""Attributes of the sources of a tree, which stay with them through operations and motions."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -12,54 +12,56 @@ from ..attributes.carrying import SourceArrays, Surface, carried, patches_of
 from ..errors import core_errors
 from ..geometry import transform
 
-#: Words on each source of a tree besides its shape; empty if nothing is said of any.
-Sayings: TypeAlias = tuple[Attributes | None, ...]
+#: The attributes of each source of a tree; empty if no source has any.
+SourceAttributes: TypeAlias = tuple[Attributes | None, ...]
 
 
-def patched(tree: Tree, sayings: Sayings) -> Tree:
-    """Return a tree whose mesh joins only faces of which the same is said."""
-    return tree.patched(patches_of(sayings)) if sayings else tree
+def patched(tree: Tree, source_attributes: SourceAttributes) -> Tree:
+    """Return a tree whose mesh joins only faces with the same attributes."""
+    return tree.patched(patches_of(source_attributes)) if source_attributes else tree
 
 
-def attributes_of(tree: Tree, sayings: Sayings) -> Attributes:
+def attributes_of(tree: Tree, source_attributes: SourceAttributes) -> Attributes:
     """Return the attributes of a tree's mesh."""
     with core_errors():
         surface = Surface(*tree.to_mesh(), tree.origins(), tree.flips())
-    return carried(surface, sayings, tree.source_arrays)
+    return carried(surface, source_attributes, tree.source_arrays)
 
 
-def later_attributes(tree: Tree, sayings: Sayings) -> Later | None:
+def later_attributes(tree: Tree, source_attributes: SourceAttributes) -> Later | None:
     """Return the attributes of a tree's mesh for when they are asked for, if there are any."""
-    return Later(lambda: attributes_of(tree, sayings)) if sayings else None
+    return Later(lambda: attributes_of(tree, source_attributes)) if source_attributes else None
 
 
-def said_of(result: Tree, operands: Sequence[tuple[Tree, Sayings]]) -> Sayings:
-    """Return what is said of the sources of a tree that was made of others."""
-    if not any(sayings for _, sayings in operands):
+def inherited(result: Tree, operands: Sequence[tuple[Tree, SourceAttributes]]) -> SourceAttributes:
+    """Return the attributes of the sources of a tree that was made of others."""
+    if not any(source_attributes for _, source_attributes in operands):
         return ()
     # Nothing and all of space have left their sources behind on other lattices.
     known = {
         identity: said
-        for tree, sayings in operands
-        if sayings and tree.sources
-        for identity, said in zip(tree.sources, sayings, strict=True)
+        for tree, source_attributes in operands
+        if source_attributes and tree.sources
+        for identity, said in zip(tree.sources, source_attributes, strict=True)
     }
     found = tuple(known.get(identity) for identity in result.sources)
     return found if any(said is not None for said in found) else ()
 
 
-def all_tagged(tree: Tree, sayings: Sayings, values: Mapping[str, object]) -> Sayings:
-    """Return what is said of the sources of a tree once all of their faces say the values."""
+def all_tagged(
+    tree: Tree, source_attributes: SourceAttributes, values: Mapping[str, object]
+) -> SourceAttributes:
+    """Return the attributes of the sources of a tree once all of their faces have the values."""
     return tuple(
         None if (arrays := tree.source_arrays(slot)) is None else _tagged(old, arrays, values)
-        for slot, old in enumerate(sayings or (None,) * len(tree.sources))
+        for slot, old in enumerate(source_attributes or (None,) * len(tree.sources))
     )
 
 
 def _tagged(
     old: Attributes | None, arrays: SourceArrays, values: Mapping[str, object]
 ) -> Attributes:
-    """Return what is said of a source, and one value more of all its faces for each name."""
+    """Return the attributes of a source with one more value for each name on all faces."""
     count = int(arrays[3].max(initial=-1)) + 1
     faces = np.zeros((count, 3), dtype=np.int64) if old is None else old.faces
     said = Attributes(faces) if old is None else old.without(values)
@@ -71,13 +73,15 @@ def _tagged(
     return said if more is None else replace(said, face={**said.face, **more.face})
 
 
-def after_motion(motion: transform.LatticeMotion, sayings: Sayings) -> Sayings:
-    """Return what is said of sources after a motion, by which the core moved them."""
-    if not sayings:
+def after_motion(
+    motion: transform.LatticeMotion, source_attributes: SourceAttributes
+) -> SourceAttributes:
+    """Return the attributes of sources after a motion, by which the core moved them."""
+    if not source_attributes:
         return ()
     linear = motion.linear
     mirrored = np.linalg.det(linear) < 0
-    turned = [None if said is None else said.turned(linear) for said in sayings]
+    turned = [None if said is None else said.turned(linear) for said in source_attributes]
     if not mirrored:
         return tuple(turned)
     # The core exchanges the last two corners of every face that is mirrored.
