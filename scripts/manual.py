@@ -131,7 +131,7 @@ PARTS = {
     "plate": Part(
         "A plate with twelve holes",
         "build123d is a line shorter: places are values there, which multiply a shape. Here a "
-        "pattern is a function of the shape, and both do not fit one line.",
+        "pattern is a function of the shape, and the two do not fit on one line.",
     ),
     "knob": Part(
         "A block with round edges and a bore",
@@ -148,7 +148,7 @@ PARTS = {
     ),
     "link": Part(
         "The hull of two balls, with a bore",
-        "build123d has hulls in the plane only; this one is a solid of revolution, by luck.",
+        "build123d has hulls in the plane only; this one happens to be a solid of revolution.",
     ),
     "bend": Part(
         "A pipe around two corners",
