@@ -56,7 +56,9 @@ pub fn import(vertices: &[[f64; 3]], faces: &[[i64; 3]], pitch: Option<Pitch>) -
     drop_faces(&mut mesh, flat, &mut findings);
     if mesh.faces.is_empty() {
         let exponent = pitch.exponent();
-        let text = format!("the mesh has no face of positive area at the pitch 10^{exponent}");
+        let text = format!(
+            "the mesh has no face of positive area on the lattice of steps of 10^{exponent} units"
+        );
         return Err(Error::new(ErrorKind::EmptyMesh, text));
     }
     let open = close(&mut mesh, &mut findings)?;

@@ -367,7 +367,7 @@ impl Tree {
     /// The arrays the tree was made from.
     fn given_arrays<'py>(&self, py: Python<'py>) -> PyResult<MeshArrays<'py>> {
         let mesh = self.run(py, "given_arrays", 0, 0, || {
-            let text = "the tree does not hold the arrays of one mesh as they were given";
+            let text = "the solid is not one unchanged input mesh, so it has no given arrays";
             self.given().ok_or_else(|| Error::internal(text))
         })?;
         Ok((

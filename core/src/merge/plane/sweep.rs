@@ -335,6 +335,6 @@ fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
 }
 
 fn not_closed() -> Error {
-    let text = "the outlines do not give every place one winding number";
+    let text = "the outlines do not close: their winding numbers contradict each other";
     Error::new(ErrorKind::NotClosed, text)
 }
