@@ -1,4 +1,4 @@
-//! Triangles that rounding to doubles turned over, put right by swapping edges.
+//! Triangles that rounding to doubles turned over, corrected by swapping edges.
 //!
 //! A constructed vertex moves by half a unit in its last place at most. A triangle narrower than
 //! that may turn over; together with a neighbour of its plane it mostly has another diagonal with
@@ -124,7 +124,7 @@ impl<'a> Surface<'a> {
         self.planes.is_turned(self.mesh, triangle)
     }
 
-    /// Puts the other diagonal into the two triangles beside an edge, if fewer are turned then.
+    /// Swaps the diagonal of the two triangles at an edge, if fewer are turned then.
     fn swap(&mut self, half: usize) -> Option<[usize; 2]> {
         let corner = |h: usize| self.mesh.triangles[h / 3][h % 3];
         let next = |h: usize| h - h % 3 + (h % 3 + 1) % 3;

@@ -98,7 +98,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Return the corner of its triangle that a vertex is.
+/// Return which corner of a triangle a vertex is.
 pub fn place_of(v: VertexId, corners: &[VertexId; 3]) -> usize {
     corners.iter().position(|c| *c == v).unwrap_or(0)
 }

@@ -175,8 +175,8 @@ impl Mates {
     /// Return whether the angles opposite the edge exceed 180 degrees together and the flip is
     /// valid.
     ///
-    /// Of four points on one circle the first in lexicographic order is not joined to the third, as
-    /// if it lay farther out: then there is one best triangulation, wherever the flips begin.
+    /// Of four points on one circle the first in lexicographic order is not joined to its opposite,
+    /// as if it lay farther out: then there is one best triangulation, wherever the flips begin.
     fn should_flip<P: Planar>(&self, points: &P, half: usize) -> bool {
         let mate = self.mates[half];
         if mate == NONE {
