@@ -233,7 +233,7 @@ impl Assembly<'_> {
         Some(Edge { from, to })
     }
 
-    /// Remembers which source vertices the corners of groups are, for their original doubles.
+    /// Records which source vertices are corners of groups, to keep their original doubles.
     ///
     /// A corner cut off a face has no name, though a vertex of another face may lie there.
     fn name_corners(&mut self, groups: &[PlaneGroup], edges: &[Edge], inner: &InnerPoints) {

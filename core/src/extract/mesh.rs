@@ -24,7 +24,7 @@ pub struct ExactMesh {
     pub faces: Vec<OrientedFace>,
     /// The number of triangles at the start that are untouched faces of sources.
     pub untouched: usize,
-    /// Those of them that share a vertex with other triangles, ascending.
+    /// Those with a vertex that is not theirs alone, ascending.
     pub special: Vec<u32>,
     /// The constructed points that [`Corner::Point`] names.
     pub table: VertexTable,

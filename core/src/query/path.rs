@@ -291,7 +291,7 @@ struct Crossing {
     start: Side,
     /// The parameter at which the ray's line crosses; `None` if it is parallel.
     at: Option<Ratio>,
-    /// The half that comes first on the line; `None` if the line runs within.
+    /// The half that comes first on the line; `None` if it runs within.
     first: Option<Half>,
 }
 

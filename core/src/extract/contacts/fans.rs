@@ -1,8 +1,8 @@
 //! Splitting of edges and vertices where a closed surface touches itself.
 //!
-//! Knows triangles by index, and of their geometry only what [`Radial`] answers. Half-edge `3 t +
-//! k` leaves corner `k` of triangle `t`; the two share this number. Invariant of the result: every
-//! directed edge has exactly one opposite by index, and the triangles around a vertex form one fan.
+//! Knows triangles by index, and of their geometry only what [`Radial`] answers. Half-edge
+//! `3 t + k` leaves corner `k` of triangle `t`; the two share this number. Invariant of the result:
+//! every directed edge has exactly one opposite by index, and the triangles around a vertex form one fan.
 
 mod radial;
 #[cfg(test)]

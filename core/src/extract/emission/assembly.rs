@@ -33,7 +33,7 @@ pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) verify: bool,
 }
 
-/// The number of a vertex without one.
+/// Marks a vertex without a number.
 pub(in crate::extract) const NONE: VertexId = VertexId(u32::MAX);
 
 impl<'a> Assembly<'a> {

@@ -43,7 +43,7 @@ pub struct Emitted<'a> {
 }
 
 impl Untouched {
-    /// No triangles yet; `vertices` are those that only they use.
+    /// Starts without triangles; `vertices` are those that only they will use.
     pub fn new(vertices: Range<VertexId>) -> Self {
         Self {
             vertices,

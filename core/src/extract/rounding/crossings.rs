@@ -102,7 +102,7 @@ pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
     ascending(Search::among::<Close>(&candidates).0)
 }
 
-/// The pairs of triangles that cross or overlap, in ascending order.
+/// Those of `pairs` of triangles that cross or overlap, in ascending order.
 ///
 /// # Cost
 /// One comparison per pair, and a pass over the triangles if some meet along edges.

@@ -25,7 +25,7 @@ pub fn crosses_at(
     }
 }
 
-/// Return the pairs of triangles that meet along edges at which surfaces cross.
+/// Return those of `pairs` that meet along edges at which surfaces cross.
 ///
 /// # Cost
 /// A pass over the triangles; the sheets at each edge and what it meets are sorted once.
@@ -156,8 +156,8 @@ mod tests {
         [0.0, -3.0, -1.0],
     ];
 
-    /// The number of crossings of the tetrahedron with wedges at the edge, which have vertices 4 and
-    /// 5 and these, in any order of their triangles.
+    /// The number of crossings of the tetrahedron with wedges at the edge from vertex 4 to 5, given
+    /// by their other vertices, in any order of their triangles.
     fn crossings_with(wedges: &[[u32; 2]]) -> usize {
         let tetrahedron = |v: [u32; 4]| TETRAHEDRON.map(|t| t.map(|k| v[k as usize]));
         let wedge = |[a, b]: &[u32; 2]| tetrahedron([4, 5, *a, *b]);

@@ -107,7 +107,7 @@ fn mesh_crosses(mesh: &TriangleMesh, source: &Source, axes: [bool; 3]) -> bool {
     };
     let mut found = all_faults(&faces);
     let any = !found.crossings.is_empty();
-    // Around welded vertices the faces are not those that were given.
+    // Faces at welded vertices are not as they were given.
     let is_blurred = |t: &u32| {
         let corners = mesh.faces[*t as usize];
         corners.iter().any(|v| blurred.binary_search(v).is_ok())

@@ -28,7 +28,7 @@ pub struct Unfolded {
     pub left: Vec<u64>,
 }
 
-/// Swaps edges inside planes until no triangle, or none that this could help, faces the wrong way.
+/// Swaps edges inside planes until no swap helps a triangle that faces the wrong way.
 ///
 /// # Order
 /// Triangles by their numbers, and in each the edges from its first corner on.

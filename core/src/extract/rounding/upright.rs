@@ -74,7 +74,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
     use crate::tree::solid::Solid;
 
-    /// Return whether the mesh of a solid keeps its order, if vertices are put elsewhere first.
+    /// Return whether the mesh of a solid keeps its order after moving vertices.
     fn keeps(solid: &Solid, put: impl FnOnce(&mut [Point])) -> bool {
         let exact = assemble(solid).expect("bounded");
         let sources = Sources::new(solid.sources().clone());

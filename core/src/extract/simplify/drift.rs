@@ -138,7 +138,7 @@ mod tests {
             1.0
         ));
         drift.follow(VertexId(1), Coming::Vertex(VertexId(0)), 1.0);
-        // Not the sum of the ways, 1 + 2, but where the first vertex came from.
+        // Not the sum of the ways, 1 + 2, but the distance to the first vertex.
         assert!(near(
             drift.with((VertexId(2), &ROW[2]), Coming::Vertex(VertexId(1)), 9.0),
             3.0

@@ -1,4 +1,4 @@
-//! Changes that mend a short edge or a sliver, and whether they may be made.
+//! Changes that mend a short edge or a sliver, and whether they are allowed.
 
 use super::drift::{Coming, Drift};
 use super::sizes::{height, rounding_of, swept};

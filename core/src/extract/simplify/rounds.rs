@@ -193,7 +193,7 @@ mod tests {
         let fan = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]];
         let (vertices, triangles) = cube(&[[0.003, 0.004, 1.0]], &fan);
         let made = simplify(vertices.clone(), triangles, 0.01);
-        // Of the two ends the one inside the face goes, which changes no volume.
+        // Of the two ends the one inside the face is removed, which changes no volume.
         assert_eq!(made.vertices, vertices[..8]);
         assert!(made.bound >= 0.005 && made.bound < 0.005_000_001);
         assert!(made.triangles.len() == 12 && made.left.is_empty() && is_sound(&made));

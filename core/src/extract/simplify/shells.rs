@@ -114,7 +114,7 @@ struct Sum {
     count: f64,
 }
 
-/// Roundings of a difference, a minor, a product and a sum, in units of the last place, and room.
+/// Roundings of a difference, a minor, a product and a sum, in units of the last place, with a margin.
 const ROUNDINGS: f64 = 16.0;
 
 impl Sum {

@@ -63,7 +63,7 @@ impl<'a> Surface<'a> {
         self.neighbours(few).any(|n| n == other)
     }
 
-    /// Two vertices, that with fewer triangles first.
+    /// Two vertices, the one with fewer triangles first.
     fn rarer_first(&self, v: VertexId, w: VertexId) -> [VertexId; 2] {
         if self.star(v).len() <= self.star(w).len() {
             [v, w]

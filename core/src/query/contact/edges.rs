@@ -311,7 +311,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, prism, tetrahedron};
     use crate::mesh::surfaces::counts;
 
-    /// A box from which a wedge is taken that touches its far wall from inside.
+    /// A box with a groove whose inner edge lies at y = `tip`.
     fn grooved(tip: i64) -> Solid {
         let wedge = prism(&[[2, 0, 0], [6, 0, 0], [4, tip, 0]], 4);
         made_of(&[cuboid([0; 3], [8, 8, 4]), wedge], Term::Xor)

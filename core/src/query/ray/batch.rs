@@ -121,7 +121,7 @@ impl Rays<'_> {
     /// The stretches of each ray inside the bounded set; `outside` is the winding number far away.
     ///
     /// # Errors
-    /// As for `first`; `NotClosed` if the facets do not bound.
+    /// As for `first`; `NotClosed` if the facets are not closed.
     pub fn inside<const D: usize>(
         &self,
         scene: &Scene<D>,

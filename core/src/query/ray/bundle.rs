@@ -224,7 +224,7 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         )
     }
 
-    /// From now on nothing beyond a depth matters to a ray.
+    /// Sets the depth beyond which nothing matters to a ray.
     #[inline]
     pub fn set_limit(&mut self, ray: usize, depth: f64) {
         self.limits[ray] = above(depth * self.scale - self.skipped[ray]);

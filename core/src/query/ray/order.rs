@@ -33,7 +33,7 @@ pub fn sorted<const D: usize>(
         let (origin, direction) = ray(i as usize);
         key(frame, &origin, &direction)
     };
-    // Neighbours share all but the last bit on each axis.
+    // Alike keys share all but the last bit on each axis.
     let alike = |i: &u32| (key(*i) ^ key(*i + 1)) >> D == 0;
     let pairs = (0..count - 1).step_by(SAMPLE);
     if pairs.clone().filter(alike).count() * ALIKE >= pairs.len() {

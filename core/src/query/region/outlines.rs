@@ -24,7 +24,7 @@ pub struct Outline {
 
 /// The loops of a bounded region's boundary.
 ///
-/// Loops touch each other in corners at most; a loop that would touch itself is taken apart there.
+/// Loops touch each other in corners at most; a loop that would touch itself is split there.
 /// Where a corner of one loop lies on a side of another, both have a corner.
 ///
 /// # Order

@@ -98,7 +98,7 @@ type Rung = [usize; 2];
 
 /// A triangle that the plane crosses.
 struct Crossing {
-    /// The edges by which its outline comes back below the plane, and by which it leaves.
+    /// The edges at which its outline comes back below the plane, and at which it leaves.
     enter: Rung,
     leave: Rung,
     corners: [usize; 3],

@@ -3,7 +3,7 @@
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::extent::Extent;
 
-/// Triangles in one block: looking at a block costs about as much as at a triangle.
+/// Triangles in one block: checking a block costs about as much as a triangle.
 const ROOM: usize = 32;
 
 /// Blocks of neighbouring triangles, and a box around all places that each block ever had.

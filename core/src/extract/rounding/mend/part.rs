@@ -89,7 +89,7 @@ pub struct Mending {
     pub(super) moved: HashSet<VertexId>,
 }
 
-/// A change that is tried: where vertices go, and what becomes of triangles.
+/// A change to try: new places of vertices, and new corners of triangles.
 #[derive(Debug, Default)]
 pub(super) struct Edit {
     pub(super) moves: Vec<(VertexId, Point)>,
