@@ -11,8 +11,7 @@ use crate::arith::{Filtered, Int, Sign};
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::{Homogeneous, Vertex, NEAR};
 
-/// The ends of an edge and the two points that look at it from either side, at places in doubles
-/// that are near enough for [`NEAR`].
+/// The ends of an edge and the two apexes opposite it, in doubles accurate enough for [`NEAR`].
 pub(super) type Quad = [[f64; 2]; 4];
 
 /// Compare the sum of two opposite angles to 180 degrees, where doubles decide it.
@@ -50,7 +49,7 @@ impl Rough {
     }
 }
 
-/// Compare it exactly, for the coordinates `axes` of any points.
+/// Compare the sum exactly, in the coordinates `axes` of any points.
 pub(super) fn exact(points: [&Vertex; 4], axes: [usize; 2]) -> Ordering {
     if let [Some(a), Some(b), Some(c), Some(d)] = points.map(Vertex::as_lattice) {
         return on_lattice([a, b, c, d], axes);
@@ -108,7 +107,7 @@ mod tests {
         corners
     }
 
-    /// The same points as what is not known to be on the lattice.
+    /// The same point, not known to be on the lattice.
     fn given(p: Lattice) -> Vertex {
         let twice = |k: i64| Int::from_i64(2 * k);
         Vertex::homogeneous(p.map(twice), Int::from_i64(2))

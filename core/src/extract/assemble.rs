@@ -34,13 +34,14 @@ struct SplitFace {
     inner: [Vec<u32>; 3],
 }
 
-/// Edges of a group that are searched one by one, at most: a table of their points takes longer to make.
+/// At most this many edges of a group are searched one by one: a table of their points takes
+/// longer.
 const MAX_EDGES_SEARCHED: usize = 16;
 
 /// The mesh of a bounded solid.
 ///
-/// Untouched faces leave as they came, same triangle; cut faces and their coplanar neighbours are
-/// triangulated anew; every directed edge has exactly one opposite.
+/// Untouched faces keep their triangle; cut faces and their coplanar neighbours are triangulated
+/// anew; every directed edge has exactly one opposite.
 ///
 /// # Example
 /// ```
@@ -59,7 +60,7 @@ const MAX_EDGES_SEARCHED: usize = 16;
 /// ```
 ///
 /// # Errors
-/// `Unbounded` if the solid reaches infinity; `NotReduced` if a mesh that was trusted overlaps itself.
+/// `Unbounded` if the solid reaches infinity; `NotReduced` if a trusted mesh overlaps itself.
 pub fn assemble(solid: &Solid) -> Result<ExactMesh> {
     assemble_patches(solid, &Patches::default())
 }
@@ -82,8 +83,8 @@ pub fn assemble_patches(solid: &Solid, patches: &Patches) -> Result<ExactMesh> {
 
 /// Assembles with or without joining faces by plane.
 ///
-/// Joining supposes that faces of one plane do not overlap. A solid that is not known to be
-/// reduced may break that; then its polygons fail to triangulate, or to the right area.
+/// Joining assumes that faces of one plane do not overlap. A solid not known to be reduced may
+/// violate that; then its polygons fail to triangulate, or to the right area.
 fn attempt(
     solid: &Solid,
     sources: &Sources,
@@ -102,7 +103,7 @@ fn attempt(
     let is_manifold = contacts::is_manifold(&assembly)?;
     let mut mesh = assembly.finish();
     if !is_manifold {
-        // Which faces stay together at a contact may depend on the order in which they come.
+        // Which faces stay together at a contact may depend on their order.
         let mut positions = mesh.positions(solid);
         put_in_order(&mut mesh, &mut positions);
         contacts::split(&mut mesh, sources)?;
@@ -169,7 +170,7 @@ impl Assembly<'_> {
         Ok(self.emit_groups(groups, &edges, &inner)?)
     }
 
-    /// Numbers the ends of a group's edges; those that two edges share are looked up once.
+    /// Numbers the ends of a group's edges; looks up ends shared by two edges once.
     fn number_edges(&mut self, group: &PlaneGroup, edges: &mut Vec<Edge>) {
         let start = edges.len();
         if group.edges().len() > MAX_EDGES_SEARCHED {
@@ -192,7 +193,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// For each line the points at which a polygon touches or crosses an edge of its own.
+    /// For each line, the points at which a polygon touches or crosses its own edges.
     fn touching(&mut self, groups: &mut [PlaneGroup], edges: &[Edge]) -> LinePoints {
         let mut touching = LinePoints::default();
         let mut start = 0;
@@ -204,7 +205,7 @@ impl Assembly<'_> {
         touching
     }
 
-    /// Identifies by place the corners of faces that lay near another operand: contacts.
+    /// Makes points of the corners of whole faces near another operand: these may be contacts.
     fn identify_near(&mut self, near: &[SourceFace], fates: &Fates) {
         for face in near {
             if matches!(fates[*face], Fate::Whole(_)) {
@@ -232,9 +233,9 @@ impl Assembly<'_> {
         Some(Edge { from, to })
     }
 
-    /// Remembers which source vertices the corners of groups are, for their original doubles.
+    /// Records which source vertices are corners of groups, to keep their original doubles.
     ///
-    /// A corner that was cut off a face names nothing, though a vertex of another face may lie there.
+    /// A corner cut off a face has no name, though a vertex of another face may lie there.
     fn name_corners(&mut self, groups: &[PlaneGroup], edges: &[Edge], inner: &InnerPoints) {
         let sources = self.sources;
         let mut group_of = vec![usize::MAX; self.table.len()];
@@ -266,7 +267,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Vertices on edges that more than two faces of a source share are identified by place.
+    /// Makes points of vertices on edges that more than two faces of a source share.
     fn mark_irregular(&mut self, fates: &Fates, rims: &Rims) {
         let irregular = carried(|(slot, fates): (Slot, &[Fate])| {
             let rim = rims.get(slot);
@@ -293,8 +294,8 @@ impl Assembly<'_> {
         }
     }
 
-    /// Makes points of all corners of split faces before any face names them; what is split is no
-    /// longer whole.
+    /// Makes points of all corners of split faces before any face names them, and marks split faces
+    /// as cut.
     fn identify_corners(&mut self, split: &[SplitFace], fates: &mut Fates) {
         for SplitFace { face, .. } in split {
             self.identify(face.face);
@@ -302,7 +303,7 @@ impl Assembly<'_> {
         }
     }
 
-    /// Emits the whole faces, and the vertices that only they have.
+    /// Emits the whole faces, and the vertices that only they use.
     fn emit_whole(&mut self, fates: &Fates, rims: &Rims) {
         let first = VertexId::of(self.vertices.len());
         for (slot, images) in Slot::all().zip(&mut self.images) {
@@ -328,7 +329,7 @@ impl Assembly<'_> {
     }
 }
 
-/// The number of a point that is an end of one of some numbered edges, too.
+/// The number of a point, if it is an end of one of the numbered edges.
 fn known_end<'e>(
     at: &Arc<Vertex>,
     mut numbered: impl Iterator<Item = (&'e BareEdge, &'e Edge)>,

@@ -1,4 +1,4 @@
-//! The reasons why the boundary of a solid makes no mesh.
+//! The reasons why a solid's boundary makes no mesh.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ pub(super) enum Failure {
     Refused(Error),
 }
 
-/// Faces that cross or overlap each other, as their boundary shows.
+/// Faces found to cross or overlap each other.
 pub(super) struct Overlap {
     /// A sign of the failure, in words.
     pub(super) sign: String,

@@ -22,13 +22,13 @@ pub struct ExactMesh {
     pub triangles: Vec<[VertexId; 3]>,
     /// For each triangle the face it lies in.
     pub faces: Vec<OrientedFace>,
-    /// The number of triangles at the start that are faces of sources as they came.
+    /// The number of triangles at the start that are untouched faces of sources.
     pub untouched: usize,
-    /// Those of them with a vertex that others have, too, ascending.
+    /// Those with a vertex that is not theirs alone, ascending.
     pub special: Vec<u32>,
     /// The constructed points that [`Corner::Point`] names.
     pub table: VertexTable,
-    /// The findings on the way.
+    /// The findings of the assembly.
     pub findings: Vec<Finding>,
 }
 
@@ -45,7 +45,7 @@ impl ExactMesh {
         }
     }
 
-    /// Each vertex in doubles, in model units: those that a source was given, or the nearest ones.
+    /// Each vertex in doubles, in model units: those of its source, or the nearest ones.
     pub fn positions(&self, solid: &Solid) -> Vec<[f64; 3]> {
         let position = |corner: &Corner| match *corner {
             Corner::Point(point) => solid.pitch().position(self.table.point(point)),
@@ -85,7 +85,7 @@ pub fn outward_normal(face: OrientedFace, sources: &Sources) -> [i128; 3] {
     normal.map(|c| face.orientation.signed(c))
 }
 
-/// Give vertices the numbers of their places in an order, which all that triangles name are in.
+/// Number vertices by their place in `order`, which must contain all that triangles name.
 pub fn renumber(
     vertices: &mut Vec<Corner>,
     triangles: &mut [[VertexId; 3]],
@@ -103,7 +103,7 @@ pub fn renumber(
     numbers
 }
 
-/// The numbers of vertices once those that are not used are left out; the others keep their order.
+/// The new numbers of vertices once unused ones are dropped; the others keep their order.
 pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
     let number = |next: &mut u32, used: &bool| {
         *next += u32::from(*used);
@@ -123,10 +123,10 @@ pub struct Mesh {
     pub origins: Vec<[u32; 2]>,
     /// For each triangle whether it faces the other way than that face.
     pub flips: Vec<bool>,
-    /// The findings on the way.
+    /// The findings of assembly and rounding.
     pub findings: Vec<Finding>,
-    /// The number of triangles that were compared exactly with all near them, because they are not
-    /// faces of inputs as they came; those that cross something are a finding.
+    /// The number of triangles compared exactly with all near them, because they are not untouched
+    /// faces of inputs; those that cross something are a finding.
     pub compared: u64,
 }
 

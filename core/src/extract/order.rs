@@ -1,8 +1,8 @@
-//! The order of what is new in a mesh. It follows from the places alone, so that a mesh has the same
-//! bytes whatever was evaluated before it.
+//! The order of new points and triangles in a mesh. It follows from the places alone, so that a
+//! mesh has the same bytes whatever was evaluated before.
 //!
-//! Constructed points come in the order of their doubles, copies of one after another. Triangles that are
-//! no faces as they came come by face, then by vertices, and each begins at its lowest.
+//! Constructed points are sorted by their doubles, with copies next to each other. Triangles that
+//! are not untouched faces are sorted by face, then by vertices; each starts at its lowest vertex.
 
 use std::cmp::Ordering;
 
@@ -11,8 +11,8 @@ use crate::geometry::vertices::VertexTable;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::{OrientedFace, VertexId};
 
-/// Put the constructed points of a mesh, with the positions of all vertices in doubles, and its new
-/// triangles in order.
+/// Sort the constructed points of a mesh, with the positions of all vertices in doubles, and its
+/// new triangles.
 pub(super) fn put_in_order(mesh: &mut ExactMesh, positions: &mut [[f64; 3]]) {
     sort_points(mesh, positions);
     sort_new_triangles(mesh);
@@ -36,7 +36,7 @@ fn sort_points(mesh: &mut ExactMesh, positions: &mut [[f64; 3]]) {
         mesh.vertices[number] = Corner::Point(point);
         positions[number] = position;
     }
-    // No face as it came has a constructed corner.
+    // Untouched faces have no constructed corners.
     for vertex in mesh.triangles[mesh.untouched..].iter_mut().flatten() {
         if let Some(place) = vertex.place().checked_sub(first) {
             *vertex = numbers[place];

@@ -1,4 +1,4 @@
-//! Triangles of outlines in doubles: they are cut where the lattice has their corners.
+//! Triangulation of outlines in doubles, with their corners snapped to the lattice.
 
 use super::triangulate::triangulate;
 use super::vertices::Projection;
@@ -6,11 +6,11 @@ use crate::geometry::plane::Plane;
 use crate::geometry::vertices::VertexTable;
 use crate::mesh::grid::Pitch;
 
-/// Triangulates what lies on the left of closed outlines in the plane; corners go by their place among
-/// the given points.
+/// Triangulates what lies on the left of closed outlines in the plane; corners are indices of
+/// points.
 ///
-/// Each corner is taken at the nearest point of the lattice that suits the outlines, as import does.
-/// `None` if the edges there are not the boundary of a region, or two corners are at one point.
+/// Each corner is snapped to the lattice that suits the outlines, as on import. `None` if the edges
+/// then do not bound a region, or two corners coincide.
 ///
 /// # Cost
 /// That of [`triangulate`].

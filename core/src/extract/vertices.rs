@@ -1,4 +1,4 @@
-//! Numbered points as seen in a plane, and exact questions about them.
+//! Numbered points seen in a plane, and exact questions about them.
 
 use std::cmp::Ordering;
 

@@ -33,7 +33,7 @@ pub fn volume(solid: &Solid) -> Result<Fraction> {
 /// A sum over faces, never over cells: integers for lattice triangles, fractions for the others.
 ///
 /// # Errors
-/// `Unbounded`; `TooMany` if the denominator may have more than so many bits.
+/// `Unbounded`; `TooMany` if the denominator may have more than `most_bits` bits.
 pub fn volume_within(solid: &Solid, most_bits: u64) -> Result<Fraction> {
     let mesh = assemble(solid)?;
     let shares = Shares::of(solid, &mesh);
@@ -61,11 +61,10 @@ fn too_long(bits: u64, most_bits: u64) -> Error {
     Error::at(ErrorKind::TooMany, vec![bits], text)
 }
 
-/// The volume in cubic model units as the nearest double, from what the tree's nodes have kept.
+/// The volume in cubic model units as the nearest double, from what the tree's nodes cache.
 ///
-/// The cost is that of what changed since a solid was asked that shares nodes with this one. `None`
-/// if the bound on the error leaves a choice of doubles, or if the boundary may be unbounded; then
-/// [`volume_near`] tells.
+/// Visits only nodes that are not shared with a solid asked before. `None` if the error bound
+/// leaves a choice of doubles, or if the boundary may be unbounded; then ask [`volume_near`].
 pub fn volume_rounded(solid: &Solid) -> Option<f64> {
     let share = share(solid.root());
     if solid.root().outside > 0 || share.open {
@@ -95,9 +94,9 @@ const PLACES: usize = 128;
 
 /// The volume in cubic model units to within 2^-128 cubic steps for each cut triangle.
 ///
-/// The shares of lattice triangles are exact integers, those of the others are rounded down once:
-/// an error far below what a double can hold, at a cost that does not grow with the square of the
-/// number of cut faces as that of the exact sum does.
+/// The shares of lattice triangles are exact integers; each other share is rounded down once. The
+/// error is far below a double's precision, and the cost, unlike that of the exact sum, does not
+/// grow with the square of the number of cut faces.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -112,8 +111,8 @@ pub fn volume_near(solid: &Solid) -> Result<Fraction> {
 
 /// Six times the exact volume in cubic steps, modulo the primes 2^61 − 1 and 2^61 − 31.
 ///
-/// Sums of exact volumes can be compared by these at the cost of one pass: two different sums agree
-/// by chance 2^-122. `None` if a denominator is a multiple of a prime.
+/// Compares sums of exact volumes in one pass: two different sums agree with probability 2^-122.
+/// `None` if a denominator is a multiple of a prime.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -125,8 +124,8 @@ pub fn volume_residues(solid: &Solid) -> Result<Option<[u64; 2]>> {
         .and_then(|a| Some([a, shares.modulo(P2)?])))
 }
 
-/// Fractions longer than this many bits are left as they are: the divisor would cost more to find
-/// than it saves.
+/// Fractions longer than this many bits are not reduced: finding the divisor would cost more than
+/// it saves.
 const REDUCED: u64 = 4096;
 
 fn reduced(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
@@ -155,7 +154,7 @@ fn in_units(numerator: BigInt, denominator: BigInt, exponent: i64) -> Fraction {
     in_powers(numerator, denominator, exponent, 3)
 }
 
-/// A power of lattice steps to that power of model units.
+/// Lattice steps to some power as model units to that power.
 pub fn in_powers(
     numerator: BigInt,
     denominator: BigInt,

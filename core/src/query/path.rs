@@ -1,8 +1,8 @@
-//! The way of a point and of a ray through a tree of fragments, exact and step by step.
+//! The paths of a point and of a ray through a tree of fragments, exact and step by step.
 //!
-//! A ray visits the child on the side of its origin first, then what lies in the cut, then the
-//! other child, and stops at the first hit. All depths are exact fractions. Children that the ray
-//! only touches in a point are visited, so that singular cases need no code.
+//! A ray visits the child on its origin's side first, then the facets in the cut, then the other
+//! child, and stops at the first hit. All depths are exact fractions. It also visits children that
+//! it only touches in a point, so that singular cases need no code.
 //!
 //! # Source
 //! Lecture notes on BSP trees, "Ray casting" and "Distribution optimized BSP"; Havran, Kopal,
@@ -64,8 +64,7 @@ pub enum RayEvent {
         to: Option<f64>,
         /// The side of the hyperplane on which the ray starts: the near child.
         near: Side,
-        /// The parameter at which the ray's line crosses the hyperplane; `None` if it runs beside
-        /// or within.
+        /// The parameter at which the ray's line crosses the hyperplane; `None` if it is parallel.
         at: Option<f64>,
     },
     /// A piece in a node's hyperplane is tested.
@@ -77,7 +76,7 @@ pub enum RayEvent {
         /// The parameter at which the ray meets it.
         at: Option<f64>,
     },
-    /// A leaf, which is an empty region, is stabbed.
+    /// A leaf, an empty region, is stabbed.
     Leaf {
         /// The node above; `None` for a tree without nodes.
         place: Option<(NodeId, Half)>,
@@ -110,10 +109,10 @@ impl RayPath {
 
 /// The first piece on a ray.
 ///
-/// Of several pieces at one point it is the one that the tree meets first, and of those in one
-/// node the first of the input.
+/// If several pieces lie at that point, the one that the tree meets first; within a node, the first
+/// of the input.
 ///
-/// `facets` are those of the tree, by the numbers of its pieces.
+/// `facets` are the tree's facets, indexed by piece number.
 pub fn cast_ray<S: Cast<D> + Affine, const D: usize>(
     tree: &FragmentTree<S>,
     facets: &[Facet],
@@ -290,9 +289,9 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
 struct Crossing {
     /// The side on which the ray starts.
     start: Side,
-    /// The parameter at which the ray's line crosses; `None` if it runs beside or within.
+    /// The parameter at which the ray's line crosses; `None` if it is parallel.
     at: Option<Ratio>,
-    /// The half that comes first on the line; `None` if the line runs within.
+    /// The half that comes first on the line; `None` if it runs within.
     first: Option<Half>,
 }
 
@@ -321,7 +320,7 @@ impl Crossing {
     }
 }
 
-/// Return where a ray first meets a convex facet, as a fan of facets of `D` corners.
+/// Return where a ray first meets a convex facet, seen as a fan of facets of `D` corners.
 fn meeting<const D: usize>(facet: &Facet, ray: &Ray<D>) -> Option<Ratio> {
     let corner = |i: usize| -> [f64; D] { std::array::from_fn(|k| facet.corners[i][k] as f64) };
     let last = facet.corners.len();

@@ -11,9 +11,9 @@ use crate::interrupt::poll;
 use crate::mesh::handle::OrientedFace;
 use crate::tree::solid::Solid;
 
-/// Return the planes of a solid's surface, each once, the solid on the minus side beside it.
+/// Return the planes of a solid's surface, each once, with the solid on the minus side.
 ///
-/// They are those of the faces of its inputs: exact, however small the pieces are that are left.
+/// They are the planes of the input faces: exact, however small the remaining pieces are.
 ///
 /// # Errors
 /// `Unbounded`.

@@ -1,10 +1,10 @@
 //! The shares of a mesh's triangles in its volume, and their exact sum.
 //!
 //! The denominator of a triangle's share is the product of the weights of its constructed corners.
-//! Halving space again and again makes groups of triangles that have few points in common with the
-//! others. The sum of a group is a numerator over the weights of all its points, each taken once:
-//! those of points that no other triangle has are multiplied out, the few others are kept by name.
-//! So the denominator has no weight twice, and all products have factors of similar length.
+//! Halving space recursively makes groups of triangles that share few points with the others. The
+//! sum of a group is a numerator over the weights of all its points, each taken once: the weights
+//! of points that no other triangle uses are multiplied out, the few others stay a list. So no
+//! weight is in the denominator twice, and all products have factors of similar length.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -20,27 +20,27 @@ use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::{both, Worth};
 use crate::tree::solid::Solid;
 
-/// Sums whose denominators have at most this many bits are brought to lowest terms: later the divisor
+/// Sums whose denominators have at most this many bits are reduced: for longer ones the divisor
 /// costs more to find than it saves.
 const REDUCED: u64 = 1024;
 
-/// Groups of so many triangles are added up as two tasks: the halves take more than 100 µs each.
+/// Groups of at least this many triangles are summed as two tasks of more than 100 µs each.
 const TASK: usize = 64;
 
 /// The shares of all triangles in six times the volume, in cubic steps.
 pub struct Shares {
-    /// That of all lattice triangles.
+    /// The share of all lattice triangles.
     pub whole: BigInt,
     cut: Vec<Share>,
-    /// Of each constructed point that a triangle has.
+    /// The weight of each constructed corner.
     weights: Vec<BigInt>,
-    /// The number of triangles that have it.
+    /// The number of triangles that use it.
     uses: Vec<u32>,
 }
 
 /// The share of a triangle with constructed corners.
 struct Share {
-    /// The value that is divided by the weights of the points.
+    /// The numerator over the weights of the points.
     value: BigInt,
     /// Ascending.
     points: SmallVec<[u32; 3]>,
@@ -51,22 +51,22 @@ struct Share {
 /// A sum over the product of `closed` and the weights of the open points.
 struct Partial {
     numerator: BigInt,
-    /// The weights of the points that only triangles of this sum have.
+    /// The product of the weights of points that only this sum uses.
     closed: BigInt,
-    /// The other points, ascending, and how many triangles of this sum have each.
+    /// The other points, ascending, and how many triangles of this sum use each.
     open: Vec<(u32, u32)>,
 }
 
-/// A point whose three coordinates are to be divided by its weight.
+/// A point in homogeneous coordinates.
 struct Point {
     x: [BigInt; 3],
     weight: BigInt,
-    /// Its place, about.
+    /// Its place, rounded.
     near: [f64; 3],
 }
 
 impl Shares {
-    /// Those of a solid's mesh.
+    /// The shares of a solid's mesh.
     pub fn of(solid: &Solid, mesh: &ExactMesh) -> Self {
         let mut shares = Self {
             whole: BigInt::ZERO,
@@ -102,7 +102,7 @@ impl Shares {
         shares
     }
 
-    /// At most so many bits has the denominator of the sum.
+    /// An upper bound on the bits of the sum's denominator.
     pub fn denominator_bits(&self) -> u64 {
         let used = self.weights.iter().zip(&self.uses).filter(|w| *w.1 > 0);
         used.map(|(weight, _)| weight.bits()).sum()
@@ -172,7 +172,7 @@ impl Shares {
         }
     }
 
-    /// The sum of two sums.
+    /// Adds two sums.
     fn joined(&self, a: Partial, b: Partial) -> Partial {
         let missing = |here: &[(u32, u32)], there: &[(u32, u32)]| {
             let lacks = |p: &&(u32, u32)| here.binary_search_by_key(&p.0, |q| q.0).is_err();
@@ -195,7 +195,7 @@ impl Shares {
         })
     }
 
-    /// The sum with the points closed that no other triangle has.
+    /// Closes the points that no other triangle uses.
     fn settled(&self, mut sum: Partial) -> Partial {
         let is_closed = |p: &(u32, u32)| self.uses[p.0 as usize] == p.1;
         let closed = sum.open.iter().filter(|p| is_closed(p)).map(|p| p.0);
@@ -260,7 +260,7 @@ impl Point {
     }
 }
 
-/// The shares of triangles below and above a plane across the axis along which they reach farthest.
+/// Splits shares in two by a plane across the axis of their largest extent.
 fn halves(shares: &mut [Share]) -> (&mut [Share], &mut [Share]) {
     let extent = |axis: usize| {
         let ends = shares

@@ -1,8 +1,8 @@
-//! Bytes that are kept outside: what they are, in which version, and a checksum over all of it.
+//! The seal of stored bytes: their kind, their version, and a checksum over all of it.
 //!
-//! A mark of eight bytes, the payload, and the CRC-32 of both (that of zlib, so that other
-//! languages have it, too). Damage shows by the checksum: bursts of up to 32 bits always, anything
-//! else but for chance 2⁻³². What somebody forged shows when the payload is looked at.
+//! A mark of eight bytes, the payload, and the CRC-32 of both (zlib's, which other languages have
+//! too). The checksum detects bursts of up to 32 damaged bits always, other damage but for a chance
+//! of 2⁻³². Forgeries show when the payload is checked.
 
 use serde::de::DeserializeOwned;
 use serde::Serialize;
@@ -25,7 +25,7 @@ const MARK: [u8; 6] = *b"bspcsg";
 /// The version that is written.
 const VERSION: u8 = 3;
 
-/// The first version with a mark. It knew of whole faces only whether they are turned.
+/// The first version with a mark. It stores of whole faces only whether they are turned.
 const OLDEST: u8 = 2;
 
 /// The first byte of version 1, which had neither mark nor checksum.

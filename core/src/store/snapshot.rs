@@ -69,7 +69,7 @@ pub struct Snapshot {
 enum SourceData {
     Mesh(TriangleMesh),
     HalfSpace(PlaneData),
-    /// A mesh and its close pairs, where they are known: images of it need no look of their own.
+    /// A mesh with its known close pairs: its images need no search of their own.
     Searched(TriangleMesh, Vec<[u32; 2]>),
 }
 
@@ -195,11 +195,11 @@ impl Snapshot {
         ))
     }
 
-    /// The image of a solid under a motion of its lattice; one motion makes one image of a source.
+    /// The image of a solid under a motion of its lattice; a source keeps one image per motion.
     ///
-    /// A motion takes vertices to doubles of the lattice along axes on which it shifts them. If that
-    /// makes a mesh cross itself, the solid is united with itself, and its doubles are the lattice's
-    /// already.
+    /// Along axes on which a motion shifts, vertices take the lattice's doubles. If that makes a
+    /// mesh cross itself, the solid is first united with itself, and takes all its doubles from the
+    /// lattice.
     ///
     /// # Errors
     /// `TooLarge` if something leaves the lattice; `Unbounded`, `Internal`.
@@ -242,10 +242,10 @@ impl Snapshot {
         Ok(image)
     }
 
-    /// The same solid on a finer lattice; nothing and everything live on any.
+    /// The same solid on a finer lattice; the empty and the full set fit any lattice.
     ///
     /// # Errors
-    /// `TooLarge` if something leaves the lattice; one that is not finer is `PitchMismatch`.
+    /// `TooLarge` if something leaves the lattice; `PitchMismatch` if that is not finer.
     pub fn refined(&self, finer: Pitch) -> Result<Self> {
         let own = Pitch::new(self.pitch)?;
         if self.wholes.is_empty() && self.parts.is_empty() {
@@ -267,7 +267,7 @@ impl Snapshot {
         self.moved(&motion, finer)
     }
 
-    /// Return whether an unbounded face is boundary beside others, or cut at the border of the
+    /// Return whether an unbounded face has other faces beside it, or is cut at the border of the
     /// universe.
     fn reaches_infinity(&self) -> bool {
         let unbounded = |slot: Slot| {
@@ -313,10 +313,10 @@ impl Snapshot {
         seal(Kind::Solid, &written)
     }
 
-    /// The solid that bytes hold; they are looked at in full.
+    /// The solid stored in bytes, which are checked in full.
     ///
-    /// That its faces are the reduced boundary is their word ([`Solid::claimed`]): to find that out
-    /// costs ten times as much as all the rest.
+    /// Only one claim is trusted ([`Solid::claimed`]): that its faces are the reduced boundary.
+    /// Checking it would cost ten times as much as all the rest.
     ///
     /// # Errors
     /// `BadSnapshot`.
@@ -330,14 +330,14 @@ impl Snapshot {
     }
 }
 
-/// Return whether nothing but the border of the universe bounds a half-space's face.
+/// Return whether only the border of the universe bounds a half-space's face.
 fn is_full_plane(cut: &CutFace) -> bool {
     let mut edges = cut.outline.edges().iter();
     edges.all(|e| e.carrier.is_border())
 }
 
 impl SourceData {
-    /// The sources of a solid; those of which no face bounds it leave nothing but their places.
+    /// The sources of a solid; those without a boundary face keep only their places.
     fn of_all(solid: &Solid, wholes: &[WholeFaces], parts: &[PartData]) -> Vec<Self> {
         let mut is_named = vec![false; solid.sources().len()];
         let slots = wholes.iter().map(|w| w.slot);
@@ -395,10 +395,10 @@ impl SourceData {
         }
     }
 
-    /// The image of a source that these are the data of.
+    /// The image of a source; these are its data.
     fn image(&self, source: &Source, motion: &Motion) -> Result<Arc<Source>> {
         let made = || Ok(Arc::new(self.source(source.pitch())?));
-        // A source that bounds nothing has left only its place, whoever else has its image.
+        // A source that bounds nothing keeps only its place, even where its image is known.
         if matches!(self, Self::Mesh(mesh) if mesh.faces.is_empty()) {
             return made();
         }
@@ -408,7 +408,8 @@ impl SourceData {
         Ok(source.images().keep(motion, made()?))
     }
 
-    /// The data as they are written: with close pairs only where some cross, which nobody would look for.
+    /// The data to write: close pairs only if some cross, because a reader would not search for
+    /// them.
     fn written(self) -> Self {
         match self {
             Self::Searched(mesh, pairs) if crossing_faces(&mesh, &pairs).is_empty() => {
@@ -418,7 +419,7 @@ impl SourceData {
         }
     }
 
-    /// Takes the doubles of vertices to those of the lattice.
+    /// Replaces the doubles of vertices by those of the lattice.
     fn snap(&mut self, pitch: Pitch) {
         if let Some(mesh) = self.mesh() {
             for (place, double) in mesh.vertices.iter().zip(&mut mesh.doubles) {
@@ -447,7 +448,7 @@ impl SourceData {
     }
 }
 
-/// Return whether lists fit each other, and no face is flat or names what is not there.
+/// Return whether the lists match, and no face is flat or names a missing vertex.
 fn is_sound_mesh(mesh: &TriangleMesh) -> bool {
     let TriangleMesh {
         vertices,

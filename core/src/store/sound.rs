@@ -1,7 +1,7 @@
-//! The check that a boundary from outside bounds a set: all that the kernel takes for granted.
+//! The check that a boundary from outside bounds a set, which is all that the kernel assumes.
 //!
-//! A closed boundary gives every point a winding number that does not depend on the path to it, and
-//! with that the kernel is right: whether faces overlap or cross is for it to find out.
+//! A closed boundary gives every point a winding number that does not depend on the path to it.
+//! That suffices: the kernel itself finds faces that overlap or cross.
 
 use std::sync::Arc;
 
@@ -22,8 +22,8 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Deferred, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
-/// Return whether the one leaf of a solid, of which the indices and ranges have been checked, is
-/// the boundary of a set.
+/// Return whether the one leaf of a solid, with its indices and ranges already checked, is the
+/// boundary of a set.
 pub fn is_sound(solid: &Solid) -> bool {
     let Node::Deferred(leaf) = &*solid.root().node else {
         return true;
@@ -35,7 +35,7 @@ pub fn is_sound(solid: &Solid) -> bool {
         && fates(leaf, &sources).is_some_and(|fates| is_closed(leaf, &fates, &sources))
 }
 
-/// Return whether a source could be that of an import that was moved and refined.
+/// Return whether a source could result from an import, motions and refinements.
 fn is_proper(source: &Source) -> bool {
     let Some(mesh) = source.mesh() else {
         return true;
@@ -45,8 +45,8 @@ fn is_proper(source: &Source) -> bool {
     numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.closes()
 }
 
-/// Return whether each vertex is what its doubles are snapped to, on this lattice or, where all
-/// coordinates are its steps, on a coarser one.
+/// Return whether the doubles of each vertex snap to it, on this lattice or on a coarser one that
+/// contains all coordinates.
 fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     (0..3).all(|axis| {
         let slack = as_double(coarsest_step(&mesh.vertices, axis)) * 0.5;
@@ -59,7 +59,7 @@ fn doubles_fit(mesh: &TriangleMesh, pitch: Pitch) -> bool {
     })
 }
 
-/// The largest power of ten that divides all coordinates across an axis; at most 10^18.
+/// The largest power of ten that divides all coordinates along an axis; at most 10^18.
 fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
     let mut step = 10i64.pow(18);
     for vertex in vertices {
@@ -72,8 +72,8 @@ fn coarsest_step(vertices: &[Lattice], axis: usize) -> i64 {
 
 /// Return whether the outline bounds a part of the face, with the part on its left everywhere.
 ///
-/// The convex pieces are disjoint parts of the face. If their edges and the outline's cancel, it
-/// bounds them and nothing else.
+/// The convex pieces are disjoint parts of the face. If their edges cancel the outline's, it bounds
+/// exactly them.
 fn lies_on_face(part: &Part) -> bool {
     let Some(face) = part.source.clip(part.face, &part.home) else {
         return false;
@@ -88,7 +88,7 @@ fn lies_on_face(part: &Part) -> bool {
     !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()
 }
 
-/// Return whether no corner of an outline lies outside of a face, and its lattice edges are the
+/// Return whether no corner of an outline lies outside a face, and its lattice edges are the
 /// face's.
 fn is_within(part: &Part, face: &Polygon) -> bool {
     let own: Vec<&Carrier> = face.edges().map(|(_, _, carrier)| carrier).collect();
@@ -106,7 +106,7 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
         .all(|e| inside(&e.from) && known(&e.carrier))
 }
 
-/// Return what is listed of each face; `None` if something is listed twice.
+/// Return the fate of each listed face; `None` if something is listed twice.
 fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
     let mut fates = Fates::new(sources.table().iter().map(gone).collect());
@@ -138,7 +138,7 @@ fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
     once.then_some(fates)
 }
 
-/// Return whether the edges of all that is listed cancel, but at the border of the universe.
+/// Return whether all listed edges cancel, except at the border of the universe.
 fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
     let rims = Rims::of(fates, sources);
     let frontier = rims.frontier(fates, sources).into_iter();
@@ -154,7 +154,7 @@ fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
     cancel(rim.chain(parts).collect()).is_empty()
 }
 
-/// An edge of a whole face, run as the face is turned.
+/// An edge of a whole face, in the direction of the face's orientation.
 fn rim_edge(edge: FrontierEdge, fates: &Fates, sources: &Sources) -> Option<OutlineEdge> {
     let mesh = sources.get(edge.slot).mesh()?;
     let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.place()]);

@@ -7,7 +7,7 @@ use crate::extract::boundary::leaves::Fate;
 use crate::geometry::side::Orientation;
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 
-/// Whole faces of one source that lie in one manner.
+/// Whole faces of one source in the same manner.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct WholeFaces {
     pub(super) slot: Slot,
@@ -15,8 +15,8 @@ pub(super) struct WholeFaces {
     pub(super) faces: Vec<FaceId>,
 }
 
-/// The orientation of whole faces, and whether they may touch others anywhere. The first two stand where
-/// version 2 has `false` and `true`.
+/// The orientation of whole faces, and whether they may touch others anywhere. The first two
+/// variants encode like version 2's `false` and `true`.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Manner {
     Same,

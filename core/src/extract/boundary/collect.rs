@@ -18,12 +18,12 @@ use crate::mesh::tasks::in_pool;
 use crate::tree::node::{Branch, Deferred, Node};
 use crate::tree::solid::Solid;
 
-/// A face of which a part is boundary.
+/// A face that is partly boundary.
 #[derive(Debug)]
 pub struct CutFace {
     /// The face.
     pub face: OrientedFace,
-    /// The outline, counterclockwise on the face as the source has it.
+    /// The outline, counterclockwise on the face in its source's orientation.
     pub outline: Outline,
 }
 
@@ -38,10 +38,10 @@ pub struct Boundary {
     pub near: Vec<SourceFace>,
 }
 
-/// Faces from which several threads look at them.
+/// Above this number of faces several threads share the work.
 const PARALLEL_FROM: usize = 256;
 
-/// One in so many faces must be listed for counting to be faster than sorting.
+/// At least one in this many faces must be listed for counting to be faster than sorting.
 const SPARSE: usize = 16;
 
 struct Collector<'a> {
@@ -93,7 +93,7 @@ impl Collector<'_> {
         Boundary { fates, cut, near }
     }
 
-    /// Return whether all of a face that spans leaves is boundary, and turned one way.
+    /// Return whether a face that spans leaves is boundary as a whole, in one orientation.
     fn is_whole(&self, run: &[Spanning]) -> bool {
         let first = run[0].face;
         let source = self.sources.get(first.slot());
@@ -103,7 +103,8 @@ impl Collector<'_> {
             && (self.fill_box(run, source) || covers(self.root, source, first))
     }
 
-    /// Return whether the cells of the leaves that list a face make up its box; may return false negatives.
+    /// Return whether the cells of the leaves that list a face fill its box; may return false
+    /// negatives.
     fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
         let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
         fill(
@@ -113,7 +114,7 @@ impl Collector<'_> {
         )
     }
 
-    /// The outlines of the faces that are not whole, or gone.
+    /// The outlines of the faces that are neither whole nor gone.
     fn outline(&mut self, open: &[&[Spanning]]) -> Vec<CutFace> {
         let spans = open.iter().flat_map(|run| run.iter()).map(Piece::from);
         let mut pieces: Vec<Piece> = spans.collect();
@@ -140,7 +141,7 @@ impl Collector<'_> {
         cut
     }
 
-    /// One face of its pieces.
+    /// Joins the pieces of one face.
     fn joined(&self, run: &mut [Piece]) -> CutFace {
         let cells = &self.listed.cells;
         let face = run[0].face;
@@ -154,7 +155,7 @@ impl Collector<'_> {
     }
 }
 
-/// Return what leaves list, sorted by face; the leaves of a face keep their order.
+/// Sorts listings by face; the leaves of a face keep their order.
 fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     let faces = fates.faces();
     let mut sorted = spanning.to_vec();
@@ -205,7 +206,7 @@ fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
     distinct && own.iter().all(|k| [&*p, q, r].contains(&k))
 }
 
-/// A subtree to look through for a face, and the face's box in it.
+/// A subtree to search for a face, and the face's box in it.
 #[derive(Clone, Copy)]
 struct Place<'a> {
     branch: &'a Branch,
@@ -215,7 +216,7 @@ struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    /// Goes to a child; false if the box is not in its cell.
+    /// Moves to a child; returns false if the box is not in its cell.
     fn enter(&mut self, child: &'a Branch) -> bool {
         self.branch = child;
         self.complement ^= child.complement;
@@ -282,7 +283,7 @@ fn enters(source: &Source, face: FaceId, cell: &Cell) -> bool {
     !misses(source, face, cell) && source.clip(face, cell).is_some()
 }
 
-/// Return whether a leaf, perhaps turned inside out, lists a face.
+/// Return whether a leaf, inverted if `complement`, lists a face.
 fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool) -> bool {
     let orientation = face.orientation.turned_if(complement);
     leaf.groups.iter().any(|g| {
@@ -293,7 +294,7 @@ fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool)
 
 /// Return whether a solid has no boundary: it is empty or all of space.
 ///
-/// A tree may list faces that meet none of their cells, so that the tree alone does not tell.
+/// A tree may list faces that meet none of their cells, so the tree alone does not decide.
 ///
 /// # Example
 /// ```

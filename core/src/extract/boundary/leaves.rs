@@ -1,4 +1,4 @@
-//! The listings of all leaves of a tree at once: what each says of its faces.
+//! The listings of all leaves of a tree at once.
 
 use std::ops::{Index, IndexMut};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -21,7 +21,7 @@ use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node, Part};
 
-/// A face that reaches out of a leaf that lists it.
+/// A face that extends beyond a leaf that lists it.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Spanning {
     /// The face.
@@ -37,11 +37,11 @@ pub struct Piece<'a> {
     extent: Extent<'a>,
 }
 
-/// The extent of a piece; most outlines are looked up or made when it is their turn.
+/// The extent of a piece; most outlines are computed only when needed.
 enum Extent<'a> {
-    /// The face's own edges, and the border of the cell of the leaf with this number.
+    /// The face, clipped to the cell of the leaf with this number.
     Face(u32),
-    /// As the part says.
+    /// A whole part.
     Part(&'a Part),
     /// These edges.
     Edges(Vec<OutlineEdge>),
@@ -57,7 +57,7 @@ impl From<&Spanning> for Piece<'_> {
 }
 
 impl Piece<'_> {
-    /// The outline of a piece that is all there is of its face.
+    /// The outline of a piece that is the only one of its face.
     pub fn outline(&mut self, sources: &Sources, cells: &[Cell]) -> Outline {
         match self.extent {
             Extent::Part(part) => Outline::of_bare(&part.edges),
@@ -65,7 +65,7 @@ impl Piece<'_> {
         }
     }
 
-    /// The edges around the piece; taken out of it if it has them.
+    /// The edges around the piece; moved out of it if it stores them.
     pub fn take_edges(&mut self, sources: &Sources, cells: &[Cell]) -> Vec<OutlineEdge> {
         match &mut self.extent {
             Extent::Face(leaf) => {
@@ -82,11 +82,11 @@ impl Piece<'_> {
 /// The listings of leaves, in the leaves' order.
 #[derive(Default)]
 pub struct Listed<'a> {
-    /// Faces inside a leaf's cell are whole, those with a part in one are cut.
+    /// Faces inside a leaf's cell are whole; faces with a part in a leaf are cut.
     pub fates: Fates,
-    /// The faces that reach out of leaves.
+    /// The faces that extend beyond leaves.
     pub spanning: Vec<Spanning>,
-    /// The pieces that the parts are in the leaves, by face.
+    /// The pieces made of the leaves' parts, by face.
     pub parts: Vec<Piece<'a>>,
     /// Faces in cells where several operands met.
     pub near: Vec<SourceFace>,
@@ -94,7 +94,7 @@ pub struct Listed<'a> {
     pub cells: Vec<Cell>,
 }
 
-/// The listing of one leaf but for the faces inside its cell.
+/// The listing of one leaf, except for the faces inside its cell.
 #[derive(Default)]
 struct Found<'a> {
     spanning: Vec<Spanning>,
@@ -117,7 +117,7 @@ struct Leaf<'a> {
     content: &'a Deferred,
 }
 
-/// Asks all leaves.
+/// Collects the listings of all leaves.
 pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     let leaves = leaves_of(root);
     let fates = Marks::of(&leaves, sources);
@@ -153,7 +153,7 @@ type Pieces<'a> = SmallVec<[Piece<'a>; 1]>;
 
 type Extents<'a> = SmallVec<[Extent<'a>; 1]>;
 
-/// Return the pieces that listed parts, by their faces, are in their leaves.
+/// Return the pieces of listed parts, sorted by face, in their leaves.
 fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     let runs: Vec<&[Listing]> = parts.chunk_by(|a, b| a.face == b.face).collect();
     let face = carried(|run: &&[Listing<'a>]| pieces_of_face(run, cells));
@@ -165,7 +165,7 @@ fn pieces<'a>(parts: &[Listing<'a>], cells: &[Cell]) -> Vec<Piece<'a>> {
     pieces.into_iter().flatten().collect()
 }
 
-/// The pieces of one face: all of a part where that is still there, else what leaves have of it.
+/// The pieces of one face: a whole part where it remains, else its parts in the leaves.
 fn pieces_of_face<'a>(run: &[Listing<'a>], cells: &[Cell]) -> Pieces<'a> {
     let extents = match run {
         [single] => extents(single.part, &[single.leaf], cells),
@@ -203,7 +203,7 @@ fn extents<'a>(part: &'a Part, leaves: &[u32], cells: &[Cell]) -> Extents<'a> {
     edges.filter(|e| !e.is_empty()).map(Extent::Edges).collect()
 }
 
-/// Return whether the leaves that list a part have all of it; may return false negatives.
+/// Return whether the leaves that list a part contain all of it; may return false negatives.
 fn is_whole(part: &Part, leaves: &[u32], cells: &[Cell]) -> bool {
     if let [leaf] = leaves
         && cells[*leaf as usize] == part.home
@@ -223,9 +223,9 @@ fn part_box(part: &Part) -> (Lattice, Lattice) {
     )
 }
 
-/// Return whether the cells of different leaves make up a box; may return false negatives.
+/// Return whether the cells of different leaves fill a box; may return false negatives.
 ///
-/// Leaves are apart, so that it is enough to count lattice points.
+/// Leaves are disjoint, so counting lattice points suffices.
 pub fn fill(
     (low, high): (Lattice, Lattice),
     leaves: impl Iterator<Item = u32>,
@@ -284,10 +284,10 @@ fn leaves_of(root: &Branch) -> Vec<Leaf<'_>> {
 pub enum Fate {
     /// No part of it is boundary.
     Gone,
-    /// All of it is boundary, turned like this. Never said of a half-space's face, which only the
-    /// border of the universe ends.
+    /// All of it is boundary, in this orientation. Never used for a half-space's face, which only
+    /// ends at the border of the universe.
     Whole(Orientation),
-    /// Some of it is boundary, or it joins a polygon of its plane.
+    /// Part of it is boundary, or it joins a polygon of its plane.
     Cut,
 }
 
@@ -423,7 +423,7 @@ impl<'a> Leaf<'a> {
     }
 }
 
-/// Return a test whether a face's corners lie in a cell.
+/// Return a test of whether a face's corners lie in a cell.
 fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 'a {
     let (low, high) = (*cell.low(), cell.high());
     move |face| {

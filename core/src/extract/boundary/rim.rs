@@ -1,7 +1,7 @@
-//! The rim of a source's whole faces: found by vertices, so that no mates are needed.
+//! The rim of a source's whole faces, found by vertices, so that no mates are needed.
 //!
-//! Two faces of an edge share both its ends. So only faces whose corners are touched by faces of
-//! another fate, too, can lie beside such a face. They are few, and are compared by their edges.
+//! Two faces at an edge share both its ends. So only faces with corners where fates meet can lie
+//! beside a face of another fate. They are few, and are compared by their edges.
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
@@ -20,11 +20,11 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// Bits for what meets at a vertex: a whole face, one turned around, another one.
+/// Bits for the faces at a vertex: a whole face, a whole one turned around, any other.
 const KEPT: u8 = 1;
 const TURNED: u8 = 2;
 const OTHER: u8 = 4;
-/// The vertex lies on edges that cancel along lines only, and have no opposite by index.
+/// The vertex lies on edges without an opposite by index, which cancel only along lines.
 const OPEN: u8 = 8;
 
 /// The rims of all sources, by slot.
@@ -35,7 +35,7 @@ pub struct Rims {
     by_ends: Vec<OnceLock<HashMap<[VertexId; 2], u32>>>,
     /// The faces around each vertex of a source, found on first use.
     around: Vec<OnceLock<Around>>,
-    /// Slots of which fates have changed.
+    /// Slots whose fates have changed.
     outdated: BTreeSet<Slot>,
 }
 
@@ -86,7 +86,7 @@ impl Rims {
         self.outdated.insert(slot);
     }
 
-    /// Finds the rims again whose fates have changed.
+    /// Finds again the rims of sources whose fates have changed.
     pub fn renew(&mut self, fates: &Fates, sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
             self.by_slot[slot.place()] = Rim::of(sources.get(slot), fates.of(slot));
@@ -99,7 +99,7 @@ impl Rims {
         &self.by_slot[slot.place()]
     }
 
-    /// The frontier: half-edges of whole faces whose mates are not whole and turned alike.
+    /// The frontier: half-edges of whole faces without a whole mate of the same orientation.
     pub fn frontier(&self, fates: &Fates, sources: &Sources) -> Vec<FrontierEdge> {
         let mut found = Vec::new();
         for (rim, (slot, fates)) in self.by_slot.iter().zip(fates.by_slot()) {
@@ -111,9 +111,9 @@ impl Rims {
         found
     }
 
-    /// The face across a half-edge, if that may be whole.
+    /// The face across a half-edge, if it may be whole.
     ///
-    /// Near the rim the faces are known by their edges; far from it by their corners.
+    /// Finds faces near the rim by their edges, others by their corners.
     pub fn across(&self, slot: Slot, half: u32, sources: &Sources) -> Option<FaceId> {
         let mesh = sources.get(slot).mesh()?;
         let rim = self.get(slot);
@@ -138,7 +138,7 @@ impl Rims {
 /// The faces around each vertex of a mesh.
 #[derive(Clone, Debug)]
 struct Around {
-    /// By vertex, where its faces start; ends with where the last one's end.
+    /// By vertex, where its faces start in `faces`; ends with the end of the last one's.
     starts: Vec<u32>,
     faces: Vec<FaceId>,
 }
@@ -173,17 +173,17 @@ impl Around {
     }
 }
 
-/// The vertices at which a source's faces of different fates meet, and the whole faces there.
+/// The vertices where a source's faces of different fates meet, and the whole faces there.
 #[derive(Debug, Default)]
 pub struct Rim {
-    /// By vertex, which of the above meet there.
+    /// By vertex, which of the bits above apply.
     touch: Vec<u8>,
     /// The whole faces with a mixed corner, ascending.
     near: Vec<FaceId>,
 }
 
 impl Rim {
-    /// The rim of a source's whole faces; nothing for a source of which nothing is left.
+    /// The rim of a source's whole faces; empty if nothing of the source is left.
     fn of(source: &Source, fates: &[Fate]) -> Self {
         let (Some(mesh), false) = (source.mesh(), fates.is_empty()) else {
             return Self::default();
@@ -205,7 +205,7 @@ impl Rim {
         rim
     }
 
-    /// Return whether a whole face has this corner.
+    /// Return whether a vertex is a corner of a whole face.
     pub fn is_used(&self, vertex: VertexId) -> bool {
         self.touch[vertex.place()] & (KEPT | TURNED) != 0
     }
@@ -215,7 +215,7 @@ impl Rim {
         self.used().filter(|used| *used).count()
     }
 
-    /// For each vertex whether a whole face has that corner.
+    /// For each vertex whether it is a corner of a whole face.
     pub fn used(&self) -> impl Iterator<Item = bool> + '_ {
         self.touch.iter().map(|touch| touch & (KEPT | TURNED) != 0)
     }
@@ -225,7 +225,7 @@ impl Rim {
         is_mixed(self.touch[vertex.place()])
     }
 
-    /// The half-edges of whole faces that have no opposite among those turned alike, ascending.
+    /// The half-edges of whole faces without an opposite of the same orientation, ascending.
     fn half_edges(&self, mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u32> {
         let mut halves: Vec<Half> = Vec::new();
         for &face in &self.near {
@@ -261,7 +261,7 @@ impl Rim {
     }
 }
 
-/// A half-edge of a whole face, to be sorted by its edge.
+/// A half-edge of a whole face, sorted by its edge.
 struct Half {
     edge: [VertexId; 2],
     turned: bool,

@@ -1,7 +1,7 @@
 //! Splitting of edges and vertices where a closed surface touches itself.
 //!
-//! Knows triangles by index, and of their geometry only what [`Radial`] answers. A half-edge and the
-//! corner it leaves share the number `3 t + k`, for corner `k` of triangle `t`. Invariant of the result:
+//! Knows triangles by index, and of their geometry only what [`Radial`] answers. Half-edge
+//! `3 t + k` leaves corner `k` of triangle `t`; the two share this number. Invariant of the result:
 //! every directed edge has exactly one opposite by index, and the triangles around a vertex form one fan.
 
 mod radial;
@@ -73,9 +73,9 @@ impl std::error::Error for Error {}
 
 /// Splits a closed surface until it is a manifold by index.
 ///
-/// At an edge of more than two triangles, two that bound the same wedge of the inside stay together.
-/// Where that would leave both copies of an edge with the same ends, which no vertex can tell apart, the
-/// two are exchanged so that the outside between them is what is separated.
+/// At an edge of more than two triangles, two that bound the same wedge of the inside stay
+/// together. If that would give two copies of an edge the same ends, so that vertices cannot tell
+/// them apart, their mates are exchanged: then the outside between them is separated.
 ///
 /// # Order
 /// Triangles keep their order. Copies are numbered by the first triangle that uses them.
@@ -264,7 +264,7 @@ fn next(half: usize) -> usize {
     }
 }
 
-/// The corners around a vertex, in groups that hang together.
+/// The corners around vertices, grouped into connected fans.
 struct Fans {
     /// Corner to fan.
     of: Vec<usize>,
@@ -298,8 +298,8 @@ impl Fans {
 
     /// Exchanges mates at an edge until no two of its copies have the same fans at both ends.
     ///
-    /// Exchanging the mates of two half-edges in one fan cuts the fan in two, at either end. Fans are only
-    /// ever cut, so copies once told apart stay so.
+    /// Exchanging the mates of two half-edges in one fan cuts the fan in two, at either end. Fans
+    /// are only ever cut, so distinct copies stay distinct.
     fn tell_apart(&mut self, surface: &mut Surface, forward: &[usize]) {
         for (i, &g) in forward.iter().enumerate() {
             for &h in &forward[i + 1..] {

@@ -18,7 +18,7 @@ use crate::mesh::finding::{Finding, Severity};
 use crate::mesh::handle::VertexId;
 
 /// Splits contacts, so that every directed edge has exactly one opposite by index and every vertex
-/// one fan; reports them. Copies of a vertex follow it.
+/// one fan, and reports them. Copies follow their vertex.
 pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let count = as_number(mesh.vertices.len());
     let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })
@@ -41,7 +41,7 @@ pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     Ok(())
 }
 
-/// Add a finding about vertices, given with their new numbers, if there are some.
+/// Adds a finding about vertices, given with their new numbers, if there are any.
 fn tell(
     mesh: &mut ExactMesh,
     code: &'static str,
@@ -81,11 +81,11 @@ pub(super) fn is_manifold(assembly: &Assembly) -> Result<bool, Failure> {
     Ok(single)
 }
 
-/// The corners at special vertices, by vertex: where their triangles go on, and come from.
+/// The corners at special vertices, by vertex: the next and the previous vertex of each triangle.
 struct Fans {
     starts: Vec<usize>,
     corners: Vec<[VertexId; 2]>,
-    /// Directed edges between other vertices, of triangles that have a special one.
+    /// Directed edges between other vertices, of triangles with a special vertex.
     apart: Vec<[VertexId; 2]>,
 }
 
@@ -129,7 +129,7 @@ impl Fans {
     }
 }
 
-/// Return whether as many triangles leave along each edge at a vertex as arrive.
+/// Return whether as many triangles leave as arrive along each edge at a vertex.
 fn is_balanced(fan: &[[VertexId; 2]]) -> bool {
     let mut starts: Vec<VertexId> = fan.iter().map(|c| c[0]).collect();
     let mut ends: Vec<VertexId> = fan.iter().map(|c| c[1]).collect();

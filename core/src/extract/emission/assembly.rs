@@ -1,4 +1,4 @@
-//! A mesh in the making: its vertices by number, whatever they were made from, and its triangles.
+//! A mesh under construction: its numbered vertices, of any origin, and its triangles.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, Slot, VertexId};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The mesh in the making.
+/// The mesh under construction.
 pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) sources: &'a Sources,
     pub(in crate::extract) table: VertexTable,
@@ -27,13 +27,13 @@ pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) vertices: Vec<Corner>,
     pub(in crate::extract) triangles: Vec<[VertexId; 3]>,
     pub(in crate::extract) faces: Vec<OrientedFace>,
-    /// The triangles, at the start, that are faces of sources as they came.
+    /// The triangles at the start, which are untouched faces of sources.
     pub(in crate::extract) untouched: Untouched,
     /// True if areas are compared, because faces of one plane might overlap.
     pub(in crate::extract) verify: bool,
 }
 
-/// Of a vertex that has no number yet.
+/// Marks a vertex without a number.
 pub(in crate::extract) const NONE: VertexId = VertexId(u32::MAX);
 
 impl<'a> Assembly<'a> {
@@ -56,7 +56,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The table number of a source's vertex; from now on the vertex is that point.
+    /// The table number of a source's vertex, which is that point from now on.
     pub(in crate::extract) fn point_of(
         &mut self,
         slot: Slot,
@@ -74,8 +74,8 @@ impl<'a> Assembly<'a> {
         point
     }
 
-    /// Remembers that a point is a vertex of a source; of several the first names it, whoever is
-    /// asked first.
+    /// Records that a point is a vertex of a source; the first of several names it, in any order of
+    /// calls.
     pub(in crate::extract) fn name(&mut self, point: u32, vertex: (Slot, VertexId)) {
         let name = self.names.entry(point).or_insert(vertex);
         *name = vertex.min(*name);
@@ -104,7 +104,7 @@ impl<'a> Assembly<'a> {
         self.vertices.len() - self.untouched.own_count()
     }
 
-    /// The place of a vertex among the special ones, if it is one.
+    /// The place of a vertex among the special ones, if it is special.
     pub(in crate::extract) fn special_place(&self, vertex: VertexId) -> Option<usize> {
         let others = &self.untouched.vertices;
         if vertex < others.start {
@@ -114,7 +114,7 @@ impl<'a> Assembly<'a> {
         }
     }
 
-    /// The special vertex in a place.
+    /// The special vertex at a place.
     pub(in crate::extract) fn special_vertex(&self, place: usize) -> VertexId {
         let before = place < self.untouched.vertices.start.place();
         VertexId::of(if before {
@@ -172,7 +172,7 @@ impl<'a> Assembly<'a> {
             }
         }
         given.sort_unstable();
-        // The others are in order already.
+        // The others are already in order.
         let Range { start, end } = self.untouched.vertices.clone();
         let own = &self.vertices[start.place()..end.place()];
         let mut order = Vec::with_capacity(own.len() + given.len() + points.len());

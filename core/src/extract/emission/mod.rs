@@ -1,4 +1,4 @@
-//! Triangles and vertices on their way out: whole faces, and polygons triangulated.
+//! The emission of triangles and vertices: whole faces, and triangulated polygons.
 
 pub(super) mod assembly;
 pub(super) mod origin;

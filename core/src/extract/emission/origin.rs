@@ -9,21 +9,21 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 use crate::mesh::source::Shape;
 
-/// Points that are looked for among all faces near them, at most: halving more costs less.
+/// At most this many points are compared with all faces near them: halving more costs less.
 const MAX_POINTS_UNHALVED: usize = 8;
 
-/// Halving points that leaves both halves together more sixteenths of the faces, seven of eight each,
-/// does not pay for itself.
+/// Halving points does not pay if the halves together keep more than this many sixteenths of the
+/// faces, seven of eight each.
 const LEFT: usize = 28;
 
 /// The share of the largest coordinate by which rounding may move a corner or a side.
 const ROUNDING: f64 = 1e-12;
 
-/// The faces of one plane in a projection, to be asked for those at points.
+/// The faces of one plane in a projection, for queries by point.
 ///
 /// A triangle of a joined polygon may lie in several faces; the face at its centre stands for it.
-/// Doubles decide, for nothing but the name depends on it. The first face counts that holds the centre
-/// but for rounding: so of faces on whose common edge it lies always the same.
+/// Doubles decide, because only the name depends on it. The first face that contains the centre up
+/// to rounding wins: so a centre on a common edge always gets the same one.
 pub struct Owners<'a> {
     group: &'a PlaneGroup,
     /// The corners of each face; none for a half-space, which is everywhere.
@@ -33,7 +33,7 @@ pub struct Owners<'a> {
 /// The least and the largest corner of a box.
 type Bounds = [[f64; 2]; 2];
 
-/// Points to be looked for, and the faces that may hold some, ascending.
+/// Points to locate, and the faces that may contain some of them, ascending.
 struct Search<'p> {
     points: &'p mut [(usize, [f64; 2])],
     faces: Vec<u32>,
@@ -53,8 +53,8 @@ impl<'a> Owners<'a> {
     /// The faces at the centres of triangles, or the first face if rounding finds none.
     ///
     /// # Cost
-    /// Points are halved with the faces that reach among them: each face is in as many parts as it
-    /// crosses, the root of their number if it is long.
+    /// Points are halved, each half with the faces that reach into it: a face is in as many parts
+    /// as it crosses, the root of their number if it is long.
     pub fn at_centres(&self, triangles: &[[u32; 3]], view: &Projection) -> Vec<OrientedFace> {
         let centre = |triangle: &[u32; 3]| {
             let corners = triangle.map(|p| view.approx(p));
@@ -87,7 +87,7 @@ impl<'a> Owners<'a> {
         }
     }
 
-    /// Two searches in place of one, or the one itself if that gains little.
+    /// Splits a search in two, or returns it if that gains little.
     fn halved<'p>(&self, search: Search<'p>) -> Result<[Search<'p>; 2], Search<'p>> {
         let Search { points, faces } = search;
         if points.len() <= MAX_POINTS_UNHALVED || faces.len() <= MAX_POINTS_UNHALVED {
@@ -110,14 +110,14 @@ impl<'a> Owners<'a> {
         Err(Search { points, faces })
     }
 
-    /// Those of some faces that may hold a point of a box.
+    /// Those of `faces` that may contain a point of a box.
     fn reaching(&self, faces: &[u32], bounds: &Bounds) -> Vec<u32> {
         let faces = faces.iter().copied();
         faces.filter(|face| self.reaches(*face, bounds)).collect()
     }
 
-    /// Return false only if a face leaves out a box; a point is left out if it lies outside by more
-    /// than rounding.
+    /// Return false only if a face misses a box; it misses a point only if that lies outside by
+    /// more than rounding.
     fn reaches(&self, face: u32, bounds: &Bounds) -> bool {
         let corners = self.corners[face as usize];
         corners.is_none_or(|corners| may_meet(&corners, bounds))
@@ -143,7 +143,7 @@ fn turn([a, b]: [[f64; 2]; 2], p: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
 }
 
-/// Return false only if the box of a triangle, or one of its sides, leaves a box out.
+/// Return false only if the box of a triangle, or one of its sides, separates it from a box.
 fn may_meet(corners: &[[f64; 2]; 3], [low, high]: &Bounds) -> bool {
     let largest = corners
         .iter()

@@ -1,4 +1,4 @@
-//! Polygons of a mesh in the making, triangulated: plane groups, and whole faces with new vertices.
+//! Triangulated polygons of a mesh under construction: plane groups, and split whole faces.
 
 use std::sync::Arc;
 
@@ -61,7 +61,7 @@ impl Assembly<'_> {
         Ok(())
     }
 
-    /// Triangulates the groups; each is given up as soon as that is done.
+    /// Triangulates the groups; frees each one as soon as it is done.
     pub(in crate::extract) fn emit_groups(
         &mut self,
         groups: Vec<PlaneGroup>,
@@ -114,7 +114,7 @@ impl Assembly<'_> {
         Ok(triangles.into_iter().zip(faces).collect())
     }
 
-    /// The triangles of a region in a plane, which some faces make up.
+    /// The triangles of a region in a plane, made up of `faces`.
     fn triangulated(
         &self,
         plane: &Plane,

@@ -1,4 +1,4 @@
-//! Whole faces on their way out: the bulk of most meshes, in linear passes.
+//! The emission of whole faces: the bulk of most meshes, in linear passes.
 
 use std::ops::Range;
 
@@ -12,14 +12,14 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The triangles at the start of a mesh that are faces of sources as they came.
+/// The triangles at the start of a mesh, which are untouched faces of sources.
 #[derive(Debug, Default)]
 pub struct Untouched {
-    /// The vertices that only such triangles have.
+    /// The vertices that only such triangles use.
     pub vertices: Range<VertexId>,
     /// The number of triangles.
     pub count: usize,
-    /// Those with other vertices, too, ascending.
+    /// The triangles that also have other vertices, ascending.
     pub special: Vec<u32>,
 }
 
@@ -32,7 +32,7 @@ struct Task<'a> {
     faces: &'a mut [OrientedFace],
 }
 
-/// A source of which the whole faces are to be emitted.
+/// A source whose whole faces are to be emitted.
 pub struct Emitted<'a> {
     /// Its slot.
     pub slot: Slot,
@@ -43,7 +43,7 @@ pub struct Emitted<'a> {
 }
 
 impl Untouched {
-    /// No triangles yet; these are the vertices they have for themselves.
+    /// Starts without triangles; `vertices` are those that only they will use.
     pub fn new(vertices: Range<VertexId>) -> Self {
         Self {
             vertices,
@@ -51,7 +51,7 @@ impl Untouched {
         }
     }
 
-    /// The number of those vertices.
+    /// The number of these vertices.
     pub fn own_count(&self) -> usize {
         self.vertices.end.place() - self.vertices.start.place()
     }
@@ -101,7 +101,7 @@ impl Untouched {
 }
 
 impl Task<'_> {
-    /// Fills in the triangles; returns the numbers of those with other vertices than `own`.
+    /// Fills in the triangles; returns the numbers of those with vertices outside `own`.
     fn run(self, source: &Emitted, own: &Range<VertexId>) -> Vec<u32> {
         let mut special = Vec::new();
         let out = self.triangles.iter_mut().zip(self.faces.iter_mut());

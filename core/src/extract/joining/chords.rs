@@ -1,4 +1,4 @@
-//! Polygons divided where edges of other faces lie in the middle of them.
+//! Division of polygons along edges of other faces in the middle of them.
 
 use std::sync::Arc;
 
@@ -32,7 +32,7 @@ impl EdgeContact {
         [self.face, first, second]
     }
 
-    /// The edge as it divides the polygon of the face that it lies in.
+    /// The edge as a chord that divides the polygon of the face it lies in.
     pub fn chord(&self, sources: &Sources) -> Chord {
         let [beside, _] = self.beside;
         Chord {
@@ -50,27 +50,27 @@ pub struct Chord {
 }
 
 impl Chord {
-    /// Return whether the ends lie on the minus and on the plus side of a plane; neither if the plane
-    /// holds the chord.
+    /// Return whether an end lies on the minus side and on the plus side of a plane; neither if the
+    /// plane contains the chord.
     fn reaches(&self, plane: &Plane) -> [bool; 2] {
         let sides = self.ends.each_ref().map(|end| end.side_of(plane));
         [Side::Minus, Side::Plus].map(|side| sides.contains(&side))
     }
 }
 
-/// A part of a group that is to be divided further.
+/// A part of a group that may be divided further.
 struct Part {
     edges: Vec<BareEdge>,
     faces: SmallVec<[OrientedFace; 2]>,
     chords: Vec<Chord>,
 }
 
-/// Divide a group along chords, each lengthened to the ends of the part it lies in: a planar
-/// autopartition by the chords. Adds the lines of those that divided something.
+/// Divides a group along chords, each extended to the ends of the part it lies in: a planar
+/// autopartition. Adds the lines of the chords that divided something.
 ///
 /// # Cost
-/// Each part is looked through for each chord that divides it. The middle one comes first: then
-/// parallel ones in their order halve their number, and others do in general.
+/// Each part is traversed for each chord that divides it. The middle chord comes first: it halves
+/// the number of sorted parallel chords, and in general that of others.
 ///
 /// # Source
 /// Thibault, Naylor 1987 (autopartition).
@@ -106,7 +106,7 @@ pub fn divided(
 }
 
 impl Part {
-    /// The part on the minus side of a plane across the group's, and that on the plus side.
+    /// The parts on the minus and on the plus side of a plane across the group's.
     fn halved(self, support: &Arc<Plane>, cut: &Arc<Plane>, sources: &Sources) -> [Self; 2] {
         let mut halves = halves(self.edges, support, cut).map(|edges| Self {
             edges,
@@ -131,7 +131,7 @@ impl Part {
     }
 }
 
-/// Return whether a face lies on the minus and on the plus side of a plane across it.
+/// Return whether a face reaches the minus and the plus side of a plane across it.
 fn reaches(face: OrientedFace, plane: &Plane, sources: &Sources) -> [bool; 2] {
     let Some(mesh) = sources.get(face.slot()).mesh() else {
         // A half-space's face is everywhere.

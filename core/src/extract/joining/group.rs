@@ -9,7 +9,7 @@ use crate::geometry::outline::{BareEdge, Outline};
 use crate::geometry::plane::Plane;
 use crate::mesh::handle::OrientedFace;
 
-/// All boundary in one oriented plane that is not left as it came.
+/// All boundary in one oriented plane except for untouched faces.
 #[derive(Debug)]
 pub struct PlaneGroup {
     /// The plane, inside on its minus side.

@@ -1,13 +1,13 @@
-//! Patches: the faces of one plane that may become one polygon, and where that is divided.
+//! Patches: the faces of one plane that may become one polygon, and where it is divided.
 
 use super::chords::EdgeContact;
 use crate::mesh::handle::SourceFace;
 use crate::mesh::source::Source;
 
-/// The patch of each face, by its source's slot and the number it had in its input.
+/// The patch of each face, by its source's slot and its number in the input.
 ///
-/// Faces of different patches are never joined, so that each triangle lies in one face of those
-/// whose data differ. Whoever has no patches says nothing, and joins everything in a plane.
+/// Faces of different patches are never joined, so that each triangle lies in one of the faces
+/// whose data differ. Without patches all faces in a plane are joined.
 ///
 /// # Example
 /// ```
@@ -31,11 +31,11 @@ pub struct Patches {
     contacts: Vec<EdgeContact>,
 }
 
-/// The patch of faces of sources that nothing is said about.
+/// The patch of faces of sources without patches.
 const COMMON: u32 = u32::MAX;
 
 impl Patches {
-    /// The patches of the faces of each source; `None` where nothing is said.
+    /// The patches of the faces of each source; `None` for a source without patches.
     pub fn new(patches: Vec<Option<Vec<u32>>>) -> Self {
         Self {
             by_slot: patches,
@@ -43,7 +43,7 @@ impl Patches {
         }
     }
 
-    /// The same patches, each polygon divided where an edge lies in the middle of it.
+    /// The same patches, with each polygon divided at the edges in the middle of it.
     #[must_use]
     pub fn divided(&self, contacts: &[EdgeContact]) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl Patches {
         }
     }
 
-    /// The edges that lie in the middle of polygons, which are to be divided there.
+    /// The edges in the middle of polygons, which are divided there.
     pub fn contacts(&self) -> &[EdgeContact] {
         &self.contacts
     }

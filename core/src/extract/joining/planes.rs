@@ -20,7 +20,7 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::{OrientedFace, SourceFace};
 
-/// A group in the making.
+/// A group under construction.
 struct Gathered {
     plane: Arc<Plane>,
     patch: u32,
@@ -29,7 +29,7 @@ struct Gathered {
     cut: SmallVec<[Outline; 1]>,
     /// The edges of whole faces.
     whole: Vec<OutlineEdge>,
-    /// The chords that divide the group again.
+    /// The chords that divide the group afterwards.
     chords: Vec<Chord>,
 }
 
@@ -51,7 +51,7 @@ impl Gathered {
     }
 }
 
-/// Groups in the making.
+/// Groups under construction.
 struct Grouping<'a> {
     sources: &'a Sources,
     patches: &'a Patches,
@@ -77,8 +77,8 @@ pub struct Joined {
 
 /// Joins cut faces by plane.
 ///
-/// Faces of different patches are not joined. Without `join` each cut face stays on its own, as it
-/// must where faces of one plane may overlap.
+/// Faces of different patches are not joined. Without `join` each cut face stays on its own, as is
+/// necessary where faces of one plane may overlap.
 pub fn group(boundary: Boundary, sources: &Sources, patches: &Patches, join: bool) -> Joined {
     let count = boundary.cut.len();
     let mut grouping = Grouping {
@@ -108,7 +108,7 @@ pub fn group(boundary: Boundary, sources: &Sources, patches: &Patches, join: boo
 }
 
 impl Grouping<'_> {
-    /// The groups in the end.
+    /// The finished groups.
     fn joined(self) -> Joined {
         let (mut groups, mut chords) = (Vec::with_capacity(self.groups.len()), Vec::new());
         for mut gathered in self.groups {
@@ -135,7 +135,7 @@ impl Grouping<'_> {
         }
     }
 
-    /// Takes the faces at a contact into groups, and divides the one that the edge lies in.
+    /// Puts the faces at a contact into groups, and divides the one that contains the edge.
     fn add_contact(&mut self, contact: &EdgeContact) {
         for face in contact.faces() {
             if self.fates[face.face] == Fate::Whole(face.orientation) {
@@ -196,8 +196,7 @@ impl Grouping<'_> {
         self.patches.of(face.face, self.sources.get(face.slot()))
     }
 
-    /// Return whether a face lies in the plane of a group, is turned as the group is, and of its
-    /// patch.
+    /// Return whether a face lies in the plane of a group, with its orientation and its patch.
     fn lies_in(&self, face: OrientedFace, group: usize) -> bool {
         let Some(mesh) = self.sources.get(face.slot()).mesh() else {
             return false;
@@ -237,7 +236,7 @@ impl Grouping<'_> {
         self.open.push((face, group));
     }
 
-    /// Absorbs the whole faces that continue a group's faces across an edge in the same plane.
+    /// Absorbs the whole faces that continue a group's faces in its plane across an edge.
     fn spread(&mut self) {
         while let Some((face, group)) = self.open.pop() {
             poll();
@@ -255,7 +254,7 @@ impl Grouping<'_> {
         self.rims.renew(&self.fates, self.sources);
     }
 
-    /// Absorbs whole faces that share a line and a plane with others of another source or part.
+    /// Absorbs whole faces that share a line and a plane with faces of another source or part.
     fn absorb_seams(&mut self) {
         let candidates = self.candidates();
         // Faces that are alone in their plane share no line there.
@@ -299,7 +298,7 @@ impl Grouping<'_> {
         }
     }
 
-    /// The edges in which whole faces end, with the groups of the faces' planes; by group.
+    /// The edges where whole faces end, with the groups of their planes, sorted by group.
     fn candidates(&mut self) -> Vec<Candidate> {
         let frontier = self.rims.frontier(&self.fates, self.sources);
         let mut candidates: Vec<Candidate> = Vec::with_capacity(frontier.len());
@@ -361,7 +360,7 @@ mod tests {
 
     #[test]
     fn cut_faces_of_one_plane_are_joined() {
-        // Side by side with common floors and ceilings, one reaching into the other.
+        // Side by side with common floors and ceilings, one extending into the other.
         let boxes = [cuboid([0; 3], [6, 4, 4]), cuboid([3, 0, 0], [9, 4, 4])];
         let joined = sizes(&boxes, true);
         assert!(joined.len() < sizes(&boxes, false).len());

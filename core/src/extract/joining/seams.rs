@@ -1,4 +1,4 @@
-//! No T-junctions: edges that do not pair are subdivided along their lines until they do.
+//! Removal of T-junctions: edges that do not pair are subdivided along their lines until they do.
 
 use std::sync::Arc;
 
@@ -26,9 +26,9 @@ pub struct Edge {
     pub to: u32,
 }
 
-/// For the edges at which there are any, the points at which they must be subdivided.
+/// The points at which edges must be subdivided, for the edges that have any.
 ///
-/// Opposite edges with equal ends pair and stay. The others still form a closed chain, for a
+/// Opposite edges with equal ends pair and stay. The others still form a closed chain, because a
 /// boundary has no boundary: subdivided at each other's ends, line by line, they pair too.
 pub fn subdivisions(
     edges: &[Edge],
@@ -58,9 +58,9 @@ struct Boxed<'a> {
 
 /// Adds the points at which a polygon touches or crosses itself inside edges, by line.
 ///
-/// Such an edge must have the point as a vertex, on both its sides, or the polygon cannot be
+/// Such an edge must have the point as a vertex on both its sides, or the polygon cannot be
 /// triangulated. Edges of one polygon cross where three or more lines meet and the wedges between
-/// them are in and out by turns.
+/// them are alternately in and out.
 pub fn find_touching(
     edges: &[Edge],
     group: &mut PlaneGroup,
@@ -128,7 +128,8 @@ impl<'a> Boxed<'a> {
     }
 }
 
-/// The edges left after opposite ones with equal ends cancel, and all on lines with touching points.
+/// The edges left after opposites with equal ends cancel, and all edges on lines with touching
+/// points.
 fn unpaired(
     edges: &[Edge],
     line: &mut impl FnMut(usize) -> LineKey,
@@ -146,7 +147,7 @@ fn unpaired(
     keyed.collect()
 }
 
-/// Mark the edges that have an opposite one with equal ends for themselves.
+/// Mark the edges that each have an opposite of their own with equal ends.
 fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     let mut paired = vec![false; edges.len()];
     let mut waiting: Vec<u32> = Vec::new();
@@ -172,7 +173,7 @@ fn paired(edges: &[Edge], points: usize) -> Vec<bool> {
     paired
 }
 
-/// The edges sorted by the lower number of their ends, and where those of each number start.
+/// The edges sorted by the lower number of their ends, and where the run of each number starts.
 fn by_lower_end(edges: &[Edge], points: usize) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; points + 1];
     for edge in edges {

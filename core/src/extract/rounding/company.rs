@@ -1,4 +1,4 @@
-//! The triangles of a mesh that lie so near others that the two may meet, by a coarse grid.
+//! The triangles of a mesh near enough to others to meet them, by a coarse grid.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -17,7 +17,7 @@ const FINEST: usize = 32;
 /// much. A grid of four cells along an axis has no more.
 const SPREAD: usize = 64;
 
-/// The triangles that are not among some, ascending, but may meet one of them or a triangle of
+/// The triangles outside `some`, which is ascending, that may meet one of these or a triangle of
 /// another party; with their parties, ascending.
 ///
 /// # Cost
@@ -48,7 +48,7 @@ pub fn in_company(
     near
 }
 
-/// The number of a cell of the grid: so many bits for each axis.
+/// The number of a cell of the grid: its place along each axis in equally many bits.
 type Cell = u16;
 
 /// The cells of a grid in which the corners of triangles lie.
@@ -59,7 +59,7 @@ struct Cells<'a> {
     bits: u32,
 }
 
-/// The mark of cells with triangles of several parties, or with one of those that are asked about.
+/// The mark of cells with triangles of several parties, or with one of `some`.
 const SHARED: u32 = u32::MAX;
 
 /// For each cell the party whose triangles reach into it, from 1 on; 0 if none do.
@@ -92,7 +92,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Makes one cell of two along each axis.
+    /// Merges cells in pairs along each axis.
     fn double(&mut self) {
         let bits = self.bits - 1;
         let doubled = |cell| number(self.place(cell).map(|k| k >> 1), bits);
@@ -130,7 +130,7 @@ impl<'a> Cells<'a> {
         (all && self.mark(&marks, shared, some.len())).then_some(marks)
     }
 
-    /// Marks the cells of so many triangles; says whether they reach into few enough.
+    /// Marks the cells of `count` triangles; returns whether they reach into few enough.
     fn mark(
         &self,
         marks: &Marks,
@@ -168,8 +168,7 @@ impl<'a> Cells<'a> {
         near.concat()
     }
 
-    /// Return whether something holds for the marks in one of the rows of cells that a triangle may
-    /// reach into.
+    /// Return whether `holds` is true for one of the rows of cells that a triangle may reach into.
     #[inline]
     fn any_row(
         &self,
@@ -217,7 +216,7 @@ fn along_axis(place: f64, bits: u32) -> Cell {
     (place as Cell).min((1 << bits) - 1)
 }
 
-/// Marks a cell with a party, too. Whoever does so first, the mark becomes the same.
+/// Marks a cell with a party. The mark does not depend on the order of calls.
 #[inline]
 fn join(mark: &AtomicU32, party: u32) {
     let mut old = mark.load(Ordering::Relaxed);
@@ -235,7 +234,7 @@ mod tests {
     use super::*;
     use crate::geometry::doubles::extent::Extent;
 
-    /// Small triangles in a cube, their places taken from numbers that look random.
+    /// Small triangles at pseudorandom places in a cube.
     fn scattered(count: u32) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         let mut numbers = std::iter::successors(Some(7), next).map(|x| f64::from(x >> 8) / 2e7);

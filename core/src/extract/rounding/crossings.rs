@@ -40,11 +40,10 @@ impl Faults {
     }
 }
 
-/// The faults of some triangles, ascending, among themselves and with all others, and those of
-/// other triangles of different parties.
+/// The faults of `some` triangles, ascending, among themselves and with all others, and those
+/// between other triangles of different parties.
 ///
-/// Others of one party, such as the faces of one input that are as they came, are not compared with
-/// each other.
+/// Others of one party, such as the untouched faces of one input, are not compared with each other.
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
@@ -65,8 +64,8 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + S
     Faults { crossings, flat }
 }
 
-/// Some triangles by parties, and those that have no area: each is a party of its own, but for those
-/// of one terrain, which do not cross each other.
+/// The triangles of `some` with area, by party, and those without. Each is a party of its own, but
+/// a terrain is one: its triangles do not cross each other.
 fn parties(faces: &Faces, some: &[u32]) -> (Vec<(u32, u32)>, Vec<u32>) {
     let pieces = terrains(faces, some);
     let alone = as_number(some.len());
@@ -87,8 +86,8 @@ pub fn all_faults(faces: &Faces) -> Faults {
     faults(faces, &all, |_| 0)
 }
 
-/// The pairs of triangles of a mesh that are neither clearly apart, but for a common corner, nor mates
-/// at an edge; the lower first, in ascending order.
+/// The pairs of triangles that are neither mates at an edge nor clearly apart up to a common
+/// corner; the lower first, in ascending order.
 ///
 /// # Cost
 /// That of `all_faults`.
@@ -103,10 +102,10 @@ pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
     ascending(Search::among::<Close>(&candidates).0)
 }
 
-/// Those of some pairs of triangles that cross or overlap, in ascending order.
+/// Those of `pairs` of triangles that cross or overlap, in ascending order.
 ///
 /// # Cost
-/// A look at each pair, and a pass over the triangles if some meet along edges.
+/// One comparison per pair, and a pass over the triangles if some meet along edges.
 pub fn crossings_among(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
     let mut found = Found::default();
     for pair in pairs {
@@ -128,7 +127,7 @@ fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
 /// Triangles that one thread compares: half a millisecond of work or more.
 const SHARE: usize = 512;
 
-/// Pairs that are looked at together, by several threads where there are any.
+/// Pairs that are compared together, by several threads if there are any.
 const BATCH: usize = 8 * CHUNK;
 
 /// A triangle that is compared with others.
@@ -149,7 +148,7 @@ impl Candidate {
         }
     }
 
-    /// The same, of a party with a number so much higher.
+    /// The same with the number of its party raised by `first`.
     fn after(self, first: u32) -> Self {
         let party = first + self.party;
         Self { party, ..self }
@@ -177,7 +176,7 @@ trait Kept: Default + Send {
     /// Looks at a pair.
     fn look_at(&mut self, p: &Candidate, q: &Candidate);
 
-    /// These findings, and others.
+    /// Merges these findings with others.
     fn with(self, others: Self) -> Self;
 }
 
@@ -185,7 +184,7 @@ trait Kept: Default + Send {
 #[derive(Default)]
 struct Found {
     crossings: Vec<[u32; 2]>,
-    /// Pairs that meet along edges: the neighbours there say whether surfaces cross.
+    /// Pairs that meet along edges: the neighbours there decide whether surfaces cross.
     doubtful: Vec<([u32; 2], Meeting)>,
 }
 
@@ -241,7 +240,7 @@ fn ordered<'a>(p: &'a Candidate, q: &'a Candidate) -> [&'a Candidate; 2] {
 }
 
 impl Found {
-    /// The crossings in ascending order, with those of the doubtful pairs that are some.
+    /// The crossings in ascending order, including the doubtful pairs that cross.
     fn settled(mut self, faces: &Faces) -> Vec<[u32; 2]> {
         self.crossings.extend(crossing(faces, self.doubtful));
         ascending(self.crossings)
@@ -257,7 +256,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Look at the pairs of candidates of different parties that may meet.
+    /// Compare the pairs of candidates of different parties that may meet.
     fn among<K: Kept>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {
@@ -316,7 +315,7 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// Look at pairs that may meet.
+    /// Compare pairs that may meet.
     fn look_at<K: Kept>(&self, pairs: &[[u32; 2]], found: &mut K) {
         let looked = each_chunk(pairs, |_, pairs| {
             spend(pairs.len());
@@ -359,7 +358,7 @@ mod tests {
         assert!(faults_of_two(9.0).is_empty());
     }
 
-    /// Triangles within so many steps of a grid, which meet in all ways, turned by an angle.
+    /// Triangles on a grid of few steps, which meet in all ways, turned by an angle.
     fn soup(count: u32, steps: u32, angle: f64) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         let mut numbers = std::iter::successors(Some(7), next).map(|x| x >> 8);

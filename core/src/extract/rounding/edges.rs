@@ -9,8 +9,8 @@ use crate::geometry::doubles::Triangle;
 use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 
-/// Return whether surfaces cross where two triangles meet like this; `sheets` gives those at an edge
-/// of the first or the second. What has no neighbour crosses what it lies in.
+/// Return whether surfaces cross where two triangles meet; `sheets` gives the sheets at an edge of
+/// the first or the second. A triangle without a neighbour at an edge crosses what that lies in.
 pub fn crosses_at(
     meeting: Meeting,
     [p, q]: &[Triangle; 2],
@@ -25,10 +25,10 @@ pub fn crosses_at(
     }
 }
 
-/// Return those of some pairs of triangles that meet along edges at which surfaces cross.
+/// Return those of `pairs` that meet along edges at which surfaces cross.
 ///
 /// # Cost
-/// A pass over the triangles, and for each edge and what it meets the sheets there once, sorted.
+/// A pass over the triangles; the sheets at each edge and what it meets are sorted once.
 pub fn crossing(faces: &Faces, mut pairs: Vec<([u32; 2], Meeting)>) -> Vec<[u32; 2]> {
     let there = AtEdges::of(faces, &pairs);
     let mut known = HashMap::default();
@@ -156,8 +156,8 @@ mod tests {
         [0.0, -3.0, -1.0],
     ];
 
-    /// The number of crossings of the tetrahedron with wedges at the edge, which have vertices 4 and
-    /// 5 and these, in any order of their triangles.
+    /// The number of crossings of the tetrahedron with wedges at the edge from vertex 4 to 5, given
+    /// by their other vertices, in any order of their triangles.
     fn crossings_with(wedges: &[[u32; 2]]) -> usize {
         let tetrahedron = |v: [u32; 4]| TETRAHEDRON.map(|t| t.map(|k| v[k as usize]));
         let wedge = |[a, b]: &[u32; 2]| tetrahedron([4, 5, *a, *b]);
@@ -176,8 +176,8 @@ mod tests {
         first
     }
 
-    // Found: where vertices were joined by their places, as readers of STL join them,
-    // `Mesh.certificate` told of crossings at edges of four triangles that only touch.
+    // Found: where vertices were joined by place, as STL readers do, `Mesh.certificate` reported
+    // crossings at edges of four triangles that only touch.
     #[test]
     fn wedges_that_share_an_edge_touch_what_it_lies_in() {
         assert_eq!(crossings_with(&[[6, 7]]), 0);

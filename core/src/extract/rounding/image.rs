@@ -1,8 +1,8 @@
-//! The image of triangles on integers, turned so that many of them are flat along an axis there.
+//! The image of triangles in integers, rotated so that many of them are flat along an axis.
 //!
-//! Boxes around what is flat along an axis overlap little, but those around triangles that lie askew
-//! overlap all that is near. What has walls at right angles mostly lies askew as a whole, and so do
-//! the needles along a cylinder.
+//! Boxes around triangles that are flat along an axis overlap little; boxes around oblique ones
+//! overlap everything near. A body with walls at right angles is mostly oblique as a whole, and so
+//! are the needles along a cylinder.
 
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
@@ -12,23 +12,23 @@ use crate::geometry::doubles::{Point, Triangle};
 use crate::geometry::plane::Lattice;
 use crate::mesh::terrains::is_needle;
 
-/// So many triangles tell how all of them lie.
+/// The number of triangles sampled to find the axes.
 const SAMPLE: usize = 64;
 
-/// Axes are turned if they suit one in so many triangles.
+/// Axes are rotated if they suit at least one in this many triangles.
 const SUITED: usize = 4;
 
-/// Directions this close, as a cosine or its complement, count as one, or as perpendicular: what is
-/// off by this share of its length is as good as flat in a sweep.
+/// Directions this close, as a cosine or its complement, count as perpendicular or as one: a
+/// triangle off by this share of its length is as good as flat in a sweep.
 const CLOSE: f64 = 1e-6;
 
-/// Lines whose directions have a larger cosine are taken for one: seen across both, lengths shrink to less
-/// than a twentieth, and what turning rounds must stay far below a step.
+/// Lines whose directions have a larger cosine count as one: seen across both, lengths shrink to
+/// less than a twentieth, and the rounding of a rotation must stay far below a step.
 const APART: f64 = 0.99;
 
 /// A linear image of triangles.
 ///
-/// Boxes that overlap do so in it: where it is turned, they are widened by more than its rounding.
+/// Boxes that overlap also do in it: if it is rotated, they are widened by more than its rounding.
 pub struct Image {
     /// A point near the triangles, and the directions that become axes; `None` if they are axes.
     frame: Option<(Point, [Point; 3])>,
@@ -59,7 +59,7 @@ impl Image {
             frame,
             extents,
             low: whole.low,
-            // A mesh in one place, or too small to be told apart, has one image.
+            // A mesh in one place, or too small to resolve, has one point as its image.
             factor: if factor.is_finite() { factor } else { 0.0 },
         })
     }
@@ -76,7 +76,7 @@ impl Image {
             each_axis(|i| as_whole(image[i]) + wider)
         };
         let extent = &self.extents[triangle as usize];
-        // Turning rounds by some units in the last place of the size, which are far below a step.
+        // Rotation is off by some units in the last place of the size, far below a step.
         let wider = i64::from(self.frame.is_some());
         (whole(&extent.low, -wider), whole(&extent.high, wider))
     }
@@ -98,8 +98,8 @@ fn unit(v: Point) -> Option<Point> {
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))
 }
 
-/// Three directions at right angles, along the first two of which most of some normals lie; `None` if
-/// they suit few of them, or are axes.
+/// Three directions at right angles, the first two of which are the most common normals; `None` if
+/// they suit few normals, or are axes.
 fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     if normals.iter().all(is_axis) {
         return None;
@@ -113,10 +113,11 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
     Some([first, second, cross(&first, &second)])
 }
 
-/// Three directions across the needles among some triangles; `None` if needles along two lines are few,
-/// or lie along axes.
+/// Three directions across the needles among triangles; `None` if needles along two lines are few,
+/// or all needles lie along axes.
 ///
-/// What is long along one of the lines is thin as seen across both, and across this one in their plane.
+/// A needle along one of the lines is thin seen across both, and seen in their plane across its
+/// own.
 fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     let needles: Vec<Point> = sample.iter().filter_map(bearing).collect();
     if SUITED * needles.len() < sample.len() || needles.iter().all(is_axis) {
@@ -134,8 +135,8 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
     Some([across, in_plane(&first), third])
 }
 
-/// The direction of a needle, `None` of another triangle: that of the second longest edge. The longest
-/// one is the diagonal between neighbours.
+/// The direction of the second longest edge of a needle; `None` for other triangles. The longest
+/// edge is the diagonal between neighbours.
 fn bearing(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
     let mut edges = [less(b, a), less(c, b), less(a, c)];
@@ -152,8 +153,7 @@ fn beside([x, y, _]: &Point) -> Point {
     }
 }
 
-/// The one of some directions along which most of them lie, among those that are fit; of equally good
-/// ones the first.
+/// The fit direction along which most of the directions lie; of equally good ones the first.
 fn most_common(directions: &[Point], is_fit: impl Fn(&Point) -> bool) -> Option<Point> {
     let fit = directions.iter().rev().filter(|a| is_fit(a));
     fit.max_by_key(|a| count_along(a, directions)).copied()

@@ -1,4 +1,4 @@
-//! About where triangles cross each other.
+//! Approximate places where triangles cross.
 
 use std::cmp::Ordering;
 
@@ -8,18 +8,17 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::faces::Faces;
 
-/// For each pair of triangles that cross, a point about in the middle of what they have in common.
+/// For each pair of triangles that cross, a point near the middle of their intersection.
 pub fn places(faces: &Faces, found: &Faults) -> Vec<Point> {
     let place = |[t, u]: &[u32; 2]| middle(&faces.corners(*t), &faces.corners(*u));
     found.crossings.iter().map(place).collect()
 }
 
-/// The middle of the stretch that two triangles have in common, rounded; some corner if they have
-/// none.
+/// The rounded middle of the segment that two triangles share; some corner if they share none.
 fn middle(p: &Triangle, q: &Triangle) -> Point {
     let mut ends: Vec<Point> = through(p, q).chain(through(q, p)).collect();
-    // All lie on one line, so they stand there in lexicographic order, and what is common to both
-    // stretches lies between the inner two.
+    // All lie on one line, so lexicographic order is their order on it, and the common stretch lies
+    // between the inner two.
     ends.sort_by(in_order);
     match ends.len() {
         0 => p[0],

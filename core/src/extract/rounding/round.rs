@@ -1,4 +1,4 @@
-//! From exact vertices to doubles: the only rounding, and what it did.
+//! From exact vertices to doubles: the only rounding, and its effects.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -98,7 +98,7 @@ pub fn mesh_of_patches(solid: &Solid, patches: &Patches) -> Result<Mesh> {
     Ok(mesh)
 }
 
-/// For each face the slot of its source and the number it had in its input, and whether it is turned.
+/// For each face the slot of its source and its number in the input, and whether it is turned.
 fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>) {
     let mut origins = Vec::with_capacity(faces.len());
     for run in faces.chunk_by(|a, b| a.slot() == b.slot()) {
@@ -112,9 +112,9 @@ fn names(faces: &[OrientedFace], sources: &Sources) -> (Vec<[u32; 2]>, Vec<bool>
 
 /// Mends the crossings that rounding made.
 ///
-/// Triangles that are not as they came are compared with all near them, and faces of different
-/// parties with each other: on the lattice they do not cross, but their given doubles may. Where they
-/// do cross on the lattice, because an input overlaps itself, the mesh stays as it is, and is told.
+/// Compares triangles that are not untouched faces with all near them, and faces of different
+/// parties with each other: on the lattice they do not cross, but their given doubles may. If they
+/// do cross there, because an input overlaps itself, the mesh stays as it is, which is reported.
 fn settle_mesh(
     mesh: &mut Mesh,
     solid: &Solid,
@@ -197,8 +197,8 @@ fn parties(mesh: &Mesh, exact: &ExactMesh) -> Vec<u32> {
         .collect()
 }
 
-/// The triangles that are faces as they came, but for a corner that was welded with one of other
-/// doubles, ascending.
+/// The triangles that are untouched faces with a corner that was welded with one of other doubles,
+/// ascending.
 fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
     let mut first = 0;
@@ -219,7 +219,7 @@ fn at_blurred(solid: &Solid, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// The triangles that are faces as they came, but cross others where a motion has taken them; ascending.
+/// The triangles that are untouched faces, but cross others after a motion; ascending.
 fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let mut found = Vec::new();
     let mut first = 0;
@@ -237,8 +237,8 @@ fn where_moving_crosses(sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     found
 }
 
-/// The triangles that are faces as they came, but for a corner at which another vertex lies on the
-/// lattice, and has given it other doubles; ascending.
+/// The triangles that are untouched faces, but have a corner with the doubles of another vertex at
+/// its lattice point; ascending.
 fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec<u32> {
     let bits = |p: &[f64; 3]| p.map(f64::to_bits);
     let has_others = |t: &u32| {
@@ -253,8 +253,8 @@ fn with_others_corners(mesh: &Mesh, sources: &Sources, exact: &ExactMesh) -> Vec
     exact.special.iter().copied().filter(has_others).collect()
 }
 
-/// Leaves out the triangles that mending removed, and vertices that no triangle uses any more;
-/// returns the new numbers of triangles.
+/// Drops the triangles that mending removed, and unused vertices; returns the new numbers of
+/// triangles.
 fn drop_removed(mesh: &mut Mesh) -> Vec<u64> {
     let next = |next: &mut u64, t: &[VertexId; 3]| {
         *next += u64::from(is_left(t));
@@ -288,7 +288,7 @@ fn drop_unused(mesh: &mut Mesh) {
         .retain(|_| kept.next().copied().unwrap_or(false));
 }
 
-/// For each vertex whether a triangle has it that was not removed.
+/// For each vertex whether a remaining triangle uses it.
 fn used(mesh: &Mesh) -> Vec<bool> {
     let mut used = vec![false; mesh.vertices.len()];
     for v in mesh.triangles.iter().filter(|t| is_left(t)).flatten() {
@@ -310,7 +310,7 @@ fn tell_moved(mesh: &mut Mesh, moved: &[VertexId]) {
     }
 }
 
-/// Reports the vertices that lie where others are.
+/// Reports the vertices that share a place.
 fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mended: bool) {
     let used = if is_mended { used(mesh) } else { Vec::new() };
     let is_used = |v: u32| !is_mended || used[v as usize];
@@ -332,8 +332,8 @@ fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mende
     }
 }
 
-/// Reports the triangles that rounding changed, by what became of them; `numbers` are their new
-/// ones, if some were removed.
+/// Reports the triangles that rounding changed, by outcome; `numbers` are their new numbers, if
+/// some were removed.
 fn report(mesh: &mut Mesh, swapped: &[u64], turned: &[u64], settled: &Settled, numbers: &[u64]) {
     let number = |t: &u64| numbers.get(as_place(*t)).copied().unwrap_or(*t);
     let numbered = |ids: &[u64]| ids.iter().map(number).collect::<Vec<u64>>();

@@ -1,4 +1,4 @@
-//! Makes a rounded mesh an embedded one: finds the crossings that rounding made, and mends them.
+//! Makes a rounded mesh embedded: finds and mends the crossings that rounding made.
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
@@ -16,12 +16,12 @@ use crate::mesh::handle::VertexId;
 use crate::mesh::snap::snap_all;
 use crate::mesh::triangles::firsts;
 
-/// Rounds of finding and mending: each mends what it found, and the next looks at what that moved.
+/// Rounds of finding and mending: each mends what it found, the next checks what that moved.
 const ROUNDS: usize = 4;
 
-/// Pairs that cross, for each triangle, that moving a mesh is mended of. Surfaces that touched cross
-/// along curves, in fewer pairs than there are triangles; in more, they lie on each other as a whole,
-/// and no change of the width of the rounding parts them.
+/// The most crossing pairs, per triangle, for which a moved mesh is mended. Surfaces that touched
+/// cross along curves, in fewer pairs than there are triangles. With more, they lie on each other
+/// as a whole, and no change as small as the rounding separates them.
 const MOST_CROSSINGS: usize = 1;
 
 /// A mesh whose vertices were rounded, closed by index.
@@ -33,25 +33,25 @@ pub struct Rounded {
     pub triangles: Vec<[VertexId; 3]>,
 }
 
-/// A mesh that was settled, and what is known of it.
+/// The outcome of settling a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
     /// The number of triangles that were compared with all near them.
     pub compared: usize,
-    /// The triangles that were changed, ascending; removed ones, too.
+    /// The triangles that were changed, ascending, including removed ones.
     pub mended: Vec<u32>,
-    /// Vertices put where the exact surface has them, ascending.
+    /// Vertices moved to their exact places, ascending.
     pub moved: Vec<VertexId>,
     /// The faults that could not be mended.
     pub left: Faults,
-    /// The faults that are there on the lattice, too, and stay.
+    /// The faults that exist on the lattice too, and stay.
     pub own: Faults,
 }
 
-/// Mends what can be mended of the faults found of changed triangles, ascending.
+/// Mends the faults found of changed triangles, ascending, as far as possible.
 ///
 /// `exact` gives the place of a vertex on the lattice, if its input had it elsewhere: there the
-/// surfaces do not cross. `given` tells vertices of inputs.
+/// surfaces do not cross. `given` marks vertices of inputs.
 pub fn settle(
     mesh: &mut Rounded,
     mut changed: Vec<u32>,
@@ -107,12 +107,12 @@ pub fn settle_in_single(mesh: &mut Rounded) -> Settled {
     settle(mesh, changed, found, single, |_| None, |_| false, |_| 0)
 }
 
-/// Mends what moving the vertices of a mesh made cross; `before` has their old places. Where this leaves
-/// crossings, it is tried again from the lattice.
+/// Mends crossings made by moving the vertices of a mesh; `before` has their old places. If this
+/// leaves crossings, tries again from the lattice.
 ///
-/// A mesh that crossed itself there before stays as it is (`own`), and so does one of which the map
-/// laid surfaces on each other (`left`). One that is not closed by index is welded
-/// first, as import does; it stays as it is if that does not close it.
+/// A mesh that crossed itself there before stays as it is (`own`), and so does one whose surfaces
+/// the map laid on each other (`left`). A mesh that is not closed by index is first welded, as on
+/// import; it stays as it is if that does not close it.
 pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settled {
     if !is_closed(&mesh.triangles) && !mesh.weld(pitch) {
         return Settled::default();
@@ -155,8 +155,8 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
 }
 
 impl Rounded {
-    /// Makes the vertices at one place of the lattice one, and removes triangles that then have a
-    /// corner twice; says whether the others are closed by index.
+    /// Welds the vertices at each lattice point, and removes triangles with a repeated corner;
+    /// returns whether the others are closed by index.
     fn weld(&mut self, pitch: Pitch) -> bool {
         let Ok(places) = snap_all(&self.vertices, pitch) else {
             return false;
@@ -178,7 +178,7 @@ impl Rounded {
         settle(self, all, found, double, exact, |_| false, |_| 0)
     }
 
-    /// Mends faults of all triangles; first it puts their corners on the lattice.
+    /// Puts the corners of faulty triangles on the lattice, then mends faults of all triangles.
     fn settle_from_lattice(&mut self, found: Faults, pitch: Pitch) -> Settled {
         let given = self.vertices.clone();
         let on_lattice = |v: VertexId| {
@@ -204,8 +204,8 @@ impl Rounded {
         faults(&self.faces(), changed, &party)
     }
 
-    /// Return the faults that `faults` would, if these were found before some triangles were touched:
-    /// only what these and their mates have to do with is compared anew.
+    /// Return what `faults` would, given the faults found before some triangles were touched:
+    /// compares only these and their mates anew.
     fn faults_after(
         &self,
         found: &Faults,
@@ -262,7 +262,7 @@ impl Rounded {
         a == b
     }
 
-    /// Moves the corners of faulty triangles to where the exact surface has them.
+    /// Moves the corners of faulty triangles to their exact places; returns the moved ones.
     fn move_corners(
         &mut self,
         found: &Faults,
@@ -327,7 +327,7 @@ impl Rounded {
         self.take_back(&mending, &part, &some)
     }
 
-    /// Takes what was mended back into the mesh.
+    /// Copies a mended part back into the mesh; returns the triangles changed.
     fn take_back(&mut self, mending: &Mending, part: &Part, some: &[u32]) -> Vec<u32> {
         let mut globals = part.globals.clone();
         let first = self.vertices.len() - globals.len();
@@ -413,7 +413,7 @@ fn members(found: &Faults) -> impl Iterator<Item = u32> + '_ {
     pairs.chain(&found.flat).copied()
 }
 
-/// Two ascending lists as one.
+/// Merges two ascending lists.
 fn merged<T: Copy + Ord>(a: &[T], b: &[T]) -> Vec<T> {
     let mut all = [a, b].concat();
     all.sort_unstable();

@@ -1,9 +1,9 @@
-//! Meshes that cross themselves once their doubles give way to those of the lattice.
+//! Meshes that cross themselves once the lattice's doubles replace their own.
 //!
-//! A motion of the lattice keeps the doubles on axes along which it shifts nothing. On the others it
-//! snaps each vertex by itself, so that surfaces that touched may cross. Places of the lattice are
-//! rounded to doubles in their turn, each shift in another way: what touches on the lattice is looked
-//! at wherever it is made into a mesh.
+//! A motion of the lattice keeps the doubles on axes along which it shifts nothing. On the others
+//! it snaps each vertex by itself, so that surfaces that touched may cross. Places of the lattice
+//! are rounded to doubles in turn, differently for each shift: faces that touch on the lattice are
+//! compared whenever they are made into a mesh.
 
 use super::crossings::{all_faults, close_pairs, crossings_among, faults, Faults};
 use crate::arith::convert::as_double;
@@ -16,7 +16,7 @@ use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::solid::Solid;
 
-/// Look for the faces of a solid's meshes that touch, before a motion takes them elsewhere.
+/// Find the faces of a solid's meshes that touch, before a motion moves them.
 pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
     if motion.shifted() != [false; 3] {
         for source in solid.sources().iter() {
@@ -27,9 +27,9 @@ pub fn look_at_contacts(solid: &Solid, motion: &Motion) {
     }
 }
 
-/// The faces of a mesh that cross others in its doubles, of close pairs of faces; ascending.
+/// The faces among close pairs that cross others in the doubles of a mesh; ascending.
 ///
-/// They are there where a motion took the mesh to places that were rounded anew.
+/// A motion to places that were rounded anew may cause them.
 pub fn crossing_faces(mesh: &TriangleMesh, pairs: &[[u32; 2]]) -> Vec<u32> {
     let faces = Faces {
         vertices: &mesh.doubles,
@@ -68,15 +68,15 @@ fn close_on_lattice(mesh: &TriangleMesh) -> Vec<[u32; 2]> {
     pairs
 }
 
-/// Return whether a mesh of a solid crosses itself once its doubles along some axes are those of the
-/// lattice, where it did not before.
+/// Return whether a mesh of a solid newly crosses itself once its doubles along some axes are those
+/// of the lattice.
 pub fn crosses_once_snapped(solid: &Solid, axes: [bool; 3]) -> bool {
-    // What is reduced does not cross itself on the lattice.
+    // A reduced solid does not cross itself on the lattice.
     let is_known = axes == [true; 3] && solid.is_reduced();
     !is_known && solid.sources().iter().any(|s| source_crosses(s, axes))
 }
 
-/// Looks once for each source and choice of axes.
+/// Computed once for each source and choice of axes.
 fn source_crosses(source: &Source, axes: [bool; 3]) -> bool {
     let crosses = |mesh| {
         let known = source.crosses_once_snapped(axes);
@@ -107,7 +107,7 @@ fn mesh_crosses(mesh: &TriangleMesh, source: &Source, axes: [bool; 3]) -> bool {
     };
     let mut found = all_faults(&faces);
     let any = !found.crossings.is_empty();
-    // Around welded vertices the faces are not those that were given.
+    // Faces at welded vertices are not as they were given.
     let is_blurred = |t: &u32| {
         let corners = mesh.faces[*t as usize];
         corners.iter().any(|v| blurred.binary_search(v).is_ok())
@@ -120,7 +120,7 @@ fn mesh_crosses(mesh: &TriangleMesh, source: &Source, axes: [bool; 3]) -> bool {
     any && !crossed(&before, &found)
 }
 
-/// Return whether triangles that cross others elsewhere cross some in these places, too.
+/// Return whether triangles found to cross others also cross some in these places.
 pub fn crossed(before: &Faces, found: &Faults) -> bool {
     let mut some: Vec<u32> = found.crossings.iter().flatten().copied().collect();
     some.sort_unstable();

@@ -1,6 +1,6 @@
-//! The test whether a mesh in doubles is star-shaped, by the argument of the one for meshes on the
-//! lattice (`merge::arrangement::star`): where a point lies behind the planes of all faces, and a ray from
-//! it leaves through one of them, no two cross.
+//! The test of whether a mesh in doubles is star-shaped, by the same argument as for meshes on the
+//! lattice (`merge::arrangement::star`): if a point lies behind the planes of all faces, and a ray
+//! from it leaves through exactly one, no two cross.
 
 use crate::arith::convert::{as_double, as_number};
 use crate::arith::{Filtered, Sign};
@@ -14,7 +14,7 @@ use crate::mesh::faces::Faces;
 /// negatives.
 ///
 /// # Cost
-/// One look at each triangle, up to the first that the mean is not clearly behind.
+/// One test per triangle, up to the first that the mean is not clearly behind.
 pub fn is_star_shaped(faces: &Faces) -> bool {
     let eye = mean(faces.vertices);
     let mut left = 0;
@@ -37,7 +37,7 @@ fn mean(points: &[Point]) -> Point {
 /// Return whether the ray along the first axis from a point behind a triangle leaves through it:
 /// along this axis its corners are then seen to wind to the left around the point.
 ///
-/// Of triangles that share an edge or a corner which the ray meets, one is left.
+/// Of triangles that share an edge or a corner on the ray, it leaves through one.
 fn is_left_by(triangle: &Triangle, eye: &Point) -> bool {
     let [a, b, c] = seen_along(triangle, 0);
     let place = [eye[1], eye[2]];

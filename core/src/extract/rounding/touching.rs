@@ -13,18 +13,18 @@ use crate::mesh::tasks::{each_chunk, CHUNK};
 /// The digits of a place.
 type Digits = [u64; 3];
 
-/// Vertices that have the place of another, by what has put them there; each list ascends.
+/// Vertices that share a place, by cause; each list ascends.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Touching {
-    /// All at places of which rounding, or mending it, has put one there.
+    /// Those at places where rounding, or mending it, has put at least one.
     pub rounded: Vec<u64>,
-    /// All at places where an input has several.
+    /// Those at places where every vertex is given.
     pub given: Vec<u64>,
 }
 
-/// The vertices in use that have the place of another, but for copies that splitting a contact made.
+/// The used vertices that share a place, except for copies made by splitting a contact.
 ///
-/// Vertices without a corner are copies that mending made. `is_given` tells vertices that are where
+/// Vertices without a corner are copies that mending made. `is_given` marks vertices that are where
 /// their input has them.
 ///
 /// # Cost
@@ -57,7 +57,7 @@ pub fn touching(
     found
 }
 
-/// The vertices in use that have the place of others, and few others, with their places.
+/// The used vertices that share a place, and few others, with their places.
 fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(Digits, u32)> {
     let places = repeated(vertices);
     if places.is_empty() {
@@ -77,7 +77,7 @@ fn candidates(vertices: &[Point], is_used: impl Fn(u32) -> bool + Sync) -> Vec<(
     found.concat()
 }
 
-/// The places of several vertices, and few others.
+/// The places with several vertices, and few others.
 fn repeated(vertices: &[Point]) -> HashSet<Digits> {
     let mut filter = Filter::for_places(vertices.len());
     let mut places = HashSet::default();
@@ -89,17 +89,17 @@ fn repeated(vertices: &[Point]) -> HashSet<Digits> {
     places
 }
 
-/// Bits by which most places are told not to be in a set.
+/// A filter that rules out most places that are not in a set.
 struct Filter {
     words: Vec<u64>,
     shift: u32,
 }
 
 impl Filter {
-    /// Bits for each place in the set: one in so many others looks as if it were there.
+    /// Bits per place in the set: one in this many others passes as well.
     const ROOM: usize = 16;
 
-    /// The places in a word.
+    /// The bits in a word.
     const WORD: u32 = u64::BITS;
 
     fn for_places(count: usize) -> Self {
@@ -118,7 +118,7 @@ impl Filter {
         filter
     }
 
-    /// Puts a place into the set; says whether it was surely not there.
+    /// Adds a place; returns true if it was surely not there.
     #[inline]
     fn add(&mut self, place: &Digits) -> bool {
         let (word, bit) = self.at(place);

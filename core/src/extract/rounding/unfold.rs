@@ -1,4 +1,4 @@
-//! Triangles that rounding to doubles turned over, put right by swapping edges.
+//! Triangles that rounding to doubles turned over, corrected by swapping edges.
 //!
 //! A constructed vertex moves by half a unit in its last place at most. A triangle narrower than
 //! that may turn over; together with a neighbour of its plane it mostly has another diagonal with
@@ -28,7 +28,7 @@ pub struct Unfolded {
     pub left: Vec<u64>,
 }
 
-/// Swaps edges inside planes until no triangle, or none that this could help, faces the wrong way.
+/// Swaps edges inside planes until no swap helps a triangle that faces the wrong way.
 ///
 /// # Order
 /// Triangles by their numbers, and in each the edges from its first corner on.
@@ -124,7 +124,7 @@ impl<'a> Surface<'a> {
         self.planes.is_turned(self.mesh, triangle)
     }
 
-    /// Puts the other diagonal into the two triangles beside an edge, if fewer are turned then.
+    /// Swaps the diagonal of the two triangles at an edge, if fewer are turned then.
     fn swap(&mut self, half: usize) -> Option<[usize; 2]> {
         let corner = |h: usize| self.mesh.triangles[h / 3][h % 3];
         let next = |h: usize| h - h % 3 + (h % 3 + 1) % 3;

@@ -1,9 +1,9 @@
 //! Meshes of faces perpendicular to axes, which rounding cannot make cross.
 //!
-//! Where rounding keeps the order of different coordinates on each axis, it is a map of space that
-//! stretches and shrinks along the axes. It takes walls to walls, and what does not cross to what
-//! does not cross: the parts of a plane end at edges along axes, and these are what the map makes of
-//! them. Inside such a part triangles overlap only if one of them is turned over.
+//! If rounding keeps the order of different coordinates on each axis, it is a map of space that
+//! stretches and shrinks along the axes. It takes walls to walls, and surfaces that do not cross to
+//! such surfaces: the parts of a plane end at edges along axes, and the map takes these to the
+//! edges of the images. Inside such a part triangles overlap only if one is turned over.
 
 #![allow(
     clippy::float_cmp,
@@ -19,13 +19,13 @@ use crate::merge::lists::list::Sources;
 use crate::mesh::faces::Faces;
 use crate::mesh::grid::Pitch;
 
-/// Different coordinates up to so many steps have different nearest doubles: one step is at least
+/// Different coordinates up to this many steps have different nearest doubles: one step is at least
 /// two spacings of the doubles there.
 const DISTINCT: u64 = 1 << 51;
 
-/// Return whether the triangles of a rounded mesh cannot cross unless they do so on the lattice, since
-/// they are perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and
-/// none is turned over; may return false negatives.
+/// Return whether the triangles of a rounded mesh cross only if they do so on the lattice: they are
+/// perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and none is
+/// turned over. May return false negatives.
 pub fn keeps_order(faces: &Faces, exact: &ExactMesh, sources: &Sources, pitch: Pitch) -> bool {
     let mut triangles = (0..).zip(&exact.faces);
     let mut vertices = exact.vertices.iter().zip(faces.vertices);
@@ -74,7 +74,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, tetrahedra};
     use crate::tree::solid::Solid;
 
-    /// Return whether the mesh of a solid keeps its order, if vertices are put elsewhere first.
+    /// Return whether the mesh of a solid keeps its order after moving vertices.
     fn keeps(solid: &Solid, put: impl FnOnce(&mut [Point])) -> bool {
         let exact = assemble(solid).expect("bounded");
         let sources = Sources::new(solid.sources().clone());

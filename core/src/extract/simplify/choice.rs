@@ -1,4 +1,4 @@
-//! The changes that are possible in a round, and a choice that can be made at the same time.
+//! The possible changes in a round, and a choice of independent ones.
 
 use super::edit::{Act, Edit, Limits, MOST_AROUND};
 use super::sizes::{height, lengths};
@@ -9,7 +9,7 @@ use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 
-/// Something to do, after the length or the height it is about.
+/// A change to try, after the length or height that it is about.
 type Wanted = (f64, Act);
 
 impl Surface<'_> {
@@ -61,15 +61,15 @@ impl Surface<'_> {
 
 /// The changes of a round.
 pub struct Chosen {
-    /// Changes of which none has to know of another.
+    /// Changes that are independent of each other.
     pub edits: Vec<Edit>,
     /// Changes that may be possible once these are made.
     pub waiting: Vec<Act>,
 }
 
-/// Chooses what to do, in order, as much as fits beside each other.
+/// Chooses independent changes greedily, in the given order.
 ///
-/// Flips, which come last, wait until no edge can be collapsed: that needs less of the tolerance.
+/// Flips, which come last, wait until no edge can be collapsed: collapses use less tolerance.
 pub fn chosen(limits: &Limits, wanted: &[Act], is_refused: impl Fn(&Act) -> bool) -> Chosen {
     let mut locks = vec![Lock::default(); limits.surface.vertices.len()];
     let mut chosen = Chosen {
@@ -100,22 +100,22 @@ fn is_flip(act: &Act) -> bool {
     matches!(act, Act::Flip(_))
 }
 
-/// The claims on a vertex of changes that were chosen.
+/// The claims of chosen changes on a vertex.
 #[derive(Clone, Copy, Default)]
 struct Lock {
-    /// It goes, or something comes to it.
+    /// It is an end of a collapsed edge.
     ends: bool,
-    /// It is a neighbour of one that goes.
+    /// It is a neighbour of a removed vertex.
     beside: bool,
     /// It is a corner of triangles whose edge is flipped.
     turns: bool,
 }
 
-/// Return whether something has to wait.
+/// Return whether a change must wait.
 ///
-/// A collapse reads the neighbours of both ends and the triangles around the one that goes; a flip
-/// reads its two triangles, whether their apexes are joined, and what came to its corners. Neither
-/// may change for another's sake.
+/// A collapse reads the neighbours of both ends and the triangles around the removed one; a flip
+/// reads its two triangles, whether their apexes are joined, and what came to its corners. No other
+/// change may alter what it reads.
 fn is_locked(surface: &Surface, locks: &[Lock], act: &Act) -> bool {
     let at = |v: &VertexId| locks[v.place()];
     match act {
@@ -158,7 +158,7 @@ mod tests {
     use super::super::drift::Drift;
     use super::*;
 
-    /// A tetrahedron, one of whose edges a vertex divides a hair beside its end.
+    /// A tetrahedron with a vertex on one edge, very close to its end.
     const PLACES: [[f64; 3]; 5] = [
         [0.0; 3],
         [1.0, 0.0, 0.0],

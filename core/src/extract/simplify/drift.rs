@@ -1,13 +1,13 @@
-//! A bound of the distance between the old surface and the new one.
+//! A bound on the distance between the old surface and the new one.
 //!
 //! There is a map from the old surface onto the new one that is affine on each triangle: a collapse
-//! takes the vertex, and with it the triangles around, to where the other end of the edge is. So each
-//! old vertex goes to a new one, every point goes no farther than the farthest corner of its
-//! triangle, and as the map is onto, the same holds from the new surface to the old one.
+//! moves the vertex, and with it the triangles around, to the other end of the edge. So each old
+//! vertex goes to a new one, and no point moves farther than the farthest corner of its triangle.
+//! The map is onto, so the same bound holds from the new surface to the old one.
 //!
-//! A flip divides the long edge of a sliver first, next to the third corner, and then collapses the
-//! point in the edge onto that corner. The point becomes a vertex of the old surface, too; where it
-//! lies there is known as well as the ends of the edge are, and that is its slack.
+//! A flip first divides the long edge of a sliver, next to the third corner, and then collapses the
+//! new point onto that corner. The point also becomes a vertex of the old surface. Its place there
+//! is known only as well as the ends of the edge are: that is its slack.
 
 use super::sizes::distance_above;
 use crate::arith::convert::as_number;
@@ -17,7 +17,7 @@ use crate::mesh::handle::VertexId;
 /// The drift of each vertex: what has come to it.
 pub struct Drift {
     witnesses: Vec<Witness>,
-    /// For each vertex how far the old surface that came to it may be.
+    /// For each vertex a bound on the distance of what came to it.
     bounds: Vec<f64>,
 }
 
@@ -25,7 +25,7 @@ pub struct Drift {
 /// vertex itself has its own number.
 struct Witness {
     place: Point,
-    /// The distance from the place at which it may lie.
+    /// How far from the place it may lie.
     slack: f64,
     next: u32,
 }
@@ -53,12 +53,12 @@ impl Drift {
         }
     }
 
-    /// Return a bound of the distance of what came to a vertex from it.
+    /// Bound the distance from a vertex of what came to it.
     pub fn at(&self, v: VertexId) -> f64 {
         self.bounds[v.place()]
     }
 
-    /// Return the bound at this vertex once more comes; `None` beyond a limit.
+    /// Return the bound at a vertex after an arrival; `None` beyond a limit.
     pub fn with(&self, (to, place): (VertexId, &Point), coming: Coming, limit: f64) -> Option<f64> {
         let far = match coming {
             Coming::Vertex(v) => self.farthest(v, place, limit)?,
@@ -67,7 +67,7 @@ impl Drift {
         (far <= limit).then(|| far.max(self.at(to)))
     }
 
-    /// Return the largest distance of what came to a vertex from a place; `None` beyond a limit.
+    /// Return the largest distance from a place of what came to a vertex; `None` beyond a limit.
     fn farthest(&self, v: VertexId, place: &Point, limit: f64) -> Option<f64> {
         let mut farthest = 0.0f64;
         let mut at = v.0;
@@ -84,7 +84,7 @@ impl Drift {
         }
     }
 
-    /// Has something come to a vertex, which may then be so far from it.
+    /// Records an arrival at a vertex, and the bound after it.
     pub fn follow(&mut self, to: VertexId, coming: Coming, bound: f64) {
         let to = to.place();
         let from = match coming {
@@ -100,7 +100,7 @@ impl Drift {
         self.bounds[to] = bound;
     }
 
-    /// Return a bound of the distance of any point from the other surface.
+    /// Bound the distance of any point from the other surface.
     pub fn bound(&self) -> f64 {
         self.bounds.iter().fold(0.0, |m, b| m.max(*b))
     }
@@ -138,7 +138,7 @@ mod tests {
             1.0
         ));
         drift.follow(VertexId(1), Coming::Vertex(VertexId(0)), 1.0);
-        // Not the sum of the ways, 1 + 2, but where the first vertex came from.
+        // Not the sum of the ways, 1 + 2, but the distance to the first vertex.
         assert!(near(
             drift.with((VertexId(2), &ROW[2]), Coming::Vertex(VertexId(1)), 9.0),
             3.0

@@ -1,4 +1,4 @@
-//! Changes that mend a short edge or a sliver, and whether they may be made.
+//! Changes that mend a short edge or a sliver, and whether they are allowed.
 
 use super::drift::{Coming, Drift};
 use super::sizes::{height, rounding_of, swept};
@@ -7,14 +7,14 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{is_flat, Triangle};
 use crate::mesh::handle::VertexId;
 
-/// A vertex of more triangles stays: looking at each edge of a hub costs as much as the hub has.
+/// A vertex of more triangles stays: checking each edge of a hub costs a pass over all of them.
 pub const MOST_AROUND: usize = 64;
 
-/// Triangles lower than this part of the tolerance are not made, unless one was as low before: lower
-/// than what corners that gather leave behind, they would not go away by more of that.
+/// Triangles lower than this part of the tolerance are not made, unless one was as low before: they
+/// are lower than those that gathering corners leave, and further collapses would not remove them.
 const LEAST_HEIGHT: f64 = 0.25;
 
-/// Something to do, by its vertices.
+/// A change to try, by its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Act {
     /// An edge becomes one of its ends.
@@ -23,18 +23,18 @@ pub enum Act {
     Flip([VertexId; 4]),
 }
 
-/// A change that keeps the surface closed, with one fan at each vertex, and near.
+/// A change that keeps the surface closed and near, with one fan at each vertex.
 #[derive(Clone, Debug)]
 pub struct Edit {
     /// The change.
     pub act: Act,
-    /// The triangles, with what becomes of them; those that vanish have one corner three times.
+    /// The triangles with their new corners; vanishing ones have one corner three times.
     pub changes: Vec<(u32, [VertexId; 3])>,
     /// The vertex to which a part of the surface comes.
     pub target: VertexId,
     /// The old point that comes to it.
     pub coming: Coming,
-    /// The bound of the old surface's distance afterwards.
+    /// The bound on the drift at the target afterwards.
     pub bound: f64,
     /// Six times the volume between the old and the new surface.
     swept: f64,
@@ -57,7 +57,7 @@ impl Edit {
         left.flatten()
     }
 
-    /// The vertex that goes, if one does.
+    /// The removed vertex, if any.
     pub fn going(&self) -> Option<VertexId> {
         match self.act {
             Act::Collapse([from, _]) => Some(from),
@@ -86,7 +86,7 @@ pub struct Limits<'a> {
 }
 
 impl Limits<'_> {
-    /// The change for something to do; `None` if it may not be done.
+    /// The edit that makes a change; `None` if it is not allowed.
     pub fn edit(&self, act: Act, is_refused: impl Fn(&Act) -> bool) -> Option<Edit> {
         match act {
             Act::Collapse([a, b]) => {
@@ -100,7 +100,7 @@ impl Limits<'_> {
         }
     }
 
-    /// A vertex goes to the other end of an edge.
+    /// Moves a vertex to the other end of an edge.
     fn collapse(&self, act: Act) -> Option<Edit> {
         let Act::Collapse([from, to]) = act else {
             return None;
@@ -127,7 +127,7 @@ impl Limits<'_> {
         (least >= before).then_some(edit)
     }
 
-    /// Adds what becomes of a triangle; returns its height, `None` if it may not become that.
+    /// Adds the change of a triangle; returns its new height, `None` if it is not allowed.
     fn change(&self, edit: &mut Edit, t: u32, [from, to]: [VertexId; 2]) -> Option<f64> {
         let old = self.surface.triangles[t as usize];
         if old.contains(&to) {
@@ -143,8 +143,8 @@ impl Limits<'_> {
         self.is_fit(&corners, &moved).then(|| height(&moved))
     }
 
-    /// The link condition: two vertices that are ends of an edge have no other neighbours in common
-    /// than the third corners of the two triangles there, and more than these.
+    /// The link condition: the ends of an edge have exactly two neighbours in common, the third
+    /// corners of its triangles, and are not those of a tetrahedron.
     fn may_be_joined(&self, from: VertexId, to: VertexId) -> bool {
         let surface = self.surface;
         let others = surface.neighbours(from).filter(|v| *v != to);
@@ -154,13 +154,13 @@ impl Limits<'_> {
     }
 
     /// Return whether a triangle may become another: it has area and does not turn over. A sliver
-    /// may turn, for it has no side to speak of.
+    /// may turn over, because its side means little.
     fn is_fit(&self, old: &Triangle, new: &Triangle) -> bool {
         let turns = || dot(&normal(old), &normal(new)) <= 0.0;
         !is_flat(new) && (height(old) <= self.tolerance || !turns())
     }
 
-    /// The other diagonal of two triangles, one of them a sliver.
+    /// Swaps the diagonal of two triangles, one of them a sliver.
     fn flip(&self, [a, b, c, d]: [VertexId; 4]) -> Option<Edit> {
         let surface = self.surface;
         if c == d || surface.are_joined(c, d) {
@@ -185,7 +185,7 @@ impl Limits<'_> {
         })
     }
 
-    /// The point of the edge a → b next to c, if it is inside.
+    /// The point of the edge a → b nearest to c, if it is inside.
     fn beside(&self, [a, b, c]: [VertexId; 3]) -> Option<Coming> {
         let [p, q, r] = [a, b, c].map(|v| self.surface.place(v));
         let along = less(q, p);

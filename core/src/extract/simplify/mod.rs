@@ -1,16 +1,16 @@
-//! Short edges and slivers taken out of a mesh, no farther than a tolerance.
+//! Removal of short edges and slivers from a mesh, within a tolerance.
 //!
-//! An edge is short if it is no longer than the tolerance, a triangle is a sliver if its height is
-//! no more than that. Short edges are collapsed and the long edges of slivers flipped, in rounds of
-//! changes that do not touch each other; after each round what changed is compared exactly with all
-//! near it, and what made surfaces cross is taken back.
+//! An edge is short if it is no longer than the tolerance, a triangle is a sliver if it is no
+//! higher than that. Rounds of independent changes collapse short edges and flip the long edges of
+//! slivers. After each round changed triangles are compared exactly with all near them, and changes
+//! that made surfaces cross are undone.
 //!
 //! Vertices stay where they are. [`Drift`] proves how far the surface moved.
 //!
 //! # Cost
-//! A round is linear in the mesh and takes a maximal set of changes: each that waits is next to one
-//! that was made. So a share of those that wait is decided in each round, and rounds grow with the
-//! logarithm of the mesh.
+//! A round is linear in the mesh and makes a maximal set of changes: each waiting one is next to
+//! one that was made. So each round decides a share of the waiting ones, and the number of rounds
+//! grows with the logarithm of the mesh.
 //!
 //! # Source
 //! Half-edge collapses under the link condition as in Dey, Edelsbrunner, Guha and Nekhayev,

@@ -1,4 +1,4 @@
-//! The proof that changes leave the surface free of crossings, exactly; others are taken back.
+//! The exact proof that changes make no crossings; those that do are undone.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -9,10 +9,10 @@ use crate::geometry::doubles::Point;
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
 
-/// Makes changes; returns those that stay, and what had to be taken back.
+/// Makes changes; returns those that stay, and those that were undone.
 ///
-/// Only triangles as they have become can cross something; what is as it was is not judged. Each turn
-/// of the loop takes back at least one change.
+/// Only triangles that just changed can cross something, so only these are checked. Each pass of
+/// the loop undoes at least one change.
 pub fn proved(
     vertices: &[Point],
     triangles: &mut [[VertexId; 3]],
@@ -72,7 +72,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Makes the changes; returns the triangles that are others now, ascending.
+    /// Makes the changes; returns the changed triangles, ascending.
     fn apply(&mut self) -> Vec<u32> {
         let mut changed = Vec::new();
         let staying = self.edits.iter().zip(&self.stays).filter(|e| *e.1);
@@ -86,7 +86,7 @@ impl<'a> Trial<'a> {
         changed
     }
 
-    /// The changes that make one of some triangles, ascending, cross something.
+    /// The changes that make one of `some` triangles cross something, ascending.
     fn crossing(&self, some: &[u32]) -> Vec<usize> {
         let faces = Faces {
             vertices: self.vertices,
@@ -101,14 +101,14 @@ impl<'a> Trial<'a> {
         guilty
     }
 
-    /// The changes to shells that they have turned inside out.
+    /// The changes to shells that are now inside out.
     fn turning(&self, shells: &Shells) -> Vec<usize> {
         let turned = shells.turned(self.vertices, self.triangles);
         let is_turning = |k: &usize| self.stays[*k] && turned[shells.of_edit(&self.edits[*k])];
         (0..self.edits.len()).filter(is_turning).collect()
     }
 
-    /// Makes triangles what they were before some changes; returns them, ascending.
+    /// Undoes changes; returns the restored triangles, ascending.
     fn take_back(&mut self, some: &[usize]) -> Vec<u32> {
         let mut restored = Vec::new();
         for k in some {

@@ -13,14 +13,14 @@ use crate::mesh::import::import;
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
-/// Lattices that are tried, by how many powers of ten they are finer than the solid's own: rounding
-/// leaves triangles lower than a step, down to some last places of doubles.
+/// The lattices to try, by how many powers of ten they are finer than the solid's own: rounding
+/// leaves triangles lower than a step, down to a few last places of doubles.
 const FINER: [i64; 3] = [0, 3, 6];
 
 /// The solid of a bounded solid's mesh without short edges and slivers.
 ///
-/// `None` if it has none to remove, or if no lattice holds what is left as it is: then parts of the
-/// surface would vanish that lie closer together than its step.
+/// `None` if it has none to remove, or if no lattice represents the result as it is: parts of the
+/// surface that lie closer together than its step would vanish.
 ///
 /// # Errors
 /// `Unbounded`; `Internal`.

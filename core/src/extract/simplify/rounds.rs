@@ -15,8 +15,8 @@ use crate::geometry::doubles::Point;
 use crate::mesh::handle::VertexId;
 use crate::mesh::tasks::each_chunk;
 
-/// Rounds after which what still waits is left. A vertex has six neighbours on average, so that a
-/// change keeps some twenty others waiting: of a million, less than one waits longer than this.
+/// The most rounds; changes that still wait then are not made. A vertex has six neighbours on
+/// average, so that a change blocks some twenty others: of a million, less than one waits longer.
 const ROUNDS: usize = 256;
 
 /// A mesh that was simplified.
@@ -28,7 +28,7 @@ pub struct Simplified {
     pub triangles: Vec<[VertexId; 3]>,
     /// No point of either surface is farther than this from the other.
     pub bound: f64,
-    /// Triangles that are slivers or have a short edge still, ascending.
+    /// Triangles that are still slivers or have a short edge, ascending.
     pub left: Vec<u32>,
     /// True if anything was changed.
     pub changed: bool,
@@ -65,7 +65,7 @@ struct Simplifying {
     tolerance: f64,
     drift: Drift,
     shells: Shells,
-    /// Vertices around which something may be done: their surroundings changed, or something waits.
+    /// Vertices near possible changes: their surroundings changed, or a change waits.
     awake: Vec<bool>,
     /// Changes that made surfaces cross.
     refused: HashSet<Act>,
@@ -86,7 +86,7 @@ impl Simplifying {
         }
     }
 
-    /// Makes as many changes as fit beside each other; says whether there may be more to do.
+    /// Makes a maximal set of independent changes; returns whether more may follow.
     fn round(&mut self) -> bool {
         let surface = Surface::of(&self.vertices, &self.triangles);
         let awake = std::mem::replace(&mut self.awake, vec![false; self.vertices.len()]);
@@ -193,7 +193,7 @@ mod tests {
         let fan = [[4, 5, 8], [5, 7, 8], [7, 6, 8], [6, 4, 8]];
         let (vertices, triangles) = cube(&[[0.003, 0.004, 1.0]], &fan);
         let made = simplify(vertices.clone(), triangles, 0.01);
-        // Of the two ends the one inside the face goes, which changes no volume.
+        // Of the two ends the one inside the face is removed, which changes no volume.
         assert_eq!(made.vertices, vertices[..8]);
         assert!(made.bound >= 0.005 && made.bound < 0.005_000_001);
         assert!(made.triangles.len() == 12 && made.left.is_empty() && is_sound(&made));

@@ -1,7 +1,7 @@
 //! The connected parts of a surface, which neither turn inside out nor pass through each other.
 //!
-//! Parts that cross nothing before a round and nothing after it may still have passed through one
-//! another meanwhile: only whole parts can, by lying in what a change sweeps.
+//! Parts that cross nothing before and after a round may still have passed through one another in
+//! between. Only whole parts can, by lying in the volume that a change sweeps.
 
 use super::edit::Edit;
 use crate::arith::{Filtered, Sign};
@@ -41,7 +41,7 @@ impl Shells {
         self.sides[self.of_edit(edit)].is_certain()
     }
 
-    /// Mark the shells that are not turned as they were.
+    /// Mark the shells whose orientation has changed.
     pub fn turned(&self, vertices: &[Point], triangles: &[[VertexId; 3]]) -> Vec<bool> {
         let now = self.sides_of(vertices, triangles);
         now.iter().zip(&self.sides).map(|(a, b)| a != b).collect()
@@ -52,7 +52,7 @@ impl Shells {
         self.numbers[edit.target.place()] as usize
     }
 
-    /// For each change whether another shell may lie in what it sweeps.
+    /// For each change whether another shell may lie in the volume it sweeps.
     pub fn are_swept(
         &self,
         vertices: &[Point],
@@ -75,7 +75,7 @@ impl Shells {
         edits.iter().map(is_swept).collect()
     }
 
-    /// A vertex of each shell that does not go in this round.
+    /// A vertex of each shell that stays in this round.
     fn resting(&self, vertices: &[Point], triangles: &[[VertexId; 3]], edits: &[Edit]) -> Resting {
         let mut goes = vec![false; vertices.len()];
         for v in edits.iter().filter_map(Edit::going) {
@@ -114,7 +114,7 @@ struct Sum {
     count: f64,
 }
 
-/// Roundings of a difference, a minor, a product and a sum, in units of the last place, and room.
+/// Roundings of a difference, a minor, a product and a sum, in units of the last place, with a margin.
 const ROUNDINGS: f64 = 16.0;
 
 impl Sum {
@@ -140,7 +140,7 @@ struct Resting {
 }
 
 impl Resting {
-    /// The points whose x is among those of a body.
+    /// The points within a body's range of x.
     fn beside(&self, body: &[&Point; 4]) -> &[(usize, Point)] {
         let of_all = |pick: fn(f64, f64) -> f64| body.iter().map(|p| p[0]).reduce(pick);
         let (low, high) = (

@@ -3,7 +3,7 @@
 use crate::geometry::doubles::vector::{cross, dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 
-/// The roundings of a sum of three squares and its root, in units of the last place, and room.
+/// The roundings of a sum of three squares and its root, in units of the last place, with a margin.
 const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
 
 /// Rounding errors of three coordinates, and of the point itself, in units of the largest one.

@@ -63,7 +63,7 @@ impl<'a> Surface<'a> {
         self.neighbours(few).any(|n| n == other)
     }
 
-    /// Two vertices, that with fewer triangles first.
+    /// Two vertices, the one with fewer triangles first.
     fn rarer_first(&self, v: VertexId, w: VertexId) -> [VertexId; 2] {
         if self.star(v).len() <= self.star(w).len() {
             [v, w]
@@ -98,7 +98,7 @@ impl<'a> Surface<'a> {
     }
 }
 
-/// Return the corner of its triangle that a vertex is.
+/// Return which corner of a triangle a vertex is.
 pub fn place_of(v: VertexId, corners: &[VertexId; 3]) -> usize {
     corners.iter().position(|c| *c == v).unwrap_or(0)
 }

@@ -30,7 +30,7 @@ pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Loop> {
     (corners.len() == edges.len()).then_some(corners)
 }
 
-/// Triangulates a loop by cutting off one corner after the other.
+/// Triangulates a loop by cutting off one corner at a time.
 ///
 /// An ear is a strictly convex corner whose closed triangle holds no further corner. The closed triangle
 /// keeps the diagonals off the vertices on straight runs, so what remains is a simple loop again.
@@ -75,7 +75,7 @@ fn turn<P: Planar>(points: &P, corners: &[u32], k: usize) -> Sign {
     points.orient(a, b, c)
 }
 
-/// Only corners that are not strictly convex need a look: where any corner lies in the triangle, one of
+/// Checks only corners that are not strictly convex: if any corner lies in the triangle, one of
 /// those does too.
 fn is_ear<P: Planar>(points: &P, corners: &[u32], turns: &[Sign], k: usize) -> bool {
     if turns[k] != Sign::Positive {

@@ -11,8 +11,8 @@ const NONE: usize = usize::MAX;
 
 /// Flips allowed per triangle, so that flipping stays linear.
 ///
-/// Circles, stars, combs and plates need up to two; a grid of 158 by 158 holes would take fifty to come
-/// to rest, and is left good enough instead. The bound also ends what rounding might send in circles.
+/// Circles, stars, combs and plates need up to two; a grid of 158 by 158 holes would need fifty to
+/// come to rest, and stops at good enough. The bound also ends cycles that rounding might cause.
 const FLIPS_PER_TRIANGLE: usize = 16;
 
 /// A half-edge `3 t + k` runs from corner `k` of triangle `t` to the next one.
@@ -66,7 +66,7 @@ pub(super) fn improve<P: Planar>(
     Ok(flipped(points, Mates::new(triangles, boundary)?))
 }
 
-/// The same for the few ears of one loop, which need no check: no diagonal is cut off twice.
+/// Improves the few ears of one loop, which need no check: no diagonal is cut off twice.
 pub(super) fn improve_ears<P: Planar>(points: &P, ears: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
     if ears.len() == 1 {
         return ears;
@@ -126,7 +126,7 @@ impl Mates {
         Ok(mesh)
     }
 
-    /// The mates found by comparing all half-edges, as is fastest for a few.
+    /// The mates found by comparing all half-edges, which is fastest for a few.
     fn of_ears(triangles: Vec<[u32; 3]>) -> Self {
         let count = 3 * triangles.len();
         let mut mesh = Self {
@@ -175,8 +175,8 @@ impl Mates {
     /// Return whether the angles opposite the edge exceed 180 degrees together and the flip is
     /// valid.
     ///
-    /// Of four points on one circle the first in lexicographic order stays apart from the third, as if
-    /// it lay farther out: then there is one best triangulation, wherever the flips begin.
+    /// Of four points on one circle the first in lexicographic order is not joined to its opposite,
+    /// as if it lay farther out: then there is one best triangulation, wherever the flips begin.
     fn should_flip<P: Planar>(&self, points: &P, half: usize) -> bool {
         let mate = self.mates[half];
         if mate == NONE {

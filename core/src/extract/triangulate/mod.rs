@@ -1,11 +1,12 @@
 //! Exact triangulation of planar polygons with holes.
 //!
-//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; floats only bring
-//! them into a rough order. Small single loops are triangulated by clipping ears, everything else by one
-//! sweep; local flips then widen the narrow angles. They end at the constrained Delaunay triangulation,
-//! with ties broken by the points alone: it does not depend on ids or on the order of the edges.
-//! Invariant: every triangle that leaves this module turns strictly left, and the triangles' edges are
-//! the given boundary edges once each and every other edge once in each direction.
+//! Knows the points of one plane only by id and by the exact answers of [`Planar`]; floats only
+//! give them a rough order. Ear clipping triangulates small single loops, one sweep everything
+//! else; local flips then widen the narrow angles. They end at the constrained Delaunay
+//! triangulation, with ties broken by the points alone: it does not depend on ids or on the order
+//! of the edges. Invariant: every triangle that leaves this module turns strictly left, and the
+//! triangles' edges are the given boundary edges once each and every other edge once in each
+//! direction.
 //!
 //! # Source
 //! Hertel, Mehlhorn 1983 (sweep); Meisters 1975 (ears); Lawson 1977 (flips).
@@ -79,23 +80,22 @@ pub trait Planar {
     /// - `Negative`: right turn
     fn orient(&self, a: u32, b: u32, c: u32) -> Sign;
 
-    /// Compare the sum of the angles at two apexes, which look at an edge from its left and its right,
-    /// to 180 degrees.
+    /// Compare the sum of the angles at two apexes, on the left and the right of an edge, to 180
+    /// degrees.
     ///
     /// - `Greater`: it is more, each apex lies inside the circle through the others
     /// - `Equal`: the four points lie on one circle
     /// - `Less`: it is less
     fn opposite_angles(&self, ends: [u32; 2], apexes: [u32; 2]) -> Ordering;
 
-    /// The point in floats, for a rough order that [`Planar::compare`] then mends.
+    /// The point in floats, for a rough order that [`Planar::compare`] then corrects.
     fn approx(&self, a: u32) -> [f64; 2];
 }
 
-/// A reason why a set of edges is not the boundary of a region. Every variant names a vertex at the
-/// fault.
+/// A reason why edges do not bound a region. Every variant names a vertex at the fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// The vertex does not have as many edges arriving as leaving.
+    /// The vertex has different numbers of arriving and leaving edges.
     Open {
         /// Id of the vertex.
         vertex: u32,
@@ -142,7 +142,7 @@ impl std::error::Error for Error {}
 /// O(n log n) questions for n edges; the flips are bounded by a multiple of n.
 ///
 /// # Errors
-/// [`Error`] when the edges are not the boundary of a region.
+/// [`Error`] when the edges do not bound a region.
 pub fn triangulate<P: Planar>(points: &P, edges: &[(u32, u32)]) -> Result<Vec<[u32; 3]>, Error> {
     if let Some(corners) = clip::small_loop(edges) {
         let triangles = clip::clip_ears(points, corners)?;

@@ -1,8 +1,8 @@
 //! Boundary edges joined to corners.
 //!
-//! A corner is one wedge of the region at a vertex and is named by the edge that leaves it. A vertex
-//! where boundaries touch has several corners; between its edges in angular order, wedges of the region
-//! and of the outside take turns.
+//! A corner is one wedge of the region at a vertex, named by the edge that leaves it. A vertex
+//! where boundaries touch has several corners; in angular order, wedges of the region and of the
+//! outside alternate between its edges.
 
 use std::cmp::Ordering;
 
@@ -14,7 +14,7 @@ pub(super) struct Outline {
     previous: Vec<usize>,
 }
 
-/// An end of an edge, seen from the vertex it is at.
+/// An end of an edge, seen from its vertex.
 #[derive(Clone, Copy)]
 struct Spoke {
     edge: usize,

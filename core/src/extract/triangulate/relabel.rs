@@ -1,4 +1,4 @@
-//! Points renumbered from zero, so that tables can be indexed by them.
+//! Points renumbered from zero, so that they can index tables.
 
 use std::cmp::Ordering;
 

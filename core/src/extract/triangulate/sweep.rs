@@ -1,12 +1,12 @@
 //! Triangulation by one sweep over the vertices, in lexicographic order.
 //!
 //! A vertical line moving right meets the region in intervals. Left of an interval lies a chain of
-//! visited vertices, from the start of the interval's lower edge to the start of its upper edge, and the
-//! part between chain and line is not yet triangulated. No chain vertex is strictly convex seen from
-//! there: each new vertex at once cuts off all triangles that would be.
+//! visited vertices, from the start of the interval's lower edge to the start of its upper edge.
+//! The part between chain and line is not yet triangulated. No chain vertex is strictly convex seen
+//! from there: each new vertex cuts off all such triangles at once.
 //!
-//! Ties in x are broken by y, as if the line leaned slightly; several corners at one vertex are taken as
-//! if the region shrank there: those that close first, those that open last.
+//! Ties in x are broken by y, as if the line leaned slightly. Corners at one vertex are taken as if
+//! the region shrank there: closing ones first, opening ones last.
 
 use std::cmp::Ordering;
 
@@ -145,7 +145,7 @@ fn visits<P: Planar>(points: &P, edges: &[(u32, u32)], kinds: &[Kind]) -> Vec<us
     corners
 }
 
-/// The steps return `None` where the edges turn out not to bound a region.
+/// The steps return `None` where the edges do not bound a region.
 impl<P: Planar> Sweep<'_, P> {
     fn visit(&mut self, kind: Kind, into: usize, out: usize) -> Option<()> {
         let vertex = self.edges[out].0;
@@ -295,7 +295,7 @@ impl<P: Planar> Sweep<'_, P> {
         self.nodes[up].down = down;
     }
 
-    /// Takes the part of the chain above `node` over to a copy of it.
+    /// Moves the part of the chain above `node` to a copy of it.
     fn twin(&mut self, node: usize) -> usize {
         let twin = self.push_node(self.nodes[node].vertex);
         let up = self.nodes[node].up;
@@ -333,7 +333,7 @@ impl<P: Planar> Sweep<'_, P> {
         Some(self.interval_of[edge]).filter(|&interval| interval != NONE)
     }
 
-    /// Takes an interval whose lower edge ends at `vertex` out of the order.
+    /// Removes an interval whose lower edge ends at `vertex` from the order.
     fn close(&mut self, interval: usize, vertex: u32) -> Option<()> {
         let place = self.order.search(|other| self.is_below(other, vertex));
         let (intervals, edges) = (&self.intervals, self.edges);

@@ -102,7 +102,8 @@ fn check_cover(points: &Lattice, edges: &Edges, triangles: &[[u32; 3]]) {
     );
 }
 
-/// Checks the shape, and the shape turned, sheared and mirrored, so that every vertex kind meets every other.
+/// Checks the shape, also turned, sheared and mirrored, so that every vertex kind meets every
+/// other.
 fn check_all_ways(points: &Lattice, edges: &Edges) {
     check(points, edges);
     check(&points.mapped(|[x, y]| [-y, x]), edges);
@@ -332,7 +333,7 @@ fn by_place(points: &Lattice, triangles: &[[u32; 3]]) -> BTreeSet<[[i64; 2]; 3]>
     triangles.iter().map(placed).collect()
 }
 
-/// The same shape with its points and edges numbered in another order.
+/// The same shape with points and edges numbered in another order.
 fn renumbered(points: &Lattice, edges: &Edges, step: usize) -> (Lattice, Edges) {
     let count = points.0.len();
     let image = |v: u32| (v as usize * step + 1) % count;

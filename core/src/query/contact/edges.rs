@@ -18,15 +18,15 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::topology::{ends, Topology, NONE};
 use crate::tree::solid::Solid;
 
-/// Return the reflex edges of a reduced solid's surface that lie in the middle of a face: there two parts
-/// of the solid touch, and the face goes on from one to the other. Exact.
+/// Return the reflex edges of a reduced solid's surface that lie in the middle of a face: there two
+/// parts of the solid touch, and the face extends over both. Exact.
 ///
-/// An edge is reflex if more than half of what is around it is inside. Others touch a face from outside,
-/// so that they part nothing.
+/// An edge is reflex if the solid fills more than half of its surroundings. Other edges touch a
+/// face from outside and separate nothing.
 ///
 /// # Cost
-/// The mesh, the pairs of reflex edges and flat parts of the surface whose boxes overlap, and those of
-/// the edges and triangles of one plane.
+/// The mesh, the pairs of a reflex edge and a flat part of the surface whose boxes overlap, and the
+/// pairs of an edge and a triangle in one plane whose boxes overlap.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -60,7 +60,7 @@ pub fn edge_contacts(solid: &Solid, patches: &Patches) -> Result<Vec<EdgeContact
     Ok(folds.contacts().into_iter().map(contact).collect())
 }
 
-/// An edge at which the inside is more than a half turn.
+/// An edge at which the inside spans more than a half turn.
 struct ReflexEdge {
     ends: [Vertex; 2],
     /// The numbers of the ends.
@@ -80,8 +80,7 @@ impl ReflexEdge {
         }
     }
 
-    /// Return whether it lies in the plane of a triangle. Of most pairs that are near each other it shares
-    /// a corner with the triangle.
+    /// Return whether it lies in the plane of a triangle. Most near pairs share a corner.
     fn lies_in_plane_of(&self, triangle: u32, surface: &Surface) -> bool {
         let corners = surface.triangles()[triangle as usize];
         let mut ends = self.ends.iter().zip(&self.vertices);
@@ -139,8 +138,8 @@ impl<'a> Folds<'a> {
         }
     }
 
-    /// The pairs of a reflex edge and a triangle by their numbers, for each flat part in the middle of
-    /// which the edge lies one at least.
+    /// Numbers of a reflex edge and a triangle: at least one pair for each flat part in whose
+    /// middle the edge lies.
     fn contacts(&self) -> Vec<[u32; 2]> {
         let mut found = Vec::new();
         for run in self.in_planes().chunk_by(|a, b| a[0] == b[0]) {
@@ -156,8 +155,8 @@ impl<'a> Folds<'a> {
         found
     }
 
-    /// The pairs of a flat part and a reflex edge in its plane that does not bound it; their boxes
-    /// overlap.
+    /// Pairs of a flat part and a reflex edge whose boxes overlap; the edge lies in the part's
+    /// plane and does not bound it.
     fn in_planes(&self) -> Vec<[u32; 2]> {
         if self.reflex.is_empty() {
             return Vec::new();
@@ -192,8 +191,8 @@ impl<'a> Folds<'a> {
         found
     }
 
-    /// Adds the pairs of edges and triangles of a flat part for edges that begin or end at a corner of
-    /// the triangle; the others are left.
+    /// Adds a pair for each edge that lies in the middle of a triangle at one of its ends; returns
+    /// the other edges.
     fn at_corners(
         &self,
         edges: impl Iterator<Item = u32>,
@@ -217,7 +216,7 @@ impl<'a> Folds<'a> {
         edges.filter(is_left).collect()
     }
 
-    /// Adds the pairs of edges and triangles of a flat part.
+    /// Adds the pairs of an edge and a triangle in whose middle it lies.
     fn compare(&self, edges: &[u32], triangles: &[u32], found: &mut Vec<[u32; 2]>) {
         let reflex = |edge: &u32| &self.reflex[*edge as usize];
         let mut elements: Vec<Element> = edges.iter().map(|e| reflex(e).element()).collect();
@@ -242,8 +241,8 @@ impl<'a> Folds<'a> {
         });
     }
 
-    /// Return whether an edge in the plane of a triangle has a point in its middle, or runs along an edge
-    /// of it across which the flat part goes on.
+    /// Return whether an edge in a triangle's plane has a point in its interior, or runs along one
+    /// of its edges across which the flat part continues.
     fn is_in_middle(&self, edge: u32, triangle: u32) -> bool {
         poll();
         let ends = self.reflex[edge as usize].ends.each_ref();
@@ -258,13 +257,13 @@ impl<'a> Folds<'a> {
     }
 }
 
-/// The parts of a surface that lie in one plane each and hang together by edges.
+/// The flat parts of a surface, each connected across edges.
 struct Flats {
-    /// The triangles, those of one part after each other.
+    /// The triangles, grouped by part.
     order: Vec<u32>,
-    /// The places at which each part starts, and that at which the last one ends.
+    /// Where each part starts in `order`, and where the last one ends.
     starts: Vec<usize>,
-    /// For each triangle the number of its part.
+    /// The part of each triangle.
     of: Vec<u32>,
 }
 
@@ -312,7 +311,7 @@ mod tests {
     use crate::merge::scenes::{cuboid, made_of, prism, tetrahedron};
     use crate::mesh::surfaces::counts;
 
-    /// A box from which a wedge is taken that touches its far wall from inside.
+    /// A box with a groove whose inner edge lies at y = `tip`.
     fn grooved(tip: i64) -> Solid {
         let wedge = prism(&[[2, 0, 0], [6, 0, 0], [4, tip, 0]], 4);
         made_of(&[cuboid([0; 3], [8, 8, 4]), wedge], Term::Xor)

@@ -15,7 +15,7 @@ use crate::interrupt::poll;
 pub struct Facet {
     /// The corners.
     pub corners: [Vertex; 3],
-    /// The plane that it lies in, whichever side is outside.
+    /// Its plane; either side may be outside.
     pub plane: Arc<Plane>,
 }
 
@@ -36,8 +36,8 @@ impl Facet {
         other.corners.each_ref().map(|p| p.side_of(&self.plane))
     }
 
-    /// Return whether an edge of another triangle has a point in this one, given the sides of this
-    /// one's plane on which its corners lie.
+    /// Return whether an edge of another triangle meets this one, given the sides of this one's
+    /// plane on which its corners lie.
     fn meets_edges(&self, other: &Self, sides: [Side; 3]) -> bool {
         (0..3).any(|i| {
             let j = (i + 1) % 3;
@@ -70,8 +70,8 @@ impl Facet {
         !is_split(turns)
     }
 
-    /// Return whether a segment in the plane has a point in the triangle's inner part: then no edge has
-    /// both ends on its outer side, nor the segment's line all corners on one.
+    /// Return whether a segment in the plane enters the triangle's interior: each edge has an end
+    /// of the segment on its inner side, and the segment's line has corners on both sides.
     pub fn has_inside(&self, [from, to]: [&Vertex; 2]) -> bool {
         let turn = |a, b, c| points::turn([a, b, c], self.view());
         let [a, b, c] = self.corners.each_ref();
@@ -85,8 +85,7 @@ impl Facet {
         is_split && (0..3).all(enters)
     }
 
-    /// Return whether a segment in the plane has more than a point in common with an edge, of the same
-    /// line.
+    /// Return whether a segment in the plane overlaps an edge in more than a point.
     pub fn has_along(&self, edge: usize, [from, to]: [&Vertex; 2]) -> bool {
         let [u, v] = self.view();
         let (a, b) = (&self.corners[edge], &self.corners[(edge + 1) % 3]);
@@ -106,16 +105,16 @@ impl Facet {
         is_on(from) && is_on(to) && sorted(first, high) && sorted(low, last)
     }
 
-    /// Return whether a segment in the plane has a point in the triangle: an end of it, or one on an
-    /// edge across it.
+    /// Return whether a segment in the plane meets the triangle: an end lies in it, or the segment
+    /// crosses an edge.
     fn meets_flat(&self, [from, to]: [&Vertex; 2]) -> bool {
         let turn = |a, b, c| points::turn([a, b, c], self.view());
         let is_across = |i: usize| {
             let (a, b) = (&self.corners[i], &self.corners[(i + 1) % 3]);
             let ends = [turn(from, to, a), turn(from, to, b)];
             let sides = [turn(a, b, from), turn(a, b, to)];
-            // An edge on the segment's line begins and ends on others, which the segment meets as well
-            // unless one of its ends is between.
+            // An edge on the segment's line does not count: the segment also meets its neighbours,
+            // or one of its ends lies on the edge.
             ends != [Sign::Zero; 2]
                 && ends[0] * ends[1] != Sign::Positive
                 && sides[0] * sides[1] != Sign::Positive
@@ -123,19 +122,19 @@ impl Facet {
         self.holds(from) || self.holds(to) || (0..3).any(is_across)
     }
 
-    /// The axes of the view in which the plane is seen best.
+    /// The axes of the projection that shows the plane largest.
     fn view(&self) -> [usize; 2] {
         let axis = self.plane.main_axis();
         [(axis + 1) % 3, (axis + 2) % 3]
     }
 }
 
-/// Return whether all of some points lie beside a plane, on one side.
+/// Return whether all points lie strictly on one side of a plane.
 fn is_beside(sides: [Side; 3]) -> bool {
     sides[0] != Side::On && sides.iter().all(|side| *side == sides[0])
 }
 
-/// Return whether some points lie on both sides.
+/// Return whether points lie on both sides.
 fn is_split(sides: [Side; 3]) -> bool {
     sides.contains(&Side::Plus) && sides.contains(&Side::Minus)
 }
@@ -155,8 +154,8 @@ mod tests {
         })
     }
 
-    /// Return whether triangles have a point in common: unless a plane separates them, that is, has all
-    /// differences of their points on one side, off it.
+    /// Return whether triangles have a point in common: no plane through the origin has all
+    /// differences of their points strictly on one side.
     fn touch(p: &[Lattice; 3], q: &[Lattice; 3]) -> bool {
         let differences: Vec<[i64; 3]> = p
             .iter()
@@ -188,14 +187,13 @@ mod tests {
         [point(), point(), point()]
     }
 
-    /// Return whether a segment has a point inside a triangle of the floor that turns left: where the
-    /// three turns with its edges, which change evenly along the segment, are all positive.
+    /// Return whether a segment has a point inside a left-turning triangle in the floor: there its
+    /// three turns with the edges, linear along the segment, are all positive.
     fn enters([a, b, c]: &[Lattice; 3], [from, to]: &[Lattice; 2]) -> bool {
         let turn = |p: &Lattice, q: &Lattice, r: &Lattice| {
             (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
         };
-        // Shares of the segment at which one of the turns is zero, and those between: all in one
-        // denominator.
+        // Parameters at which one of the turns is zero, and those between, over one denominator.
         let turns = [(a, b), (b, c), (c, a)].map(|(p, q)| [turn(p, q, from), turn(p, q, to)]);
         let zeros = turns.iter().filter(|t| t[0] != t[1]);
         let mut shares: Vec<(i64, i64)> = zeros.map(|t| (t[0], t[0] - t[1])).collect();

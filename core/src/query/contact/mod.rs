@@ -1,4 +1,4 @@
-//! Contact of surfaces: points that two have in common, and edges of one in the middle of its faces.
+//! Contact of surfaces: points that two share, and edges of one in the middle of its own faces.
 
 mod edges;
 mod facet;

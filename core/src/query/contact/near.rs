@@ -20,7 +20,7 @@ impl Space {
         high: [i64::MIN; 3],
     };
 
-    /// The smallest one around some points.
+    /// The smallest box around points.
     pub fn around<'a>(points: impl IntoIterator<Item = &'a Vertex>) -> Self {
         let spaces = points.into_iter().map(Self::around_point);
         spaces.fold(Self::NOTHING, |all, one| all.with(&one))
@@ -40,7 +40,7 @@ impl Space {
         }
     }
 
-    /// The smallest one that holds this and another.
+    /// The smallest box around this and another.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Space {
         }
     }
 
-    /// The part in another one.
+    /// The intersection with another box.
     #[must_use]
     pub fn within(&self, other: &Self) -> Self {
         Self {
@@ -58,7 +58,7 @@ impl Space {
         }
     }
 
-    /// Return whether another one has a point in common with this one.
+    /// Return whether two boxes have a point in common.
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..3).all(|i| self.low[i] <= other.high[i] && other.low[i] <= self.high[i])
     }
@@ -81,16 +81,16 @@ impl Space {
 
 /// An element of one of two operands, with a box around it.
 pub struct Element {
-    /// The operand; the elements of one follow each other.
+    /// The operand; elements are grouped by it.
     pub operand: usize,
     /// The box.
     pub space: Space,
 }
 
-/// Calls `meet` for all pairs of elements of different operands whose boxes overlap; gives up where it
-/// does. A pair may be found more than once, and either number may come first.
+/// Calls `meet` for all pairs of elements of different operands whose boxes overlap; stops if it
+/// returns `None`. A pair may be found more than once, in either order.
 ///
-/// `corners` gives points whose convex hull holds an element, if there are such.
+/// `corners` gives points whose convex hull contains an element, if known.
 pub fn near_pairs(
     elements: &[Element],
     corners: impl Fn(u32) -> Option<[Vertex; 3]>,

@@ -25,7 +25,7 @@ pub struct Surface<'a> {
 }
 
 impl<'a> Surface<'a> {
-    /// The surface of a bounded solid, no triangle of which lies in faces of several patches.
+    /// The surface of a bounded solid; each triangle lies in faces of one patch.
     pub fn of(solid: &'a Solid, patches: &'a Patches) -> Result<Self> {
         let mesh = assemble_patches(solid, patches)?;
         Ok(Self {
@@ -61,7 +61,7 @@ impl<'a> Surface<'a> {
         self.patches.of(face, self.solid.sources().get(face.slot))
     }
 
-    /// The plane that a triangle lies in, whichever side is outside.
+    /// The plane of a triangle; either side may be outside.
     pub fn plane(&self, triangle: u32) -> Arc<Plane> {
         let face = self.face(triangle);
         self.solid.sources().get(face.slot()).plane(face.id())
@@ -108,7 +108,7 @@ impl<'a> Surface<'a> {
         spaces.fold(Space::NOTHING, |all, one| all.with(&one))
     }
 
-    /// The triangles whose boxes overlap another box, with theirs.
+    /// The triangles whose boxes overlap a box, each with its own.
     pub fn triangles_in(&self, space: &Space) -> Vec<(u32, Space)> {
         let boxed = |triangle: u32| {
             poll();

@@ -26,13 +26,13 @@ pub struct Hit<const D: usize> {
     pub t: f64,
     /// The part of the facet.
     pub kind: Kind,
-    /// Barycentric coordinates, correctly rounded; zero exactly where they are.
+    /// Barycentric coordinates, correctly rounded; zero only where exactly zero.
     pub weights: [f64; D],
     /// The point, by the weights.
     pub point: [f64; D],
 }
 
-/// Rounds what was found.
+/// Rounds an exact hit.
 pub fn hit<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, found: &Found<D>) -> Hit<D> {
     let exact = &found.meeting.weights;
     let sum = exact.iter().fold(Int::ZERO, |sum, w| sum + *w);
@@ -46,7 +46,7 @@ pub fn hit<const D: usize>(scene: &Scene<D>, ray: &Ray<D>, found: &Found<D>) -> 
     }
 }
 
-/// The hit of the nearest facet: by narrow integers where they are enough.
+/// The hit of the nearest facet, by narrow integers where they suffice.
 #[inline]
 pub fn nearest_hit<const D: usize>(
     scene: &Scene<D>,
@@ -86,7 +86,7 @@ fn kind<const D: usize, const N: usize>(weights: &[Int<N>; D]) -> Kind {
     of_zeros(zeros, D)
 }
 
-/// The part of a facet of so many corners where so many weights are zero.
+/// The part of a facet at which `zeros` of its `corners` weights are zero.
 fn of_zeros(zeros: usize, corners: usize) -> Kind {
     match zeros {
         0 => Kind::Interior,

@@ -14,10 +14,10 @@ use crate::interrupt::{carried, spend};
 use crate::merge::rule::Rule;
 use crate::mesh::tasks::in_pool;
 
-/// Rays that are in the works at a time: some ten kB.
+/// Rays processed at a time: some ten kB.
 const CHUNK: usize = 64;
 
-/// Chunks that one thread takes at least.
+/// The fewest chunks that one thread takes.
 const CHUNKS: usize = 8;
 
 /// A stretch inside, in doubles: parameters, and the facets' places in the input.
@@ -34,13 +34,13 @@ pub struct Inside {
 pub struct Rays<'a> {
     /// Coordinates of the origins, one ray after the other.
     pub origins: &'a [f64],
-    /// As many coordinates.
+    /// Directions or targets, likewise.
     pub heads: &'a [f64],
 }
 
 impl Rays<'_> {
-    /// Return what `answer` says to the rays of these numbers; `ray` makes one of a snapped origin
-    /// and a head, and `along` its direction as far as that decides who goes alike.
+    /// Answers all rays. `answer` gets rays with their numbers; `ray` makes one of a snapped origin
+    /// and a head, and `along` its rough direction, for sorting.
     fn map<const D: usize, T: Send>(
         &self,
         scene: &Scene<D>,
@@ -65,7 +65,7 @@ impl Rays<'_> {
         };
         match in_order(&order, &read, &made, &answer) {
             Ok(answers) => Ok(restored(&order, answers)),
-            // Another may come first in the order of the rays.
+            // Another error may come first in the order of the input.
             Err(_) => in_order(&given, &read, &made, &answer),
         }
     }
@@ -118,11 +118,10 @@ impl Rays<'_> {
         })
     }
 
-    /// The stretches of each ray inside what the facets bound, `outside` being the winding number
-    /// far away.
+    /// The stretches of each ray inside the bounded set; `outside` is the winding number far away.
     ///
     /// # Errors
-    /// As for `first`; `NotClosed` if the facets do not bound.
+    /// As for `first`; `NotClosed` if the facets are not closed.
     pub fn inside<const D: usize>(
         &self,
         scene: &Scene<D>,
@@ -143,7 +142,7 @@ impl Rays<'_> {
         self.cast(scene, |_, rays| rays.iter().map(of_ray).collect())
     }
 
-    /// Mark the origins between which and their targets something lies strictly; both are snapped.
+    /// Mark the origins whose targets something strictly between hides; both are snapped.
     ///
     /// # Errors
     /// As for `first`; `BadNormal` where origin and target are one lattice point.
@@ -156,7 +155,7 @@ impl Rays<'_> {
         )
     }
 
-    /// Mark the rays on which something lies at a parameter strictly between 0 and its limit.
+    /// Mark the rays that something blocks at a parameter strictly between 0 and the limit.
     ///
     /// # Errors
     /// As for `first`; `Shape` unless there is one limit for each ray.
@@ -173,7 +172,7 @@ impl Rays<'_> {
     }
 }
 
-/// The answers to rays in an order, and the first error in it, whatever the threads do.
+/// Answers rays in an order, or returns the first error in it, whatever the threads do.
 fn in_order<const D: usize, T: Send>(
     order: &[u32],
     read: &(impl Fn(u32) -> [[f64; D]; 2] + Sync),
@@ -182,7 +181,7 @@ fn in_order<const D: usize, T: Send>(
 ) -> Result<Vec<T>> {
     let chunk = carried(|numbers: &[u32]| {
         spend(CHUNK);
-        // All reads stand side by side, so that they wait for memory together.
+        // Reads side by side, so that their cache misses overlap.
         let mut given = [[[0.0; D]; 2]; CHUNK];
         for (place, i) in given.iter_mut().zip(numbers) {
             *place = read(*i);

@@ -1,14 +1,14 @@
-//! Rays that go together, in single precision: what decides which boxes they may meet.
+//! Rays that go together, in single precision: a conservative test of the boxes that they meet.
 //!
 //! # Error
 //! In the frame a scene lies in [−1, 1]. A ray is taken from where it enters that stretch of its
-//! main axis, so that it meets the scene at main distances t from 0 to 2 only, and moves by at most
-//! t on each axis. Let u = 2^-24. A distance of a box's plane is a difference, times an inverse
-//! that was rounded once: off by less than 4u of itself, as if the plane had moved by 8u < 2^-21. An
+//! main axis. So it meets the scene only at main distances t from 0 to 2, and moves by at most t on
+//! each axis. Let u = 2^-24. The distance of a box's plane is a difference times an inverse that
+//! was rounded once: off by less than 4u of itself, as if the plane had moved by 8u < 2^-21. An
 //! inverse that is cut at [`STEEP`] moves the ray by 2·2^-40. The start is found in doubles, off by
-//! less than 2^-49 of the way from the origin. [`Starts::views`] has a slack of more than the sum of all, and
-//! than what their rounding to single precision takes away: a ray
-//! that meets a box goes through each of its slabs, all starts within the slack being tried.
+//! less than 2^-49 of the way from the origin. The slack of [`Starts::views`] exceeds the sum of
+//! these errors and of rounding to single precision. So a ray that meets a box passes the test of
+//! each slab, which tries all starts within the slack.
 
 use super::cell::{above, Frame};
 use super::line::{Near, Ray};
@@ -17,13 +17,13 @@ use super::treelet::{Wide, WIDTH};
 /// The largest inverse slope.
 const STEEP: f64 = (1u64 << 40) as f64;
 
-/// The slack of a start beside that of the way to it.
+/// The constant part of a start's slack.
 const BLUR: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// The slack of the way to a start, for each unit of its length.
+/// The slack per unit of the way to a start.
 const DRIFT: f64 = 1.0 / (1u64 << 49) as f64;
 
-/// A bound of what a place in the frame loses in single precision, for each unit of its size.
+/// A bound on what a place in the frame loses in single precision, per unit of its size.
 const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
 
 /// Rays in the frame, side by side, where they enter its stretch of their main axis.
@@ -36,7 +36,7 @@ struct Starts<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Starts<D, N> {
-    /// At least one ray and at most `N`, all of which go like the first; it fills what is left.
+    /// Takes at least one ray and at most `N`, all like the first, which fills the other lanes.
     #[inline]
     fn of(rays: &[Ray<D>], frame: &Frame<D>) -> Self {
         let lead = &rays[0].near;
@@ -73,7 +73,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         }
     }
 
-    /// Return the largest difference on an axis, at the start or one unit on.
+    /// Bound the rays' differences on an axis from the start to one unit on.
     #[inline]
     fn spread(&self, axis: usize) -> f64 {
         let range = |of: &[f64; N]| {
@@ -87,7 +87,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         range(&self.at[axis]) + range(&self.slope[axis])
     }
 
-    /// Planes of boxes seen from all starts within the slack: near and far ones, inverse slopes.
+    /// For boxes seen from all starts within the slack: near and far starts, inverse slopes.
     #[inline]
     fn views(&self, axis: usize) -> [[f32; N]; 3] {
         let backward = self.slope[axis][0] < 0.0;
@@ -107,7 +107,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
     }
 }
 
-/// Return whether slopes have the same signs and the same largest one.
+/// Return whether slopes have the same signs and the same main axis.
 #[inline]
 fn alike<const D: usize>(a: &Ray<D>, b: &Ray<D>) -> bool {
     let (a, b) = (&a.near, &b.near);
@@ -115,7 +115,7 @@ fn alike<const D: usize>(a: &Ray<D>, b: &Ray<D>) -> bool {
     a.main == b.main && (0..D).all(|k| falls(a, k) == falls(b, k))
 }
 
-/// The places of planes of boxes along an axis, and the inverse slopes there.
+/// Starts for near and far planes along an axis, and the inverse slopes.
 #[derive(Clone, Copy, Debug, Default)]
 struct View {
     near: f32,
@@ -125,7 +125,7 @@ struct View {
 }
 
 impl View {
-    /// The view of all, who look the same way.
+    /// The view of rays that go the same way.
     #[inline]
     fn around<const N: usize>([near, far, inverse]: &[[f32; N]; 3], backward: bool) -> Self {
         let (late, early): (Choice<N>, Choice<N>) = if backward {
@@ -159,9 +159,9 @@ fn most<const N: usize>(of: &[f32; N]) -> f32 {
 pub struct Bundle<const D: usize, const N: usize> {
     /// The side of a box that is met first: 1, the high one, where slopes are negative.
     first: [usize; D],
-    /// By axis: near planes' and far planes' places seen from the rays, and inverse slopes.
+    /// By axis: the starts for near planes and for far planes, and inverse slopes.
     views: [[[f32; N]; 3]; D],
-    /// Beyond these distances nothing matters to a ray.
+    /// The distances beyond which nothing matters to each ray.
     limits: [f32; N],
     beam: [View; D],
     scale: f64,
@@ -169,8 +169,8 @@ pub struct Bundle<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> Bundle<D, N> {
-    /// The bundle of rays, at least one and at most `N`, with the depths beyond which nothing
-    /// matters; `None` if they do not go the same way or stray farther apart than `width`.
+    /// The bundle of 1 to `N` rays, with the depths beyond which nothing matters; `None` if they do
+    /// not go the same way or stray farther apart than `width`.
     #[inline]
     pub fn of(
         rays: &[Ray<D>],
@@ -224,7 +224,7 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
         )
     }
 
-    /// From now on nothing beyond a depth matters to a ray.
+    /// Sets the depth beyond which nothing matters to a ray.
     #[inline]
     pub fn set_limit(&mut self, ray: usize, depth: f64) {
         self.limits[ray] = above(depth * self.scale - self.skipped[ray]);

@@ -114,7 +114,7 @@ impl Span {
         }
     }
 
-    /// The smallest box around some.
+    /// The smallest box around several.
     pub fn around<'a>(spans: impl IntoIterator<Item = &'a Self>) -> Self {
         spans
             .into_iter()
@@ -133,7 +133,7 @@ impl Span {
     }
 }
 
-/// The largest single-precision number that is not above.
+/// The largest single-precision number not above `x`.
 #[inline]
 pub fn below(x: f64) -> f32 {
     let near = x as f32;
@@ -144,7 +144,7 @@ pub fn below(x: f64) -> f32 {
     }
 }
 
-/// The least single-precision number that is not below.
+/// The least single-precision number not below `x`.
 #[inline]
 pub fn above(x: f64) -> f32 {
     -below(-x)

@@ -1,11 +1,11 @@
-//! The check that facets bound: what "inside" along a ray presumes.
+//! The check that facets are closed, so that "inside" along a ray has a meaning.
 
 use super::facet::Facet;
 use crate::error::{Error, ErrorKind, Result};
 use crate::mesh::grid::Pitch;
 use crate::mesh::import::import;
 
-/// Refuses facets, given with what tells their places in the input, that have a border of their own on the lattice.
+/// Refuses facets that have a border on the lattice; `number` gives a facet's place in the input.
 ///
 /// Triangles must cancel along the lines of their edges, segments end where others begin, and
 /// points of the line come in pairs.

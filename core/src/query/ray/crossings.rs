@@ -8,7 +8,7 @@ use super::scene::Scene;
 use crate::arith::Sign;
 use crate::merge::rule::Rule;
 
-/// A stretch of a ray with constant answer "inside".
+/// A stretch of a ray that is inside.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     /// The parameter at which it begins.
@@ -26,11 +26,11 @@ struct Crossing {
     step: i32,
 }
 
-/// The stretches inside, in order, none of length zero and no two that touch.
+/// The stretches inside, in order; none is empty, and no two touch.
 ///
-/// The facets must bound: far along every ray the winding number is `outside`. The ray is taken
-/// at an infinitesimal shift (ε, ε², ε³), so that one that runs within a facet counts as inside
-/// there if the points beside it in that direction are.
+/// The facets must be closed; `outside` is the winding number far along every ray. The ray is
+/// shifted infinitesimally, by (ε, ε², ε³): one that runs within a facet is inside there if the
+/// points beside it in that direction are.
 pub fn stretches<const D: usize>(
     scene: &Scene<D>,
     ray: &Ray<D>,
@@ -61,7 +61,7 @@ fn stretch(from: Ratio, entry: Option<u32>, end: Option<(Ratio, u32)>) -> Stretc
     Stretch { from, entry, end }
 }
 
-/// The crossings at positive parameters by parameter and input; +1 where the ray leaves.
+/// The crossings at positive parameters, by parameter, then input; +1 where the ray leaves.
 fn crossings<const D: usize>(scene: &Scene<D>, ray: &Ray<D>) -> Vec<Crossing> {
     let facets = likely(scene, std::slice::from_ref(ray))
         .pop()

@@ -6,16 +6,16 @@
 use super::block::LANES;
 use super::cell::Span;
 
-/// Candidates for a cut on each axis are the borders of so many bins.
+/// Bins on each axis, whose borders are the candidate cuts.
 const BINS: usize = 16;
 
-/// Of a longer list every so many facets are enough to choose a cut.
+/// About how many facets of a longer list are sampled to choose a cut.
 const SAMPLE: usize = 4096;
 
-/// Lists of at most so many facets make two blocks: they are divided in the middle.
+/// Lists of at most this many facets make two blocks: they are divided in the middle.
 const PAIR: usize = 2 * LANES;
 
-/// After so many cuts lists are halved, which ends soon: no scene is meant to get there.
+/// After this many cuts lists are halved, which soon ends: no scene should get there.
 const LEVELS: u32 = 64;
 
 /// A facet and its box.
@@ -40,7 +40,7 @@ impl Item {
     }
 }
 
-/// Sorts a list into two parts, neither empty; the length of the first, and the boxes of both.
+/// Partitions a list into two nonempty parts; returns the length of the first and both boxes.
 pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (usize, [Span; 2]) {
     let cut = match items.len() {
         ..=PAIR => None,
@@ -58,7 +58,7 @@ pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (
     (count, [around(below), around(above)])
 }
 
-/// Several divisions one after the other: regions as leaves of a small tree of cuts.
+/// Successive divisions: a small tree of cuts, whose leaves are parts.
 pub struct Cuts<const D: usize> {
     cuts: Vec<(Cut, [Way; 2])>,
 }
@@ -71,8 +71,7 @@ enum Way {
 }
 
 impl<const D: usize> Cuts<D> {
-    /// Up to so many parts of a long list, as a sample of it tells; `None` if it does not tell how
-    /// to divide.
+    /// Cuts a long list into up to `parts` parts, chosen by a sample; `None` if that finds no cut.
     pub fn of(items: &[Item], parts: usize) -> Option<Self> {
         let mut sample: Vec<Item> = sample(items).copied().collect();
         let mut open = vec![(0..sample.len(), around(&sample).surface::<D>(), None)];
@@ -131,7 +130,7 @@ fn around(items: &[Item]) -> Span {
     Span::around(items.iter().map(|item| &item.span))
 }
 
-/// Puts those that are below first; their number.
+/// Moves the items below to the front; returns their number.
 fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
     let mut count = 0;
     for at in 0..items.len() {
@@ -143,7 +142,7 @@ fn partition(items: &mut [Item], below: impl Fn(&Item) -> bool) -> usize {
     count
 }
 
-/// Two halves along the axis on which their boxes are smallest.
+/// Halves a list along the axis that gives the smallest boxes.
 fn halve<const D: usize>(items: &mut [Item], whole: &Span) -> (usize, [Span; 2]) {
     let middle = items.len().div_ceil(2);
     let order = |axis: usize| {
@@ -175,7 +174,7 @@ impl Cut {
     }
 }
 
-/// Equal parts of the stretch of centres on an axis.
+/// The range of centres on an axis in equal parts.
 #[derive(Clone, Copy)]
 struct Bins {
     low: f32,
@@ -185,7 +184,7 @@ struct Bins {
 impl Bins {
     #[inline]
     fn of(self, centre: f32) -> usize {
-        // Those beyond the ends, as of a sample, go to the last bins.
+        // Centres beyond the range of a sample go to the end bins.
         (((centre - self.low) * self.factor) as usize).min(BINS - 1)
     }
 }
@@ -218,7 +217,7 @@ fn sample(items: &[Item]) -> impl Iterator<Item = &Item> {
     items.iter().step_by((items.len() / SAMPLE).max(1))
 }
 
-/// The cut of least cost, as far as a sample tells; none if all its centres are the same.
+/// The cut of least cost for a sample; none if all its centres are equal.
 fn best<const D: usize>(items: &[Item]) -> Option<Cut> {
     let sample = || sample(items);
     let (mut low, mut high) = ([f32::INFINITY; D], [f32::NEG_INFINITY; D]);

@@ -137,7 +137,7 @@ fn determinant<const D: usize>(v: &Corners<D>) -> Int<NUMERATOR_LIMBS> {
     }
 }
 
-/// The sign of a corner's weight, which is zero, after the origin has moved by (ε, ε², ε³).
+/// The sign of a zero weight of a corner after the origin moves by (ε, ε², ε³).
 ///
 /// In space w = d · (a × b) with the opposite edge from a to b, which grows by ε⃗ · ((a − b) × d);
 /// in the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.
@@ -192,7 +192,7 @@ fn meet_within<const D: usize>(v: &Corners<D>, d: &[i128; D]) -> Option<Meeting<
     Some(Meeting { at, until, weights })
 }
 
-/// The parameters from which and up to which all weights are non-negative, from 0 on.
+/// The first and last parameters, from 0 on, at which all weights are non-negative.
 fn stretch<const D: usize>(rims: &[Rim; D]) -> Option<(Ratio, Ratio)> {
     let (mut from, mut until) = (Ratio::ZERO, None::<Ratio>);
     for rim in rims {

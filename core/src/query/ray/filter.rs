@@ -28,8 +28,7 @@ pub const ROUNDING: f64 = f64::EPSILON / 2.0;
 
 /// The answer of doubles about a ray and a facet.
 ///
-/// No `Filtered`: a hit is certain, but its depth is known only up to an error, which may still ask
-/// for integers.
+/// No `Filtered`: a hit is certain, but the error of its depth may still require integers.
 #[derive(Clone, Copy, Debug)]
 pub enum Probe {
     /// The ray does not meet the facet.
@@ -40,12 +39,12 @@ pub enum Probe {
     Doubt,
 }
 
-/// The way along a ray, measured along its main axis in lattice steps, and a bound of its error.
+/// A distance along a ray's main axis in lattice steps, and a bound on its error.
 #[derive(Clone, Copy, Debug)]
 pub struct Depth {
     /// The depth.
     pub z: f64,
-    /// It is off by at most this.
+    /// The bound on its error.
     pub error: f64,
 }
 

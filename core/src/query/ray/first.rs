@@ -10,7 +10,7 @@ use super::scene::Scene;
 use super::walk::walk;
 use crate::arith::Sign;
 
-/// A facet on a ray, and where.
+/// A facet on a ray, and where they meet.
 #[derive(Clone, Debug)]
 pub struct Found<const D: usize> {
     /// The facet's index in the scene.
@@ -90,14 +90,14 @@ impl<'a, const D: usize> Query<'a, D> {
         firsts(self.scene, rays, |ray, nearest| nearest?.met(ray)).pop()?
     }
 
-    /// Keeps the facet of a block that is nearer than the best, if any; the depth of the best.
+    /// Keeps a block's facet nearer than the best, if any; returns the depth of the best.
     #[inline]
     pub fn offer_block(&self, best: &mut Option<Candidate>, block: &Block<D>) -> f64 {
         self.try_block(best, block, |_, _| {});
         best.map_or(f64::INFINITY, |best| best.high())
     }
 
-    /// Tests a facet and keeps it if it is nearer than the best; the depth of its hit, if any.
+    /// Tests a facet, keeps it if it is nearer than the best; returns its hit's depth.
     #[inline]
     pub fn offer(&self, best: &mut Option<Candidate>, facet: u32) -> Option<Depth> {
         let found = self.candidate(facet, self.probe(facet))?;
@@ -105,7 +105,7 @@ impl<'a, const D: usize> Query<'a, D> {
         Some(found.depth)
     }
 
-    /// Tests the facets of a block, keeps the nearest, and tells which are hit, and where.
+    /// Tests the facets of a block, keeps the nearest, and reports each hit and its depth.
     #[inline]
     pub fn try_block(
         &self,
@@ -139,7 +139,7 @@ impl<'a, const D: usize> Query<'a, D> {
         blocked(self.scene, std::slice::from_ref(self.ray), |_| reach) == [true]
     }
 
-    /// Ask doubles about a facet.
+    /// Tests a facet in doubles.
     pub fn probe(&self, facet: u32) -> Probe {
         self.filter.probe(&self.scene.facets()[facet as usize])
     }
@@ -229,7 +229,7 @@ pub fn firsts<const D: usize, T>(
     answer: impl Fn(&Ray<D>, Option<Nearest<D>>) -> T,
 ) -> Vec<T> {
     let best = candidates(scene, rays);
-    // All reads stand side by side, so that they wait for memory together.
+    // Reads side by side, so that their cache misses overlap.
     let nearest = |best: Option<Candidate>| Some(Nearest::of(scene, &best?));
     let nearest: Vec<Option<Nearest<D>>> = best.into_iter().map(nearest).collect();
     let pairs = rays.iter().zip(nearest);
@@ -283,7 +283,7 @@ pub fn likely<const D: usize>(scene: &Scene<D>, rays: &[Ray<D>]) -> Vec<Vec<u32>
     met
 }
 
-/// Mark the rays between whose starts and reaches a facet has a point, strictly.
+/// Mark the rays with a point of a facet strictly between start and reach.
 pub fn blocked<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],

@@ -40,7 +40,7 @@ impl<const D: usize> Ray<D> {
             return Err(Error::new(ErrorKind::NonFinite, text));
         }
         if let Some((whole, exponent)) = exactly(direction) {
-            // Sizes and quotients are those of the integers, and no wide ones are converted.
+            // Doubles give the sizes and quotients of the integers, without converting wide ones.
             let main = first_largest(direction, f64::abs);
             let near = Near::along(&origin, direction, main);
             return Ok(Self {
@@ -100,7 +100,7 @@ impl<const D: usize> Near<D> {
         let (mut near, mut shear) = ([0.0; D], [0.0; D]);
         for k in 0..D {
             near[k] = origin[k] as f64;
-            // Of zeros the positive one, as of integers.
+            // Zeros become positive, as from integers.
             shear[k] = (direction[k] + 0.0) / lead;
         }
         Self {
@@ -132,8 +132,8 @@ fn zero_direction() -> Error {
     Error::new(ErrorKind::BadNormal, text)
 }
 
-/// The components times a power of two in integers without a common factor of two, and its
-/// exponent; none for zero, or if they take more than `DIRECTION_BITS`.
+/// The components scaled by a power of two to integers without a common factor of two, and its
+/// exponent; none for zero, or if they need more than `DIRECTION_BITS`.
 #[inline]
 fn exactly<const D: usize>(direction: &[f64; D]) -> Option<([i128; D], i32)> {
     let (mut low, mut high) = (i32::MAX, i32::MIN);

@@ -1,8 +1,7 @@
 //! The meeting of a ray and a triangle in narrow integers, and its rounding.
 //!
-//! The same numbers as in `facet`, exact where they fit. Quotients are those of leading bits, which
-//! mostly decide how they are rounded; where they do not, and where numbers are wider, the integers
-//! of `facet` answer.
+//! The same numbers as in `facet`, exact where they fit. Quotients come from leading bits, which
+//! mostly decide the rounding; otherwise, and for wider numbers, the integers of `facet` answer.
 //!
 //! # Widths
 //! Let corners relative to the origin be below 2^p, p ≤ 41, and the direction below 2^q. Components
@@ -108,7 +107,7 @@ impl<const D: usize> Narrow<D> {
     }
 }
 
-/// Return whether all numbers are as narrow as is supposed.
+/// Return whether all numbers fit the widths above.
 #[inline]
 fn fits<const D: usize>(v: &Corners<D>, ray: &Ray<D>) -> bool {
     let all = v.iter().flatten().fold(0, |all, c| all | c.unsigned_abs());

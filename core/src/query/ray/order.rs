@@ -1,20 +1,20 @@
-//! An order in which rays are cast: those that start and go alike one after the other.
+//! An order for casting rays: those that start and go alike follow each other.
 //!
-//! Rays in no order each find their way through memory of its own; sorted they share it, and often
-//! go in bundles. The order never shows: answers stand in the order of the input.
+//! Unsorted rays each read memory of their own; sorted rays share it, and often form bundles. The
+//! order never shows: answers come in the order of the input.
 
 use super::cell::Frame;
 
 /// Bits of the place of entry on each axis.
 const BITS: u32 = 7;
 
-/// Rays from which a batch is sorted: all of the tree that fewer visit stays near.
+/// The smallest batch that is sorted: the nodes that fewer rays visit stay in the cache.
 const SORT_FROM: usize = 256;
 
-/// A batch of which at least one in so many pairs of neighbours go alike is left in its order.
+/// A batch stays unsorted if at least one in this many neighbouring pairs go alike.
 const ALIKE: usize = 2;
 
-/// One in so many pairs is asked.
+/// One in this many pairs is sampled.
 const SAMPLE: usize = 16;
 
 /// The numbers of rays in the order to cast them; `None` for the order of the input.
@@ -33,7 +33,7 @@ pub fn sorted<const D: usize>(
         let (origin, direction) = ray(i as usize);
         key(frame, &origin, &direction)
     };
-    // Neighbours share all but the last bit on each axis.
+    // Alike keys share all but the last bit on each axis.
     let alike = |i: &u32| (key(*i) ^ key(*i + 1)) >> D == 0;
     let pairs = (0..count - 1).step_by(SAMPLE);
     if pairs.clone().filter(alike).count() * ALIKE >= pairs.len() {
@@ -44,8 +44,8 @@ pub fn sorted<const D: usize>(
     Some(keys.into_iter().map(|(_, i)| i).collect())
 }
 
-/// The octant of a direction, its main axis, and where the ray enters that axis' stretch, the bits
-/// of all axes interleaved.
+/// The sort key: the octant of a direction, its main axis, and the place where the ray enters that
+/// axis' stretch, the bits of all axes interleaved.
 fn key<const D: usize>(frame: &Frame<D>, origin: &[f64; D], direction: &[f64; D]) -> u32 {
     let size = |k: &usize| direction[*k].abs();
     let main = (0..D)
@@ -60,7 +60,7 @@ fn key<const D: usize>(frame: &Frame<D>, origin: &[f64; D], direction: &[f64; D]
         let octant = u32::from(direction[k] < 0.0);
         key |= (octant << 1 | u32::from(k == main)) << (D as u32 * BITS + 2 * k as u32);
         let entry = at[k] + direction[k] / lead * skipped;
-        // Numbers beyond the range, and what is no number, go to its ends.
+        // Numbers beyond the range, and NaN, go to its ends.
         cells[k] = ((entry + 1.0) * f64::from(1 << (BITS - 1)))
             .clamp(0.0, f64::from((1 << BITS) - 1)) as u32;
     }

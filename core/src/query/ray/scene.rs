@@ -19,14 +19,14 @@ pub struct Scene<const D: usize> {
     pitch: Pitch,
     /// In lattice steps, which doubles hold exactly.
     facets: Vec<Facet<D>>,
-    /// The place of each facet in the input, ascending; none if it is the index.
+    /// The place of each facet in the input, ascending; empty if it is the index.
     numbers: Vec<u32>,
     cell: Cell<D>,
     frame: Frame<D>,
     /// The mean size of facets, in the frame.
     grain: f64,
     root: Deferred<D>,
-    /// The answer whether the facets bound, once somebody has asked.
+    /// Whether the facets are closed, once asked.
     closed: OnceLock<Result<()>>,
 }
 
@@ -43,8 +43,8 @@ impl<const D: usize> Scene<D> {
         Self::over(facets, pitch, Deferred::over)
     }
 
-    /// The scene after its facets have moved, with the same lattice and the same tree, whose boxes
-    /// are made to fit; a new tree if their number is another or others have an extent.
+    /// The scene after its facets have moved, on the same lattice. It keeps the tree and refits its
+    /// boxes, unless the facets' number or the set of those with an extent has changed.
     ///
     /// # Errors
     /// As for [`Self::new`].
@@ -135,7 +135,7 @@ impl<const D: usize> Scene<D> {
         &self.root
     }
 
-    /// Refuses facets that do not bound; decided once.
+    /// Refuses facets that are not closed; decided once.
     ///
     /// # Errors
     /// `NotClosed` with the places in the input of facets at the border.
@@ -143,7 +143,8 @@ impl<const D: usize> Scene<D> {
         if let Some(known) = self.closed.get() {
             return known.clone();
         }
-        // Not within `get_or_init`: a thread of the pool that waits there could be asked again.
+        // Not within `get_or_init`: a pool thread that waits there could steal a task that asks
+        // again.
         let found = require_closed(&self.facets, |facet| self.number(facet));
         self.closed.get_or_init(|| found).clone()
     }

@@ -24,13 +24,13 @@ use crate::mesh::tasks::in_pool;
 /// Children of a node.
 pub const WIDTH: usize = 8;
 
-/// A list of at most so many facets becomes one treelet: some 100 µs of work, within 100 kB.
+/// A list of at most this many facets is one treelet: some 100 µs of work, within 100 kB.
 const TREELET: usize = 1024;
 
-/// Facets from which splits are chosen from a sample.
+/// Lists of at least this length are split by a sample.
 const SAMPLED: usize = 16 * TREELET;
 
-/// A longer list than this is deferred where the tree is only begun.
+/// Longer lists are deferred where only the root is made.
 const INLINE: usize = LANES * WIDTH;
 
 /// The child of a node in a lane.
@@ -119,7 +119,7 @@ impl<const D: usize> Deferred<D> {
         }
     }
 
-    /// The treelet; made if nobody has yet.
+    /// The treelet, made on first use.
     #[inline]
     pub fn treelet(&self, facets: &[Facet<D>]) -> &Treelet<D> {
         match self.treelet.get() {
@@ -135,7 +135,7 @@ impl<const D: usize> Deferred<D> {
 
     #[cold]
     fn made(&self, facets: &[Facet<D>]) -> &Treelet<D> {
-        // Not below: what is taken out of the slot must arrive.
+        // Not in the closure: cancelling there would lose what is taken out of the slot.
         poll();
         self.treelet.get_or_init(|| {
             let mut slot = self.pending.lock().unwrap_or_else(PoisonError::into_inner);
@@ -144,7 +144,7 @@ impl<const D: usize> Deferred<D> {
         })
     }
 
-    /// Makes all treelets below, those of one level at the same time.
+    /// Makes all treelets below, each level in parallel.
     pub fn complete(&self, facets: &[Facet<D>]) {
         let mut level = vec![self];
         while !level.is_empty() {
@@ -172,7 +172,7 @@ impl<const D: usize> Deferred<D> {
             order.extend(below);
             next += 1;
         }
-        // Those below are at the end in the order of their parents, so the last are the last's.
+        // Children come in the order of their parents, so the last ones belong to the last parent.
         let mut done: VecDeque<(Self, Span)> = VecDeque::new();
         for deferred in order.into_iter().rev() {
             poll();
@@ -203,8 +203,8 @@ impl<const D: usize> Deferred<D> {
 }
 
 impl<const D: usize> Treelet<D> {
-    /// The root over a long list, all below it deferred; `None` for a short one, and for one that
-    /// nothing tells how to divide.
+    /// The root over a long list, with all below it deferred; `None` for a list that is short or
+    /// has no cut.
     fn begun(facets: &[Facet<D>], items: &[Item]) -> Option<Self> {
         if items.len() < SAMPLED {
             return None;
@@ -227,7 +227,7 @@ impl<const D: usize> Treelet<D> {
         Some(treelet)
     }
 
-    /// This tree over facets that have moved, with the treelets below and their boxes.
+    /// This tree with boxes refitted to moved facets; `below` has the treelets below.
     fn fitted(
         &self,
         facets: &[Facet<D>],
@@ -270,7 +270,7 @@ impl<const D: usize> Treelet<D> {
     }
 }
 
-/// Return the room of a child, if a node with so many facets is to have full ones below.
+/// Return how many facets a child takes at most, so that nodes below can be full.
 fn room(facets: usize) -> usize {
     let mut room = LANES;
     while room * WIDTH < facets {
@@ -345,7 +345,7 @@ impl<'a, const D: usize> Making<'a, D> {
         self.treelet
     }
 
-    /// Takes a list apart, the part with the largest box first, until the nodes below can be full.
+    /// Splits a list, the part with the largest box first, until the nodes below can be full.
     fn parts(&mut self, whole: Part) -> Vec<Part> {
         let room = if self.begun { LANES } else { room(whole.len()) };
         let mut parts = vec![whole];

@@ -1,4 +1,4 @@
-//! The nodes of a scene's tree as they can be looked at.
+//! The nodes of a scene's tree, for inspection.
 
 use super::cell::Cell;
 use super::scene::Scene;
@@ -19,7 +19,7 @@ pub struct View<const D: usize> {
     pub facets: Vec<u32>,
 }
 
-/// The nodes that are known by now, in preorder.
+/// The nodes made so far, in preorder.
 pub fn views<const D: usize>(scene: &Scene<D>) -> Vec<View<D>> {
     let mut found: Vec<View<D>> = Vec::new();
     let known = scene.root().known();

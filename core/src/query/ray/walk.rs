@@ -1,7 +1,7 @@
-//! From block to block along rays, nearest first.
+//! Visits blocks along rays, nearest first.
 //!
-//! A bundle descends as one beam; only at a block each of its rays is asked for itself. The order
-//! of blocks decides how early a walk ends and never what is found.
+//! A bundle descends as one beam; its rays are tested one by one only at blocks. The order of
+//! blocks affects how early a walk ends, never what it finds.
 
 use smallvec::SmallVec;
 
@@ -30,15 +30,15 @@ struct Open<'a, const D: usize> {
 /// Rays that go together.
 const TOGETHER: usize = 16;
 
-/// The distance by which such rays may stray from each other, in facets.
+/// How far such rays may stray from each other, in mean sizes of facets.
 const WIDE: f64 = 8.0;
 
 type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;
 
 /// Visits the blocks that rays meet, until all lie beyond their limits.
 ///
-/// `depth` is where a ray ends, and `visit` gets the number of a ray and a block and returns where it
-/// ends from now on: the depth beyond which nothing matters, in lattice steps along its main axis.
+/// `depth` gives a ray's limit: the depth beyond which nothing matters, in lattice steps along its
+/// main axis. `visit` gets the number of a ray and a block, and returns the new limit.
 pub fn walk<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],
@@ -118,7 +118,7 @@ fn descend<const D: usize, const N: usize>(
     }
 }
 
-/// Puts what the beam meets in a node on the stack, the nearest on top.
+/// Pushes what the beam meets in a node, the nearest last.
 #[inline]
 fn enter<'a, const D: usize, const N: usize>(
     bundle: &Bundle<D, N>,

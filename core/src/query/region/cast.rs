@@ -9,8 +9,8 @@ use crate::tree::partition::{classify, Cut, Label, Location, PartitionTree};
 
 /// The maximal stretches of a line in the region's interior, in the order of its direction (−b, a).
 ///
-/// A stretch along the boundary is not inside. Stretches that only a point of the boundary parts
-/// are two. The ends of an unbounded one lie on the frame's border.
+/// A stretch along the boundary is not inside. A single point of the boundary separates two
+/// stretches. The ends of an unbounded one lie on the frame's border.
 ///
 /// # Errors
 /// `Internal` for a broken tree.
@@ -43,7 +43,7 @@ pub fn cast(tree: &PartitionTree<Dim2>, line: &Line2) -> Result<Vec<[Point2; 2]>
     Ok(connected(tree, &whole, found))
 }
 
-/// The parts of a piece in a cut that have the set on both sides.
+/// The parts of a piece in a cut with the set on both sides.
 fn inside_of_both(cut: &Cut<Dim2>, piece: &Segment2) -> Result<Vec<Segment2>> {
     let mut found = Vec::new();
     for (part, minus) in cut.child(Half::Minus).beside(*piece)? {

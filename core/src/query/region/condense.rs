@@ -1,4 +1,4 @@
-//! A set built anew from its own boundary: a tree of a size that the boundary asks for.
+//! A set rebuilt from its boundary, with a tree whose size fits that boundary.
 
 use crate::error::Result;
 use crate::geometry::spaces::dim1::Dim1;

@@ -49,7 +49,7 @@ pub fn plane(normal: [i128; 3], offset: &Int<3>) -> Result<Arc<Plane>> {
     bounding_plane(normal, offset).map(Arc::new)
 }
 
-/// The line through a lattice point, its direction (−b, a) the one given, rounded to 53 bits.
+/// The line through a lattice point in a direction (−b, a), which is rounded to 53 bits.
 ///
 /// # Errors
 /// `BadNormal`.

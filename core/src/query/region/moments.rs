@@ -56,11 +56,11 @@ pub fn area(boundary: &Boundary, pitch: Pitch) -> Result<Fraction> {
     ))
 }
 
-/// Two fractions between which the area lies, in square model units, as near as 2^-127 square steps
-/// for each edge that ends in a constructed corner.
+/// Two fractions that enclose the area, in square model units, within 2^-127 square steps for each
+/// edge that ends in a constructed corner.
 ///
 /// # Cost
-/// One short quotient for such an edge, where the exact sum multiplies all denominators.
+/// One short quotient per such edge; the exact sum multiplies all denominators.
 ///
 /// # Errors
 /// `Unbounded`.
@@ -77,13 +77,13 @@ pub fn area_bounds(boundary: &Boundary, pitch: Pitch) -> Result<[Fraction; 2]> {
 /// Binary places of each quotient that bounds an area.
 const PLACES: usize = 128;
 
-/// Twice an area: the sum over lattice edges, and what edges with constructed corners add.
+/// Twice an area: the sum over lattice edges, and the shares of edges with constructed corners.
 struct Doubled {
     whole: BigInt,
     cut: Vec<Ratio>,
 }
 
-/// Sums of so many products of lattice coordinates fit 127 bits.
+/// Sums of this many products of lattice coordinates fit 127 bits.
 const CHUNK: usize = 1 << 16;
 
 impl Doubled {

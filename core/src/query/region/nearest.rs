@@ -7,22 +7,22 @@ use crate::interrupt::poll;
 
 type Point = [f64; 2];
 
-/// Segments under boxes under boxes.
+/// Segments in a hierarchy of boxes.
 #[derive(Debug)]
 pub struct Nearest {
-    /// The segments along a curve that fills the plane, with their numbers.
+    /// The segments along a space-filling curve, with their numbers.
     segments: Vec<(usize, [Point; 2])>,
-    /// The boxes around every [`FAN`] things of the level below, the segments first.
+    /// The boxes around every [`FAN`] items of the level below, from the segments up.
     levels: Vec<Vec<Extent>>,
 }
 
-/// Things under one box.
+/// Items in one box.
 const FAN: usize = 8;
 
 /// Steps of the curve along each axis.
 const STEPS: f64 = 65_535.0;
 
-/// A box is passed over where it is farther by more than doubles round.
+/// A box is skipped only if it is farther by more than the rounding of doubles.
 const SLACK: f64 = 1.0 - 8.0 * f64::EPSILON;
 
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ impl Nearest {
         Self { segments, levels }
     }
 
-    /// The point of any segment that is nearest to a point; of several that of the first segment.
+    /// The nearest point on any segment; of several, the one on the first segment.
     pub fn to(&self, point: Point) -> Option<Point> {
         let mut best = (f64::INFINITY, usize::MAX, None);
         let mut pending: Vec<(f64, usize, usize)> = vec![(0.0, self.levels.len(), 0)];
@@ -70,7 +70,7 @@ impl Nearest {
         best.2
     }
 
-    /// Compares the segments under a box of the lowest level.
+    /// Compares the segments in a box of the lowest level.
     fn look(&self, place: usize, point: Point, best: &mut (f64, usize, Option<Point>)) {
         for (number, segment) in self.segments.iter().skip(FAN * place).take(FAN) {
             let foot = foot(point, segment);
@@ -111,8 +111,7 @@ impl Extent {
         })
     }
 
-    /// Return the place of a segment along a curve that visits quarters of this box one after
-    /// another.
+    /// Return a segment's place along a space-filling curve through this box.
     fn place(&self, [p, q]: &[Point; 2]) -> u64 {
         let step = |axis: usize| {
             let size = self.high[axis] - self.low[axis];

@@ -24,7 +24,7 @@ pub struct Outline {
 
 /// The loops of a bounded region's boundary.
 ///
-/// Loops touch each other in corners at most; a loop that would touch itself is taken apart there.
+/// Loops touch each other in corners at most; a loop that would touch itself is split there.
 /// Where a corner of one loop lies on a side of another, both have a corner.
 ///
 /// # Order
@@ -70,7 +70,7 @@ fn traced(boundary: &Boundary) -> Result<Vec<Vec<usize>>> {
     Ok(walks)
 }
 
-/// The edge that leaves an edge's last vertex first in clockwise order from where it came.
+/// The first edge, clockwise from an edge, of those that leave its last vertex.
 fn next_edge(boundary: &Boundary, edge: &Edge) -> Option<usize> {
     let back = direction(edge).map(|d| -d);
     let mut leaving = boundary.leaving(edge.ends[1]);
@@ -109,7 +109,7 @@ fn clockwise(from: &[i128; 2], a: &[i128; 2], b: &[i128; 2]) -> Ordering {
     quarter(a).cmp(&quarter(b)).then_with(turn)
 }
 
-/// A closed walk taken apart where it passes a vertex again.
+/// Splits a closed walk where it passes a vertex again.
 fn simple(boundary: &Boundary, walk: &[usize]) -> Vec<Vec<usize>> {
     let mut loops = Vec::new();
     let mut open: Vec<usize> = Vec::new();

@@ -21,7 +21,7 @@ use crate::tree::solid::Solid;
 /// A bounded solid's boundary, read once for any number of sections.
 pub struct Sections {
     points: Vec<Vertex>,
-    /// The coordinates of lattice points; of others no numbers.
+    /// The coordinates of lattice points; NaN for others.
     near: Vec<[f64; 3]>,
     triangles: Vec<[VertexId; 3]>,
 }
@@ -98,7 +98,7 @@ type Rung = [usize; 2];
 
 /// A triangle that the plane crosses.
 struct Crossing {
-    /// The edges by which its outline comes back below the plane, and by which it leaves.
+    /// The edges at which its outline comes back below the plane, and at which it leaves.
     enter: Rung,
     leave: Rung,
     corners: [usize; 3],
@@ -116,7 +116,7 @@ impl Crossing {
         })
     }
 
-    /// The corner that is not on an edge of the triangle.
+    /// The corner opposite an edge of the triangle.
     fn apex(&self, rung: Rung) -> Option<usize> {
         self.corners.into_iter().find(|c| !rung.contains(c))
     }
@@ -137,7 +137,7 @@ fn straight(points: &[Vertex], crossings: &[Crossing]) -> Vec<[Rung; 2]> {
     heads.map(run).collect()
 }
 
-/// For each triangle the one beyond its last edge, if that lies in the same plane.
+/// For each triangle the coplanar one beyond its last edge, if any.
 fn successors(points: &[Vertex], crossings: &[Crossing]) -> Vec<Option<usize>> {
     let mut entered: HashMap<Rung, Vec<usize>> = HashMap::default();
     for (i, crossing) in crossings.iter().enumerate() {
@@ -197,7 +197,7 @@ fn meet_wide(ends: [&Vertex; 2], plane: &Plane) -> Result<Lattice> {
     Ok(meet)
 }
 
-/// The same for lattice points whose values are short, in machine words.
+/// The same point for lattice points with short values, in machine words.
 fn meet_near(p: &Lattice, q: &Lattice, plane: &ShortPlane) -> Option<Lattice> {
     let (s, t) = (plane.value_at(p), plane.value_at(q));
     if s.unsigned_abs().max(t.unsigned_abs()) >= SHORT_VALUE {

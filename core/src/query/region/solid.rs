@@ -10,7 +10,7 @@ use crate::tree::partition::Facet;
 /// The faces of a closed mesh as facets, numbered as in its input.
 ///
 /// # Errors
-/// None; reserved for half-spaces, which have none.
+/// None; reserved for half-spaces, which have no mesh.
 pub fn facets(source: &Source) -> Result<Vec<Facet<Dim3>>> {
     let Some(mesh) = source.mesh() else {
         return Ok(Vec::new());

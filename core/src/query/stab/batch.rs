@@ -24,7 +24,7 @@ pub fn test_rays<S: Cast<D>, const D: usize>(
     test_rays_watched(tree, origins, directions, &mut ())
 }
 
-/// Tests rays as [`test_rays`] does, and tells of each step.
+/// Tests rays as [`test_rays`] does, and reports each step.
 ///
 /// # Errors
 /// As for [`test_rays`].

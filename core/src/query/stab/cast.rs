@@ -1,4 +1,4 @@
-//! The demands on a space whose hyperplanes rays stab.
+//! The trait of spaces whose hyperplanes rays stab.
 
 use crate::arith::bounds::REACH;
 use crate::arith::Int;
@@ -28,7 +28,7 @@ pub trait Cast<const D: usize>: Space {
 
     /// Return whether a fragment beside `cut` can have a point in the interior of a facet in `cut`.
     ///
-    /// It cannot if at most two of its corners are in the cut, and those are the facet's.
+    /// It cannot if at most two of its corners lie in the cut, and these are the facet's.
     fn touches(piece: &Self::Fragment, cut: &Self::Hyperplane, facet: &[[i64; D]; D]) -> bool;
 }
 

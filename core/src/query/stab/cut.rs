@@ -50,7 +50,7 @@ impl<const D: usize> Cut<D> {
         (self.normal, self.offset)
     }
 
-    /// The half-space in which all corners of a facet are, where doubles tell; there may be none.
+    /// The half-space that holds all corners of a facet; `Doubtful` if none or uncertain.
     #[inline]
     pub fn half(&self, facet: &[[f64; D]; D]) -> Filtered<Half> {
         let mut sides = [false; 2];

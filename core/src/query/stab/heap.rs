@@ -18,7 +18,7 @@ impl<F> Entry<F> {
     }
 }
 
-/// A binary heap, most hits first, of equal ones the first of the input.
+/// A binary heap: most hits first, then in the order of the input.
 #[derive(Clone, Debug)]
 pub struct Heap<F> {
     entries: Vec<Entry<F>>,
@@ -32,7 +32,7 @@ impl<F> Default for Heap<F> {
 }
 
 impl<F> Heap<F> {
-    /// The heap of these entries in this order, if it is one.
+    /// The heap with these entries in this order, if they form one.
     pub fn of(entries: Vec<Entry<F>>) -> Option<Self> {
         let mut lower = entries.iter().enumerate().skip(1);
         let ordered = lower.all(|(place, entry)| !entry.precedes(&entries[(place - 1) / 2]));
@@ -44,7 +44,7 @@ impl<F> Heap<F> {
         self.entries.len()
     }
 
-    /// Return whether there is none.
+    /// Return whether it is empty.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -54,7 +54,7 @@ impl<F> Heap<F> {
         &self.entries
     }
 
-    /// The place of a facet, which is likely to be `guess`.
+    /// The place of a facet; tries `guess` first.
     pub fn place(&self, facet: u32, guess: usize) -> Option<usize> {
         if self.entries.get(guess).is_some_and(|e| e.facet == facet) {
             return Some(guess);
@@ -68,7 +68,7 @@ impl<F> Heap<F> {
         self.rise(self.entries.len() - 1);
     }
 
-    /// Counts a hit of the fragment at a place; places after it stay as they are.
+    /// Counts a hit of the fragment at a place; later places stay as they are.
     pub fn count_hit(&mut self, place: usize) {
         self.entries[place].hits += 1;
         self.rise(place);

@@ -8,7 +8,7 @@ use super::cut::Cut;
 use super::heap::Heap;
 use crate::mesh::handle::NodeId;
 
-/// The times at which leaves are divided.
+/// When leaves are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Growth {
     /// After more visits than this.
@@ -27,11 +27,11 @@ pub(super) struct Nodes<S: Cast<D>, const D: usize> {
 
 #[derive(Debug)]
 pub(super) struct Node<S: Cast<D>, const D: usize> {
-    /// T(v), counted by all rays that are on their way.
+    /// T(v); several rays may count it at once.
     pub(super) visits: AtomicU64,
     pub(super) depth: u32,
     pub(super) content: Content<S, D>,
-    /// The facets of a long list in ascending order, each with its place when this was made.
+    /// The facets of a long list, ascending, each with its place when this was made.
     places: OnceLock<Vec<(u32, u32)>>,
 }
 
@@ -46,13 +46,12 @@ pub(super) struct Inner<const D: usize> {
     pub(super) cut: Cut<D>,
     pub(super) coplanar: Vec<u32>,
     pub(super) children: [NodeId; 2],
-    /// Marks of the children of which a facet may have a point in the interior of a facet in the
-    /// cut.
+    /// Per child, whether one of its facets may have a point in the interior of a facet in the cut.
     pub(super) touched: [bool; 2],
 }
 
 impl<S: Cast<D>, const D: usize> Node<S, D> {
-    /// A preliminary leaf that nobody has visited.
+    /// A preliminary leaf that no ray has visited.
     pub(super) fn leaf(list: Heap<S::Fragment>, depth: u32) -> Self {
         Self {
             visits: AtomicU64::new(0),

@@ -30,7 +30,7 @@ struct NodeRecord {
 enum ContentRecord {
     /// Facets in the order of the heap, with their hits.
     Leaf(Vec<(u32, u64)>),
-    /// The facets in the cut, the one that gave it first, and the minus child.
+    /// The facets in the cut, the pivot first, and the minus child.
     Cut(Vec<u32>, NodeId),
 }
 
@@ -89,7 +89,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 }
 
 impl Record {
-    /// Nodes with cuts, the facets in these, and the first child: in the order of the divisions.
+    /// Inner nodes, the facets in their cuts, and their first children, in order of division.
     fn cuts(&self) -> Vec<(NodeId, &[u32], NodeId)> {
         let mut cuts = Vec::new();
         for (at, node) in NodeId::all().zip(&self.nodes) {
@@ -102,7 +102,7 @@ impl Record {
     }
 }
 
-/// Puts what a node lists in the order of the record; `None` if that names other facets.
+/// Sorts a node's list into the record's order; `None` if the record names other facets.
 fn restore<S: Cast<D>, const D: usize>(
     content: &mut Content<S, D>,
     stored: &ContentRecord,

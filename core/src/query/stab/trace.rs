@@ -7,9 +7,9 @@ use crate::mesh::handle::NodeId;
 /// Counts of one ray's way through a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Trace {
-    /// Nodes visited, leaves among them.
+    /// Nodes visited, including leaves.
     pub nodes: u32,
-    /// Leaves visited: the stabbed ones.
+    /// Leaves stabbed.
     pub leaves: u32,
     /// Facets tested, in leaves and in cuts.
     pub tests: u32,

@@ -1,10 +1,10 @@
 //! The augmented tree: it starts as one preliminary leaf and divides where rays go.
 //!
 //! Each inner node stores its cut H(v) and the facets in it, S(v); a preliminary leaf stores its
-//! list L(v) as a heap by hits, and its visits T(v). A leaf visited more than a threshold is divided
-//! at the hyperplane of its most hit fragment; the others are split exactly. Which facets a leaf
-//! lists decides how long an answer takes, never what it is: facets are tested whole, and whatever
-//! may be nearer than the best is visited.
+//! list L(v) as a heap by hits, and its visits T(v). A leaf visited more often than a threshold is
+//! divided at the hyperplane of its most hit fragment, which splits the others exactly. The lists
+//! of leaves affect the time of an answer, never the answer: facets are tested whole, and every
+//! node that may hold a nearer hit is visited.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -30,13 +30,13 @@ use crate::tree::trace::Watcher;
 #[derive(Debug)]
 pub struct StabTree<S: Cast<D>, const D: usize> {
     scene: Scene<D>,
-    /// Rays read them on their way, at the same time, and change them afterwards.
+    /// Rays read them concurrently and change them afterwards.
     nodes: RwLock<Nodes<S, D>>,
     growth: Growth,
     pub(super) rays: AtomicU64,
 }
 
-/// The size and the past of a tree.
+/// The size and the history of a tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shape {
     /// Inner nodes and leaves.
@@ -51,12 +51,12 @@ pub struct Shape {
     pub subdivisions: u64,
     /// Rays tested so far.
     pub rays: u64,
-    /// Visits of all nodes that are now in the tree.
+    /// Visits of all nodes now in the tree.
     pub visits: u64,
 }
 
 impl<S: Cast<D>, const D: usize> StabTree<S, D> {
-    /// One leaf with all facets; `hits` are the counters to begin with, by place in the input.
+    /// One leaf with all facets; `hits` are the initial counters, by place in the input.
     ///
     /// # Errors
     /// `TooLarge` for facets beyond the reach of the space.
@@ -66,7 +66,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
             poll();
             let beyond = |c: &f64| c.abs() > S::REACH as f64;
             if corners.iter().flatten().any(beyond) {
-                // Says what is wrong.
+                // Reports what is wrong.
                 S::fragment(&lattice(corners))?;
             }
             let number = scene.number(facet) as usize;
@@ -94,12 +94,12 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         &self.scene
     }
 
-    /// The nodes as they are.
+    /// The nodes, for reading.
     pub(super) fn nodes(&self) -> RwLockReadGuard<'_, Nodes<S, D>> {
         self.nodes.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The nodes, to be changed.
+    /// The nodes, for writing.
     pub(super) fn nodes_mut(&self) -> RwLockWriteGuard<'_, Nodes<S, D>> {
         self.nodes.write().unwrap_or_else(PoisonError::into_inner)
     }
@@ -127,12 +127,12 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 
     /// The first facet on a ray; counts visits and hits, and divides the leaves that are due.
     ///
-    /// Rays of several threads are on their way at the same time.
+    /// Several threads may test rays at the same time.
     pub fn test_ray(&self, ray: &Ray<D>) -> (Option<Found<D>>, Trace) {
         self.test_ray_watched(ray, &mut ())
     }
 
-    /// Tests a ray as [`Self::test_ray`] does, and tells of visits, tests, counts and divisions.
+    /// Tests a ray as [`Self::test_ray`] does; reports visits, tests, counts and divisions.
     pub fn test_ray_watched(
         &self,
         ray: &Ray<D>,
@@ -183,7 +183,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         }
     }
 
-    /// Counts what is there.
+    /// Measures the tree.
     pub fn shape(&self) -> Shape {
         let nodes = self.nodes();
         let mut shape = Shape {
@@ -239,7 +239,7 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
         Some(())
     }
 
-    /// The event of a leaf that was divided last.
+    /// The event of the latest division.
     fn division(&self, scene: &Scene<D>, node: NodeId) -> StabEvent {
         let number = |facet: &u32| scene.number(*facet);
         let list = |child: NodeId| match &self.all[child.place()].content {
@@ -264,7 +264,7 @@ fn lattice<const D: usize>(corners: &Facet<D>) -> [[i64; D]; D] {
     corners.map(|corner| corner.map(|c| c as i64))
 }
 
-/// The fragment of an entry, made if it is the whole facet; all facets of a scene have one.
+/// The fragment of an entry, built for a whole facet; every facet of a scene has one.
 fn fragment<S: Cast<D>, const D: usize>(
     scene: &Scene<D>,
     entry: &Entry<S::Fragment>,
@@ -275,7 +275,7 @@ fn fragment<S: Cast<D>, const D: usize>(
     }
 }
 
-/// The node that divides a list, and the lists of its children, which are to be these nodes.
+/// Divides a list: its inner node, and the lists of its `children`.
 fn parts<S: Cast<D>, const D: usize>(
     facet: u32,
     pivot: &S::Fragment,
@@ -321,7 +321,7 @@ fn parts<S: Cast<D>, const D: usize>(
                 above.push(entry);
             }
             Split::Coplanar(_) => coplanar.push(facet),
-            // What crosses the cut is met on both sides of it.
+            // A facet that crosses the cut is met on both sides of it.
             Split::Both { minus, plus } => {
                 below.push(part(minus));
                 above.push(part(plus));

@@ -1,4 +1,4 @@
-//! A tree that counts, laid open: what each node holds.
+//! The contents of each node of a tree that counts.
 
 use std::sync::atomic::Ordering;
 

@@ -24,19 +24,19 @@ enum Open {
     Cut { node: NodeId, from: f64, far: Far },
 }
 
-/// An entry of the stack: the part of a tree below a cut.
+/// The entry of the stack below that of a cut.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Far {
     /// Something else.
     No,
-    /// The child beyond the cut, of this number.
+    /// The child beyond the cut, by number.
     Child(usize),
 }
 
 type Stack = SmallVec<[Open; 64]>;
 
-/// A leaf's list is tested from end to end, as the notes have it, up to so many facets, which takes
-/// some 40 µs; of a longer one those facets whose boxes the ray meets.
+/// A leaf's list of up to this many facets is tested from end to end, as in the notes, in some 40
+/// µs; a longer list only where the ray meets the boxes of facets.
 const MAX_FACETS_TESTED: usize = 4096;
 
 /// A facet that was hit within a leaf, and its place in the leaf's list.
@@ -62,7 +62,7 @@ pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
     pub(super) nodes: &'a [Node<S, D>],
     pub(super) growth: Growth,
     pub(super) best: Option<Candidate>,
-    /// All facets that the ray hits, once a long list has asked for them.
+    /// All facets that the ray hits, computed for the first long list.
     pub(super) met: Option<Vec<(u32, Depth)>>,
     pub(super) trace: Trace,
     pub(super) wake: Wake,
@@ -107,7 +107,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         }
     }
 
-    /// Tests the facets in a cut; whether what lies beyond the cut cannot matter any more.
+    /// Tests the facets in a cut; returns true if nothing beyond the cut can matter.
     fn test_cut(&mut self, node: NodeId, far: Far) -> bool {
         let Content::Inner(inner) = &self.nodes[node.place()].content else {
             return false;
@@ -123,12 +123,12 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         let Far::Child(child) = far else {
             return false;
         };
-        // A hit in the interior of the only facet, with nothing beyond that touches it there.
+        // The ray hits the interior of the only facet, and nothing beyond touches it there.
         let inside = |facet| matches!(self.query.probe(facet), Probe::Hit(_));
         !inner.touched[child] && inner.coplanar.len() == 1 && inside(inner.coplanar[0])
     }
 
-    /// Tests what of L(v) the ray may hit; hits within the leaf count for its heap.
+    /// Tests the facets of L(v) that the ray may hit; counts hits within the leaf.
     fn test_leaf(&mut self, node: NodeId, list: &Heap<S::Fragment>, visits: u64, to: f64) {
         self.trace.leaves += 1;
         let hits = if list.len() > MAX_FACETS_TESTED {
@@ -152,7 +152,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         }
     }
 
-    /// Tests one facet after the other; the hits within the leaf.
+    /// Tests one facet after the other; returns the hits within the leaf.
     fn test_all(&mut self, node: NodeId, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
         let mut hits = SmallVec::new();
         for (place, entry) in list.entries().iter().enumerate() {
@@ -171,7 +171,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         hits
     }
 
-    /// The hits within the leaf, by their places, of the facets whose boxes the ray meets.
+    /// The hits within the leaf, by place, among the facets whose boxes the ray meets.
     fn search(&mut self, node: NodeId, list: &Heap<S::Fragment>, to: f64) -> SmallVec<[Hit; 16]> {
         let met = match self.met.take() {
             Some(met) => met,
@@ -189,7 +189,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         hits
     }
 
-    /// Tests the facets of the scene whose boxes the ray meets; those that it hits.
+    /// Tests the facets of the scene whose boxes the ray meets; returns the hit ones.
     fn test_boxes(&mut self, node: NodeId) -> Vec<(u32, Depth)> {
         let mut met = Vec::new();
         let (query, scene) = (self.query, self.scene);
@@ -217,7 +217,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     }
 }
 
-/// Puts the parts of an inner node that the ray meets on the stack, the nearest on top.
+/// Pushes the parts of an inner node that the ray meets, the nearest last.
 #[inline]
 fn push_parts<const D: usize>(
     inner: &Inner<D>,

@@ -14,7 +14,7 @@ type Wide = Int<4>;
 struct Spoke {
     half: usize,
     forward: bool,
-    /// Normal, reversed for backward half-edges: a quarter turn from the triangle, for all the same way.
+    /// Normal, reversed for backward half-edges: always the same quarter turn from the triangle.
     across: [i128; 3],
 }
 
@@ -28,10 +28,10 @@ struct Axis {
 
 /// Pairs the half-edges of one edge, so that the triangles of a pair bound a wedge of the inside.
 ///
-/// Counterclockwise around the edge, the inside begins at a backward half-edge and ends at a forward
-/// one. Of triangles in one half-plane the forward ones count as first, so that walls of no thickness
-/// separate what they are between. Beginnings and ends are matched like parentheses, which leaves no
-/// crossing pairs where wedges overlap.
+/// Counterclockwise around the edge, the inside begins at a backward half-edge and ends at a
+/// forward one. Among triangles in one half-plane the forward ones come first, so that walls
+/// without thickness separate both sides. Beginnings and ends match like parentheses, so no pairs
+/// cross where wedges overlap.
 ///
 /// # Order
 /// Depends on the half-edges' numbers only among triangles in one half-plane.
@@ -49,7 +49,7 @@ pub(super) fn wedges<R: Radial>(
         .chain(backward.iter().map(|h| (h, false)))
     {
         let spoke = Spoke::new(radial, half, is_forward);
-        // Insertion tolerates an inconsistent order, which normals may give; `sort_by` may panic.
+        // Insertion tolerates an inconsistent order, which normals may cause; `sort_by` may panic.
         let place = spokes.partition_point(|other| {
             axis.order(&spokes[0].across, &other.across, &spoke.across)
                 .is_le()
@@ -59,7 +59,7 @@ pub(super) fn wedges<R: Radial>(
     match_wedges(&spokes)
 }
 
-/// Matches each forward half-edge with the last unmatched backward one, going round.
+/// Matches each forward half-edge with the last unmatched backward one, in cyclic order.
 fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     let mut pairs = Vec::with_capacity(spokes.len() / 2);
     let mut begun = Vec::new();
@@ -74,7 +74,7 @@ fn match_wedges(spokes: &[Spoke]) -> Vec<(usize, usize)> {
     pairs
 }
 
-/// Return a start from which at any time at least as many wedges have begun as ended.
+/// Return a start from which never more wedges have ended than begun.
 fn start(spokes: &[Spoke]) -> usize {
     let (mut depth, mut lowest, mut start) = (0_i64, 0_i64, 0);
     for (k, spoke) in spokes.iter().enumerate() {

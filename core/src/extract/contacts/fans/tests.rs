@@ -61,7 +61,7 @@ impl Surface {
         self
     }
 
-    /// Splits and checks all that must hold of any split.
+    /// Splits and checks all invariants of a split.
     fn split(&self) -> Split {
         let count = u32::try_from(self.points.len()).unwrap();
         let split = split_fans(&self.triangles, count, self).unwrap();

@@ -1,12 +1,12 @@
-//! Triangles in blocks of neighbours, so that few are looked at for each question.
+//! Triangles in blocks of neighbours, so that each query compares few.
 
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::extent::Extent;
 
-/// Triangles in one block: looking at a block costs about as much as at a triangle.
+/// Triangles in one block: checking a block costs about as much as a triangle.
 const ROOM: usize = 32;
 
-/// Neighbouring triangles together, and a box around each block that holds all they ever were.
+/// Blocks of neighbouring triangles, and a box around all places that each block ever had.
 #[derive(Debug, Default)]
 pub struct Blocks {
     /// For each triangle its block.
@@ -49,7 +49,7 @@ impl Blocks {
         self.extents.push(around);
     }
 
-    /// Takes note of a triangle's new box.
+    /// Extends a block's box by a triangle's new one.
     pub fn grow(&mut self, triangle: u32, extent: &Extent) {
         let around = &mut self.extents[self.owner[triangle as usize] as usize];
         *around = around.joined(extent);
@@ -62,7 +62,7 @@ impl Blocks {
         met.flat_map(|(_, members)| members.iter().copied())
     }
 
-    /// Return the number of boxes that a question compares, beside those of the triangles it finds.
+    /// Return how many boxes a query compares, besides those of the triangles it finds.
     pub fn count(&self) -> usize {
         self.members.len()
     }

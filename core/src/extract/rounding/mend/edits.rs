@@ -1,4 +1,4 @@
-//! Small changes of a mesh that may take a fault out.
+//! Small changes of a mesh that may remove a fault.
 
 use super::part::{distance, Edit, Mending};
 use crate::arith::Sign;
@@ -44,7 +44,7 @@ impl Mending {
         edits
     }
 
-    /// Two vertices put in one place, the nearest pairs first.
+    /// Merges of two vertices, the nearest pairs first.
     fn merges(&self, corners: &[VertexId]) -> Vec<Edit> {
         let place = |v: VertexId| &self.vertices[v.place()];
         let mut pairs: Vec<(f64, VertexId, VertexId)> = Vec::new();
@@ -66,8 +66,8 @@ impl Mending {
             .collect()
     }
 
-    /// One vertex goes where another is. Triangles that have both vanish, and so do such as then are
-    /// each other's opposites. `None` if the surface would not stay closed.
+    /// Merges a vertex into another. Triangles with both vanish, and so do pairs that become
+    /// opposites. `None` if the surface would not stay closed.
     fn merge(&self, from: VertexId, to: VertexId) -> Option<Edit> {
         let star = self.star(from);
         let renamed = |t: [VertexId; 3]| t.map(|v| if v == from { to } else { v });
@@ -148,7 +148,7 @@ impl Mending {
         })
     }
 
-    /// The other diagonal of the two triangles at an edge, where both are nearly in one place.
+    /// Swaps the diagonal of the two triangles at an edge, if the diagonals nearly meet.
     fn swap(&self, t: u32, edge: usize) -> Option<Edit> {
         let corners = self.triangles[t as usize]?;
         let (a, b, c) = (
@@ -170,7 +170,7 @@ impl Mending {
         })
     }
 
-    /// A vertex a spacing aside.
+    /// Moves of a vertex by one spacing.
     fn moves(&self, v: VertexId) -> Vec<Edit> {
         if self.fixed[v.place()] {
             return Vec::new();
@@ -240,8 +240,8 @@ fn fans(v: VertexId, around: Vec<Numbered>) -> Option<Vec<Vec<Numbered>>> {
 
 /// Return whether the diagonals of the triangles a b c and b a d pass each other within a distance.
 ///
-/// Seen along the axis that both face most, none of the triangles turns over with the other
-/// diagonal, exactly; so the diagonals cross there, and how far apart they are is a quotient.
+/// Seen along the axis that both face most, no triangle turns over with the other diagonal,
+/// exactly. So the diagonals cross there, and their distance is a quotient.
 fn diagonals_meet(corners: [&Point; 4], reach: f64) -> bool {
     let [a, b, c, d] = corners.map(|p| *p);
     let (first, second) = (area(&[a, b, c]), area(&[b, a, d]));

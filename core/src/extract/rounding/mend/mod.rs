@@ -1,7 +1,7 @@
-//! Crossings that rounding made, taken out by small changes.
+//! Removal of the crossings that rounding made, by small changes.
 //!
 //! Each change is tried and judged exactly: it stays if fewer faults are left. So mending ends, and
-//! what it could not take out is known.
+//! the faults that it could not remove are known.
 //!
 //! # Source
 //! Iterated rounding and repair as in Lazard and Valque, *Removing self-intersections in 3D meshes
@@ -18,11 +18,11 @@ use self::part::{both, distance, Edit};
 pub use self::part::{Mending, Precision};
 use crate::interrupt::spend;
 
-/// Changes tried for each fault before it is left: 30 merges, 6 swaps, and 14 moves of 6 corners.
+/// Changes tried for each fault before giving up: 30 merges, 6 swaps, and 14 moves of 6 corners.
 const TRIES: usize = 120;
 
 impl Mending {
-    /// Takes out faults until none is left or none of the changes helps.
+    /// Removes faults until none is left or no change helps.
     pub fn run(&mut self) {
         let mut open: Vec<[u32; 2]> = self.faults();
         while let Some(fault) = open.pop() {
@@ -33,7 +33,7 @@ impl Mending {
                 return;
             }
             if self.improve(fault) {
-                // What was tried in vain before may help now.
+                // Changes that failed before may help now.
                 open = self.faults();
             }
         }

@@ -70,38 +70,38 @@ pub struct Mending {
     pub triangles: Vec<Option<[VertexId; 3]>>,
     /// Vertices that stay: not all of their triangles are in this part.
     pub(super) fixed: Vec<bool>,
-    /// Vertices of inputs, which others go to.
+    /// Vertices of inputs, into which others are merged.
     pub(super) given: Vec<bool>,
     pub(super) extents: Vec<Extent>,
     pub(super) blocks: Blocks,
     /// For each vertex its triangles, ascending.
     pub(super) stars: Vec<Star>,
     pub(super) flat: BTreeSet<u32>,
-    /// Each pair both ways round, so that those of a triangle are a range.
+    /// Each pair in both orders, so that the pairs of a triangle are a range.
     pub(super) crossings: BTreeSet<[u32; 2]>,
     pub(super) halves: HashMap<[VertexId; 2], u32>,
     pub(super) precision: Precision,
     /// Of the largest coordinate.
     pub(super) spacing: f64,
-    /// For each vertex how far it, and those merged with it, were moved at most.
+    /// For each vertex the farthest that it, or one merged into it, was moved.
     pub(super) drifts: Vec<f64>,
     pub(super) work: usize,
     pub(super) moved: HashSet<VertexId>,
 }
 
-/// A change that is tried: where vertices go, and what becomes of triangles.
+/// A change to try: new places of vertices, and new corners of triangles.
 #[derive(Debug, Default)]
 pub(super) struct Edit {
     pub(super) moves: Vec<(VertexId, Point)>,
     pub(super) triangles: Vec<(u32, Option<[VertexId; 3]>)>,
-    /// The vertex that another was merged with, and the distance by which that has moved it.
+    /// The vertex into which another is merged, and the distance by which that moves the other.
     pub(super) drift: Option<(VertexId, f64)>,
-    /// Copies of vertices, in order, made for surfaces that no longer hang together.
+    /// Copies of vertices, in order, made for surfaces that are no longer connected.
     pub(super) copies: Vec<VertexId>,
 }
 
 impl Mending {
-    /// The part, all faults of which are known.
+    /// The part, with all its faults.
     pub fn new(
         vertices: Vec<Point>,
         triangles: Vec<[VertexId; 3]>,
@@ -156,8 +156,8 @@ impl Mending {
         crossings.copied().chain(flat).collect()
     }
 
-    /// Return the distance of a vertex, when it is here, from where it or one that was merged with
-    /// it came.
+    /// Bound the distance of a vertex, once at `place`, from its origin and those of vertices
+    /// merged into it.
     pub(super) fn drift(&self, v: VertexId, place: &Point) -> f64 {
         self.drifts[v.place()] + distance(&self.vertices[v.place()], place)
     }
@@ -183,7 +183,7 @@ impl Mending {
     }
 }
 
-/// A pair, both ways round.
+/// A pair in both orders.
 pub(super) fn both([t, u]: [u32; 2]) -> [[u32; 2]; 2] {
     [[t, u], [u, t]]
 }

@@ -1,4 +1,4 @@
-//! Changes carried out and taken back, and the faults that are left.
+//! Changes made and undone, and the faults that are left.
 
 use super::part::{Edit, Mending, Star, MEETING};
 use crate::extract::rounding::edges::crosses_at;
@@ -9,7 +9,7 @@ use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 impl Mending {
-    /// Carries a change out; returns the change back.
+    /// Makes a change; returns its inverse.
     pub(super) fn apply(&mut self, edit: &Edit) -> Edit {
         let mut undo = Edit::default();
         for &v in &edit.copies {
@@ -80,7 +80,7 @@ impl Mending {
         }
     }
 
-    /// The faults of some triangles, ascending, if they are fewer than a number.
+    /// The faults of `some` triangles, ascending, if they are fewer than `most`.
     pub(super) fn faults_of(
         &mut self,
         some: &[u32],
