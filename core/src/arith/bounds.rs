@@ -1,9 +1,9 @@
 //! The widths of the exact numbers of the kernel.
 //!
-//! A bound is a number of bits `b` such that the magnitude is below 2^`b`; the sign takes one
-//! bit more. Everything follows from one fact: a determinant of order 2, 3 or 4 with entries in
-//! [−1, 1] is at most 2, 4 or 16 (Hadamard 1893), and it is linear in each column. So the bound
-//! of a determinant is the sum of its columns' bounds plus 1, 2 or 4.
+//! A bound is a number of bits `b` such that the magnitude is below 2^`b`; the sign takes one bit more. All
+//! bounds follow from one fact: a determinant of order 2, 3 or 4 with entries in [−1, 1] is at most 2, 4 or
+//! 16 (Hadamard 1893), and it is linear in each column. So the bound of a determinant is the sum of its
+//! columns' bounds plus 1, 2 or 4.
 //!
 //! Notation: `p` bounds a lattice coordinate. A corner of a cell lies half a step between
 //! lattice points; it enters doubled, as the homogeneous point (2x, 2y, 2z, 2).
@@ -20,10 +20,10 @@
 
 /// Lattice coordinates are below 2^`COORDINATE_BITS` in magnitude.
 ///
-/// A double holds every integer up to 2^53, so that a lattice coordinate is one.
+/// Doubles represent every integer up to 2^53, and so every lattice coordinate.
 pub const COORDINATE_BITS: u32 = 53;
 
-/// No lattice coordinate is as large as this in magnitude; points and lines across axes may be.
+/// The least integer above all lattice coordinates; points and lines across axes may reach it.
 pub const REACH: i64 = 1 << COORDINATE_BITS;
 
 /// Return whether this is the coordinate of a lattice point.
@@ -33,8 +33,8 @@ pub const fn is_coordinate(k: i64) -> bool {
 
 /// Normals of half-spaces are below 2^`HALF_SPACE_NORMAL_BITS`.
 ///
-/// A plane n·x = d that meets the lattice has |d| < 3·2^(bits + p), which is no wider than the offset
-/// of a plane through lattice points; nor is it after a motion or refinement that leaves it there.
+/// A plane n·x = d that meets the lattice has |d| < 3·2^(bits + p), no wider than the offset of a plane
+/// through lattice points; the same holds after a motion or refinement that keeps it on the lattice.
 pub const HALF_SPACE_NORMAL_BITS: u32 = normal(COORDINATE_BITS) - 2;
 
 /// Limbs of a component of a plane's normal; as wide as an `i128`.
@@ -59,7 +59,7 @@ pub const LINE_NORMAL_BITS: u32 = 62;
 /// Offsets of lines that meet the plane's frame are below 2^`LINE_OFFSET_BITS`.
 pub const LINE_OFFSET_BITS: u32 = LINE_NORMAL_BITS + COORDINATE_BITS + 2;
 
-/// Limbs of each of the coordinates of a point where two lines meet, times its weight.
+/// Limbs of each coordinate of a point where two lines meet, times its weight.
 pub const LINE_MEET_LIMBS: usize = 3;
 
 /// Limbs of a line's value at such a point.
@@ -89,10 +89,10 @@ pub const CROSS_LIMBS: usize = 12;
 /// Limbs of the orientation of three such points in a projection.
 pub const ORIENTATION_LIMBS: usize = 18;
 
-/// Limbs of the cosine and the sine of an angle between three such points, in a projection.
+/// Limbs of the cosine and sine of an angle between three such points, in a projection.
 pub const ANGLE_LIMBS: usize = 24;
 
-/// Limbs of the volume that four such points span.
+/// Limbs of the volume spanned by four such points.
 pub const SIDE_LIMBS: usize = 36;
 
 /// Limbs of the sine of the sum of two such angles.
@@ -219,8 +219,8 @@ pub const fn point_orientation(p: u32) -> u32 {
     det3([point_numerator(p), point_numerator(p), point_weight(p)])
 }
 
-/// The cosine and the sine of the angle between differences below 2^`d`, in a projection along an
-/// axis, up to a factor.
+/// The cosine and sine of the angle between differences below 2^`d`, in a projection along an axis, up to a
+/// factor.
 pub const fn angle(d: u32) -> u32 {
     sum(2 * d, 2 * d)
 }
@@ -235,7 +235,7 @@ pub const fn sum_of_angles(d: u32) -> u32 {
     sum(2 * angle(d), 2 * angle(d))
 }
 
-/// The limbs that hold numbers of magnitude below 2^`bits` with their sign.
+/// The limbs needed for signed numbers of magnitude below 2^`bits`.
 pub const fn limbs_for(bits: u32) -> usize {
     (bits as usize + 1).div_ceil(64)
 }

@@ -1,4 +1,4 @@
-//! Conversions that the types do not show to be right, each with why it is.
+//! Conversions whose correctness the types do not show, each with the reason.
 
 /// Integers that have a nearest double.
 pub trait Nearest {
@@ -20,20 +20,20 @@ macro_rules! nearest {
 
 nearest!(i64, u64, i128, u128, usize);
 
-/// The nearest double: an integer below 2⁵³ in magnitude itself, as lattice coordinates are.
+/// The nearest double: exact for integers below 2⁵³ in magnitude, such as lattice coordinates.
 #[inline]
 pub fn as_double(integer: impl Nearest) -> f64 {
     integer.nearest()
 }
 
-/// A double without its fraction; the nearest end of the range if it is beyond.
+/// A double truncated to an integer, saturated to the range.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "the cast saturates")]
 pub fn as_whole(x: f64) -> i64 {
     x as i64
 }
 
-/// A double without its fraction, in a wide integer; the nearest end of the range if it is beyond.
+/// A double truncated to a wide integer, saturated to the range.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "the cast saturates")]
 pub fn as_wide(x: f64) -> i128 {
@@ -47,7 +47,7 @@ pub const fn low_limb(wide: u128) -> u64 {
     wide as u64
 }
 
-/// A count as a number: of vertices, faces and the like there are fewer than 2³², as import sees to.
+/// A count as a number: import ensures that there are fewer than 2³² vertices, faces and so on.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "see above")]
 pub const fn as_number(count: usize) -> u32 {
@@ -55,7 +55,7 @@ pub const fn as_number(count: usize) -> u32 {
     count as u32
 }
 
-/// A number of something that is in memory as a place there.
+/// The number of an item in memory as an index.
 #[inline]
 #[allow(
     clippy::cast_possible_truncation,

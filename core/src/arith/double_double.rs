@@ -1,13 +1,12 @@
-//! Numbers of two doubles each, for sums in which more digits cancel than one double has.
+//! Numbers of two doubles each, for sums with more cancellation than one double allows.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 use super::sum::two_sum;
 
-/// The sum of two doubles, not rounded, of which the second is no more than half a unit in the last
-/// place of the first.
+/// The unrounded sum of two doubles; the second is at most half a unit in the last place of the first.
 ///
-/// Sums and products are off by less than 2^-103 of them, as long as nothing overflows.
+/// Sums and products have a relative error below 2^-103, as long as nothing overflows.
 ///
 /// # Source
 /// Joldes, Muller, Popescu 2017, "Tight and rigorous error bounds for basic building blocks of
@@ -28,14 +27,14 @@ pub struct DoubleDouble {
 }
 
 impl DoubleDouble {
-    /// The difference of two doubles, exactly.
+    /// The exact difference of two doubles.
     #[inline]
     pub fn difference(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, -b);
         Self { high, low }
     }
 
-    /// The double nearest to it.
+    /// The nearest double.
     #[inline]
     pub fn rounded(self) -> f64 {
         self.high
@@ -103,7 +102,7 @@ impl Mul for DoubleDouble {
 impl Div for DoubleDouble {
     type Output = Self;
 
-    /// The quotient, off by less than 2^-100 of it.
+    /// The quotient, with a relative error below 2^-100.
     #[inline]
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;

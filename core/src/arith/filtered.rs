@@ -1,4 +1,4 @@
-//! Answers of filters.
+//! Results of floating-point filters.
 
 /// The answer of a filter: rounded arithmetic settles a question, or leaves it to an exact computation.
 ///
@@ -15,7 +15,7 @@
 pub enum Filtered<T> {
     /// The exact answer.
     Certain(T),
-    /// It may be any: ask an exact computation.
+    /// Undecided: ask an exact computation.
     Doubtful,
 }
 
@@ -30,7 +30,7 @@ impl<T> Filtered<T> {
         }
     }
 
-    /// The answer; computed exactly if need be.
+    /// The answer, computed exactly if necessary.
     #[inline]
     pub fn or_exact(self, exact: impl FnOnce() -> T) -> T {
         match self {
@@ -39,7 +39,7 @@ impl<T> Filtered<T> {
         }
     }
 
-    /// The answer of this filter, or else of another one.
+    /// The answer of this filter, or of another one if it is doubtful.
     #[inline]
     pub fn or_else(self, other: impl FnOnce() -> Self) -> Self {
         match self {

@@ -14,7 +14,7 @@ pub fn gcd_u128(a: u128, b: u128) -> u128 {
     }
 }
 
-/// The binary algorithm, as long as a number has two limbs; neither may be zero.
+/// The binary algorithm, while a number has two limbs; neither may be zero.
 fn gcd_long(a: u128, b: u128) -> u128 {
     let twos = (a | b).trailing_zeros();
     let (mut a, mut b) = (a >> a.trailing_zeros(), b >> b.trailing_zeros());

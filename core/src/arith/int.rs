@@ -11,9 +11,9 @@ use super::sign::Sign;
 
 /// A signed integer of `N` 64-bit limbs, in two's complement.
 ///
-/// The limbs are little-endian. Arithmetic is exact. That results fit is the caller's duty,
-/// discharged by the widths in [`bounds`](super::bounds); where one does not, the operation panics,
-/// in every build. Products need no check where the result has the limbs of both factors.
+/// The limbs are little-endian. Arithmetic is exact. Callers ensure that results fit, by the widths in
+/// [`bounds`](super::bounds); where one does not, the operation panics, in every build. Products need no
+/// check where the result has the limbs of both factors.
 ///
 /// Values are meant to stay within the symmetric range |x| < 2^(64 `N` − 1).
 ///
@@ -152,13 +152,13 @@ impl<const N: usize> Int<N> {
         }
     }
 
-    /// Return whether the value is −2^(64 `N` − 1), the one without a negative.
+    /// Return whether the value is −2^(64 `N` − 1), whose negative does not fit.
     #[inline]
     fn is_minimum(&self) -> bool {
         self.limbs[N - 1] == 1 << 63 && self.limbs[..N - 1].iter().all(|&limb| limb == 0)
     }
 
-    /// The absolute value as an unsigned number, right for every value.
+    /// The absolute value as an unsigned number, correct for every value.
     #[inline]
     pub(super) fn magnitude(&self) -> [u64; N] {
         let sign = self.sign_limb();
@@ -287,7 +287,7 @@ impl<const N: usize> Int<N> {
     }
 }
 
-/// Ends a computation of which a result does not fit into so many limbs.
+/// Panics because a result does not fit into this many limbs.
 #[cold]
 #[inline(never)]
 pub(super) fn exceeds(what: &str, limbs: usize) -> ! {

@@ -1,4 +1,4 @@
-//! Numbers by their leading bits, and the quotients that these decide.
+//! Numbers by their leading bits, and quotients that these decide.
 
 use super::convert::low_limb;
 use super::round::nearly_to_f64;
@@ -8,7 +8,7 @@ pub const SPLIT_BITS: u32 = 40;
 
 /// An integer high·2^[`SPLIT_BITS`] + low, in two machine words each.
 ///
-/// Nothing checks that sums fit: whoever makes them bounds them.
+/// Nothing checks that sums fit: callers bound them.
 #[derive(Clone, Copy, Debug)]
 pub struct Split {
     high: i128,
@@ -66,8 +66,8 @@ impl Split {
     }
 }
 
-/// A positive number by its leading bits: (bits + part)·2^exponent with 2^127 ≤ bits < 2^128 and
-/// 0 ≤ part ≤ bits·2^-63.
+/// The leading bits of a positive number: (bits + part)·2^exponent with 2^127 ≤ bits < 2^128 and 0 ≤ part ≤
+/// bits·2^-63.
 #[derive(Clone, Copy, Debug)]
 pub struct Leading {
     bits: u128,
@@ -85,7 +85,7 @@ impl Leading {
         }
     }
 
-    /// The product of an exact number, or one cut at 64 bits or below, with a factor.
+    /// The product of an exact number, or one cut at 64 bits or lower, with a factor.
     #[inline]
     #[must_use]
     pub fn times(&self, factor: u64) -> Self {
@@ -98,10 +98,10 @@ impl Leading {
 
     /// The double nearest to the quotient, if the leading bits decide it.
     ///
-    /// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a ≤ 2^-63 and
-    /// 0 ≤ b < 2^-63 + 2^-63: as n/d is below 2^64, the ratio is more than n/d − 4 and at most
-    /// n/d + 2, and the quotient is rounded like all numbers from [`UNSURE`] below it to as many
-    /// above, unless the middle between two doubles is among them.
+    /// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a ≤ 2^-63 and 0 ≤ b <
+    /// 2^-63 + 2^-63: as n/d is below 2^64, the ratio is more than n/d − 4 and at most n/d + 2. So it
+    /// rounds like all numbers within [`UNSURE`] of the quotient, unless these include the midpoint of two
+    /// doubles.
     #[inline]
     pub fn over(&self, denominator: &Self) -> Option<f64> {
         let quotient = low_limb((self.bits >> 1) / u128::from(denominator.top()));
@@ -115,7 +115,7 @@ impl Leading {
     }
 }
 
-/// The quotient of leading bits is off by less.
+/// A bound on the error of the quotient of leading bits.
 const UNSURE: u64 = 8;
 
 #[cfg(test)]
@@ -123,7 +123,7 @@ mod tests {
     use super::super::{ratio_to_f64, Int};
     use super::*;
 
-    /// Numbers of all lengths up to so many bits, in no order.
+    /// Numbers of all lengths up to `bits`, in random order.
     fn numbers(bits: u32) -> impl Iterator<Item = i128> {
         let mut state = 0x9E37_79B9_7F4A_7C15_F39C_C060_5CED_C835_u128;
         std::iter::repeat_with(move || {

@@ -1,14 +1,14 @@
 //! Unsigned numbers as arrays of limbs, little-endian.
 //!
-//! The loops under [`Int`](super::Int) and the rounding. All of them wrap on purpose, so they
-//! spell it out instead of relying on the build's overflow checks being off.
+//! The loops under [`Int`](super::Int) and the rounding. All wrap on purpose and say so explicitly,
+//! independent of the build's overflow checks.
 
 use super::convert::{as_number, low_limb};
 
-/// The most limbs by which a product may be cut short; they are computed to see that they are empty.
+/// The most limbs by which a product may be truncated; these are computed to check that they are empty.
 pub(super) const SPARE: usize = 2;
 
-/// The low `R >= A + B - SPARE` limbs of the product of two unsigned numbers, and those above.
+/// The low `R >= A + B - SPARE` limbs of the product of two unsigned numbers, and the limbs above.
 #[inline]
 pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
     a: &[u64; A],
@@ -27,7 +27,7 @@ pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
     (product, top)
 }
 
-/// A limb of a number, or one above its last.
+/// A limb of a number, or one above its last limb.
 #[inline(always)]
 #[allow(
     clippy::inline_always,
@@ -55,8 +55,8 @@ pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
     (low_limb(wide), (wide >> 64) as u64)
 }
 
-/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on, of which those above
-/// the last are `top`.
+/// Subtracts `subtrahend & mask` from the limbs of `number` from `start` on; `top` has the limbs above its
+/// last.
 ///
 /// The borrow out of the subtrahend's last limb is dropped: a product has no limb for it.
 #[inline]
@@ -124,7 +124,7 @@ pub(super) fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
     let (mid, borrow) = borrowing_sub(low_limb(rest), product_mid, borrow);
     let (mut high, _) = borrowing_sub((rest >> 64) as u64, product_high, borrow);
     let mut rest = u128::from(mid) << 64 | u128::from(low);
-    // The guess is at most two too large, which leaves a negative remainder.
+    // The guess is at most two too large, which makes the remainder negative.
     while high != 0 {
         let (sum, carry) = rest.overflowing_add(divisor);
         rest = sum;
@@ -136,7 +136,7 @@ pub(super) fn remainder_step(rest: u128, limb: u64, divisor: u128) -> u128 {
 /// The inverse of an odd number modulo 2^64.
 #[inline]
 pub(super) const fn inverse_mod_limb(odd: u64) -> u64 {
-    // Right in five bits; each Newton step doubles them.
+    // Correct in five bits; each Newton step doubles them.
     let mut inverse = odd.wrapping_mul(3) ^ 2;
     let mut step = 0;
     while step < 4 {

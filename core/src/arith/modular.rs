@@ -27,7 +27,7 @@ pub const fn mul_mod(a: u64, b: u64, p: u64) -> u64 {
 #[inline]
 pub fn inv_mod(a: u64, p: u64) -> u64 {
     let (mut large, mut small) = (p, a % p);
-    // Each remainder is its coefficient times a, modulo p; coefficients stay below p.
+    // Each remainder equals its coefficient times a, modulo p; coefficients stay below p.
     let (mut large_coefficient, mut coefficient) = (0i64, 1i64);
     while small > 1 {
         let quotient = large / small;

@@ -16,14 +16,14 @@ impl<const N: usize> Add for Int<N> {
         let (ours, theirs) = (self.limbs(), other.limbs());
         let mut limbs = [0; N];
         let mut carry = false;
-        // A loop over places is unrolled, and none over three iterators at once.
+        // The compiler unrolls a loop over indices, but not one over three iterators at once.
         let mut i = 0;
         while i < N {
             (limbs[i], carry) = carrying_add(ours[i], theirs[i], carry);
             i += 1;
         }
         let (a, b, c) = (ours[N - 1], theirs[N - 1], limbs[N - 1]);
-        // The signs of both terms differ from the sum's.
+        // Both terms have the same sign, and the sum has the other.
         if ((a ^ c) & (b ^ c)).cast_signed() < 0 {
             exceeds("a sum", N);
         }
@@ -39,14 +39,14 @@ impl<const N: usize> Sub for Int<N> {
         let (ours, theirs) = (self.limbs(), other.limbs());
         let mut limbs = [0; N];
         let mut borrow = false;
-        // A loop over places is unrolled, and none over three iterators at once.
+        // The compiler unrolls a loop over indices, but not one over three iterators at once.
         let mut i = 0;
         while i < N {
             (limbs[i], borrow) = borrowing_sub(ours[i], theirs[i], borrow);
             i += 1;
         }
         let (a, b, c) = (ours[N - 1], theirs[N - 1], limbs[N - 1]);
-        // The terms differ in sign, and the difference is on the wrong side.
+        // The terms differ in sign, and the difference has the wrong one.
         if ((a ^ b) & (a ^ c)).cast_signed() < 0 {
             exceeds("a difference", N);
         }

@@ -33,10 +33,9 @@ pub(super) fn magnitudes_to_f64<const A: usize, const B: usize>(
 
 /// The double nearest to a ratio of positive numbers, if their leading bits decide it.
 ///
-/// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a < 2^-126 and
-/// 0 ≤ b < 2^-63: as n/d is below 2^64, the ratio is more than n/d − 2 and at most n/d + 2^-62, and
-/// the quotient is rounded like all numbers from [`UNSURE`] below it to as many above, unless the
-/// middle between two doubles is among them.
+/// A numerator n·(1 + a) of 127 bits over a denominator d·(1 + b) of 64, with 0 ≤ a < 2^-126 and 0 ≤ b <
+/// 2^-63: as n/d is below 2^64, the ratio is more than n/d − 2 and at most n/d + 2^-62. So it rounds like
+/// all numbers within [`UNSURE`] of the quotient, unless these include the midpoint of two doubles.
 fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) -> Option<f64> {
     const UNSURE: u64 = 4;
     let (num_bits, den_bits) = (bit_length(num).cast_signed(), bit_length(den).cast_signed());
@@ -47,7 +46,7 @@ fn leading_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]
     nearly_to_f64(quotient, UNSURE, num_bits - den_bits - 63)
 }
 
-/// The double nearest to (number ± unsure) · 2^`exponent`, if all of these have the same.
+/// The double nearest to (number ± unsure) · 2^`exponent`, if it is the same for all of these.
 ///
 /// The number has at least 63 bits.
 #[inline]
@@ -77,8 +76,8 @@ fn all_to_f64<const A: usize, const B: usize>(num: &[u64; A], den: &[u64; B]) ->
     scaled_to_f64(quotient, sticky, num_bits - den_bits - 63)
 }
 
-/// The quotient of `lead * 2^(64 B) + low` by a divisor with its top bit set, and whether
-/// nothing is left over; the quotient must fit in a limb.
+/// The quotient of `lead * 2^(64 B) + low` by a divisor with its top bit set, and whether the remainder is
+/// zero; the quotient must fit in a limb.
 #[inline]
 fn divide_step<const B: usize>(lead: u64, low: [u64; B], divisor: &[u64; B]) -> (u64, bool) {
     let head = u128::from(lead) << 64 | u128::from(low[B - 1]);
@@ -144,14 +143,14 @@ fn scaled_to_f64(number: u64, sticky: bool, exponent: i32) -> f64 {
     if lead < LEAST_NORMAL_EXPONENT {
         return subnormal(number, sticky, LEAST_EXPONENT - exponent);
     }
-    // Below the last bit kept, so that it decides ties and nothing else.
+    // Below the last kept bit, so that it only decides ties.
     let rounded = as_double(number | u64::from(sticky));
-    // Two steps, because the scale alone can leave the range of doubles.
+    // Two steps, because the scale alone may be out of range for doubles.
     let half = exponent / 2;
     rounded * power_of_two(half) * power_of_two(exponent - half)
 }
 
-/// The multiple of the least positive double nearest to `(number + part) / 2^shift` of it.
+/// The multiple of the least positive double nearest to `(number + part) / 2^shift` times it.
 #[inline]
 fn subnormal(number: u64, sticky: bool, shift: i32) -> f64 {
     if shift > 64 {

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::{Mul, Neg};
 
-/// The sign of a number, or of what a number stands for: a turn, a determinant, a direction.
+/// The sign of a number, or of a turn, determinant or direction that a number represents.
 ///
 /// # Example
 /// ```
@@ -15,11 +15,11 @@ use std::ops::{Mul, Neg};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(i8)]
 pub enum Sign {
-    /// Below zero; of a turn: to the right.
+    /// Below zero; for a turn: right.
     Negative = -1,
-    /// Zero; of a turn: none.
+    /// Zero; for a turn: straight.
     Zero = 0,
-    /// Above zero; of a turn: to the left.
+    /// Above zero; for a turn: left.
     Positive = 1,
 }
 
@@ -47,20 +47,20 @@ impl Sign {
         }
     }
 
-    /// The order of a number of this sign and zero.
+    /// How a number of this sign compares to zero.
     #[inline]
     pub fn order(self) -> Ordering {
         self.cmp(&Self::Zero)
     }
 
-    /// The first sign that is not zero: that of a sum whose terms are of ever smaller order.
+    /// The first sign that is not zero: the sign of a sum whose terms decrease in order of magnitude.
     #[inline]
     pub fn first(signs: impl IntoIterator<Item = Self>) -> Self {
         let found = signs.into_iter().find(|sign| *sign != Self::Zero);
         found.unwrap_or(Self::Zero)
     }
 
-    /// Return the number itself, or its negative if the sign is negative.
+    /// Return a number, negated if the sign is negative.
     #[inline]
     #[must_use]
     pub fn times<T: Neg<Output = T>>(self, number: T) -> T {

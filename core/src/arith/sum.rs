@@ -3,11 +3,10 @@
 
 use smallvec::SmallVec;
 
-/// At least the 40 doubles of 53 bits each that fit beside each other between the least and the
-/// largest, 2098 bits apart.
+/// At least 40: as many doubles of 53 bits fit side by side in the 2098 bits from the least to the largest.
 const PARTS: usize = 64;
 
-/// A sum of doubles, kept exactly as parts that do not overlap, the smallest first.
+/// An exact sum of doubles, as parts that do not overlap, the smallest first.
 ///
 /// # Source
 /// Shewchuk 1997, "Adaptive precision floating-point arithmetic", § 2.4, GROW-EXPANSION.
@@ -25,7 +24,7 @@ const PARTS: usize = 64;
 #[derive(Debug, Default)]
 pub struct Sum {
     parts: SmallVec<[f64; PARTS]>,
-    /// The sum of what is not finite, and of what overflowed.
+    /// The sum of infinite and NaN terms, and of overflow.
     beyond: f64,
 }
 
@@ -67,7 +66,7 @@ impl Sum {
         high
     }
 
-    /// `high`, or its neighbour if `error` is half of their distance and the parts below it agree.
+    /// `high`, or its neighbour if `error` is half their distance and the parts below have the same sign.
     fn nearer(&self, high: f64, error: f64) -> f64 {
         let below = self.parts.last().copied().unwrap_or(0.0);
         let further = high + 2.0 * error;
@@ -80,7 +79,7 @@ impl Sum {
     }
 }
 
-/// The rounded sum and what it lacks.
+/// The rounded sum and its rounding error.
 #[inline]
 pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let (large, small) = if a.abs() < b.abs() { (b, a) } else { (a, b) };

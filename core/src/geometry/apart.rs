@@ -1,4 +1,4 @@
-//! The test whether two triangles keep clear of each other, by signs of determinants in doubles.
+//! Tests whether two triangles are disjoint, by signs of determinants in doubles.
 
 use super::axes::each_axis;
 use super::plane::Lattice;
@@ -17,7 +17,7 @@ pub struct NearTriangle {
 }
 
 impl NearTriangle {
-    /// Stands for what is not known to be apart from anything: no side of it is certain.
+    /// For unknown triangles, which are never apart: no side of it is certain.
     pub const UNKNOWN: Self = Self {
         corners: [[f64::NAN; 3]; 3],
         normal: NearCross::UNKNOWN,
@@ -33,7 +33,7 @@ impl NearTriangle {
         }
     }
 
-    /// On which sides of its plane the corners of another lie.
+    /// The sides of its plane on which the corners of another triangle lie.
     #[inline]
     fn sides_of(&self, other: &Self) -> Sides {
         let base = &self.corners[0];
@@ -48,9 +48,8 @@ impl NearTriangle {
 
 /// Return whether two lattice triangles certainly have no point in common; may return false negatives.
 ///
-/// They do not if one lies on one side of the other's plane, or else if the stretches in which they
-/// cover the line that both planes share are apart (Möller 1997; in signs alone as Guigue and
-/// Devillers 2003).
+/// They are apart if one lies on one side of the other's plane, or if their stretches of the line that both
+/// planes share are apart (Möller 1997; in signs alone as Guigue and Devillers 2003).
 pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     let of_p = q.sides_of(p);
     if is_beside(of_p) {
@@ -66,7 +65,7 @@ pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     }
 }
 
-/// Return whether all corners certainly lie on one side.
+/// Return whether all corners are certainly on one side.
 fn is_beside(sides: Sides) -> bool {
     sides[0].is_certain() && sides[1] == sides[0] && sides[2] == sides[0]
 }
@@ -85,11 +84,11 @@ fn alone(sides: Sides) -> Option<usize> {
     })
 }
 
-/// Return whether the edges at the lone corner `p[i]` cross the other plane all before or all
-/// behind the points in which those at `q[k]` cross the first.
+/// Return whether the edges at the lone corner `p[i]` cross the other plane all before or all behind the
+/// points in which the edges at `q[k]` cross the first.
 ///
-/// Which of two edges of different triangles comes first is the sign of the volume they span, up to
-/// a sign that is the same for all four pairs.
+/// The sign of the volume that two edges of different triangles span says which comes first, up to a sign
+/// that is the same for all four pairs.
 fn stretches_are_apart(p: &[[f64; 3]; 3], i: usize, q: &[[f64; 3]; 3], k: usize) -> bool {
     let (from, other) = (&p[i], &q[k]);
     let toward = less(other, from);
@@ -163,7 +162,7 @@ mod tests {
             prop_assert!(!(meet && are_apart(&near_p, &near_q)));
         }
 
-        /// In general position nothing small is in doubt.
+        /// In general position no small triangle is in doubt.
         #[test]
         fn triangles_in_general_position_are_apart_or_pierce_each_other(
             p in [corner(99), corner(99), corner(99)],

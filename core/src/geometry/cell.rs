@@ -1,4 +1,4 @@
-//! Cells of the one dyadic hierarchy that all solids share.
+//! Cells of the dyadic hierarchy that all solids share.
 
 use super::axes::each_axis;
 use super::plane::{Lattice, Plane};
@@ -129,8 +129,8 @@ impl Cell {
 
     /// The smallest cell of the hierarchy that holds a lattice box.
     ///
-    /// The binary places from which on coordinates differ say how often an axis can be cut; the
-    /// first axis of those with the most is the one that the next cut would be across.
+    /// The number of binary places in which coordinates of an axis may differ is how often it can be cut;
+    /// the next cut is across the first axis with the most.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "an exponent of coordinates"

@@ -45,7 +45,7 @@ impl LatticeEdge {
         }
     }
 
-    /// Return whether two edges have one direction, or opposite ones.
+    /// Return whether two edges have the same direction, or opposite ones.
     pub fn is_parallel(&self, other: &Self) -> bool {
         let ((a, b), (c, d)) = (self.ends(), other.ends());
         let step = |p: &Lattice, q: &Lattice, i: usize| i128::from(q[i] - p[i]);
@@ -73,7 +73,7 @@ impl LatticeEdge {
         normal(a, b, place) == [0; 3]
     }
 
-    /// The sign at a lattice point of the plane through the edge along an axis.
+    /// The side of a lattice point, as a sign, to the plane through the edge along an axis.
     ///
     /// # Bits
     /// Steps between lattice points are below 2^54, and a sum of two products of them below 2^110.
@@ -85,7 +85,7 @@ impl LatticeEdge {
         Sign::of(value)
     }
 
-    /// The same edge run backwards.
+    /// The same edge in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Names for lines that do not depend on which planes or edges they were made from.
+//! Keys of lines, independent of the planes or edges that define them.
 
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -15,10 +15,10 @@ use crate::arith::{inv_mod, P1, P2};
 /// Equal lines have equal keys.
 ///
 /// # Bits
-/// Two lines through lattice points have the same key only if they are the same: of primitive
-/// directions d and e below 2^54, d × e is below 2^109, and so is (p − q) × d for points p and q of
-/// parallel ones; P1·P2 divides neither but if it is zero. Two other lines share one by
-/// chance 2^-488 (four degrees of freedom, 122 bits each).
+/// Two lines through lattice points have the same key only if they are the same: for primitive directions d
+/// and e below 2^54, d × e is below 2^109, and so is (p − q) × d for points p and q of parallel lines;
+/// P1·P2 divides neither unless it is zero. Two other lines share a key with probability 2^-488 (four
+/// degrees of freedom, 122 bits each).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineKey {
     first: [u64; 6],
@@ -85,7 +85,7 @@ impl<const P: u64> Coefficients<P> {
 }
 
 impl<'a> PlaneResidues<'a> {
-    /// Those of a multiple of the plane through three lattice points.
+    /// The residues of a multiple of the plane through three lattice points.
     pub fn through(corners: &[Lattice; 3]) -> Self {
         let [a, b, c] = corners;
         let normal = normal(a, b, c);
@@ -96,7 +96,7 @@ impl<'a> PlaneResidues<'a> {
         }
     }
 
-    /// Those of a plane.
+    /// The residues of a plane.
     pub fn of(plane: &'a Plane) -> Self {
         Self {
             first: Coefficients::of(plane),
@@ -136,7 +136,7 @@ impl<const P: u64> Pluecker<P> {
         }
     }
 
-    /// The line of two planes, or None if the prime divides all of its coordinates.
+    /// The line of two planes, or `None` if the prime divides all its coordinates.
     fn of_planes(a: &Coefficients<P>, b: &Coefficients<P>) -> Option<Self> {
         let (n, m) = (&a.normal, &b.normal);
         let line = Self {
@@ -168,13 +168,13 @@ impl<const P: u64> Pluecker<P> {
         all.find(|c| **c != 0).copied().unwrap_or(0)
     }
 
-    /// The coordinates for the inverse of the lead.
+    /// The coordinates, scaled by the inverse of the lead.
     fn scaled(&self, scale: u64) -> [u64; 6] {
         let ([u, v, w], [x, y, z]) = (self.direction, self.moment);
         [u, v, w, x, y, z].map(|c| mul::<P>(c, scale))
     }
 
-    /// The key's half for each of several lines, for one inversion.
+    /// The key's halves for several lines, with one inversion for all.
     fn all_scaled(lines: impl Iterator<Item = Self>) -> SmallVec<[[u64; 6]; 8]> {
         let mut product = 1;
         let before: SmallVec<[(Self, u64); 8]> = lines
@@ -214,7 +214,7 @@ impl Line {
         }
     }
 
-    /// The line in which two planes meet, by their coefficients.
+    /// The line in which two planes meet, from exact coefficients.
     #[cold]
     fn of_exact(a: &[BigInt; 4], b: &[BigInt; 4]) -> Self {
         let minor = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
@@ -257,7 +257,7 @@ impl LineKey {
         }
     }
 
-    /// The keys of several lines, for one inversion modulo each prime.
+    /// The keys of several lines, with one inversion modulo each prime.
     pub fn of_all(lines: impl Iterator<Item = Line>) -> SmallVec<[Self; 8]> {
         let lines: SmallVec<[Line; 8]> = lines.collect();
         let first = Pluecker::all_scaled(lines.iter().map(|line| line.first));
@@ -268,7 +268,7 @@ impl LineKey {
             .collect()
     }
 
-    /// A number that equal keys share and most others do not, to sort by.
+    /// A sort key: equal keys have the same, most others do not.
     pub fn mixed(&self) -> u64 {
         // Odd constants of SplitMix (Steele, Lea, Flood 2014) keep small coordinates apart.
         let [_, v, w, x, y, z] = self.first;
@@ -289,7 +289,7 @@ impl LineKey {
     }
 }
 
-/// The direction of an edge parallel to an axis, of which the lead has a trivial inverse.
+/// The direction of an edge parallel to an axis, whose lead has a trivial inverse.
 fn unit_along(a: &Lattice, b: &Lattice) -> Option<[u64; 3]> {
     let along = each_axis(|i| u64::from(a[i] != b[i]));
     (along.iter().sum::<u64>() == 1).then_some(along)
@@ -305,7 +305,7 @@ fn sub<const P: u64>(a: u64, b: u64) -> u64 {
 
 /// The difference a·d − c·b of residues, reduced once.
 fn minor<const P: u64>(a: u64, d: u64, c: u64, b: u64) -> u64 {
-    // Residues are below P, so that their products are below its square and nothing overflows.
+    // Products of residues are below the square of P, so that nothing overflows.
     let square = const { P as u128 * P as u128 };
     reduce::<P>(u128::from(a) * u128::from(d) + (square - u128::from(c) * u128::from(b)))
 }
@@ -336,7 +336,7 @@ mod tests {
         let cut = LineKey::of_planes(&plane([1 << 31, 1, 0], 0), &plane([1, 1 << 30, 0], 0));
         assert_eq!(cut, LineKey::of_edge(&[0; 3], &[0, 0, 5]));
         assert_eq!(cut.axis(), 2);
-        // The same plane, told by points of it.
+        // The same plane, given by points of it.
         let [a, b] = [[0, 0, 0], [1, -(1 << 31), 0]];
         let through = PlaneResidues::through(&[a, b, [0, 0, 7]]);
         let slanted = plane([1, 1 << 30, 0], 0);

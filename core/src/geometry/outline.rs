@@ -1,4 +1,4 @@
-//! Outlines of sets of polygons: what is left of their edges after opposite ones cancel.
+//! Outlines of sets of polygons: the edges that remain after opposite ones cancel.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use super::polygon::{Carrier, Corner, Polygon, PolygonSplit};
 use super::side::Side;
 use super::vertex::Vertex;
 
-/// A directed edge with the region it bounds on its left, in the plane it lies in.
+/// A directed edge in a plane, with the region it bounds on its left.
 #[derive(Clone, Debug)]
 pub struct OutlineEdge {
     /// Start.
@@ -25,7 +25,7 @@ pub struct OutlineEdge {
     pub line: LineKey,
 }
 
-/// A directed edge without the key of its line, as it is kept.
+/// A directed edge without the key of its line, for storage.
 #[derive(Clone, Debug)]
 pub struct BareEdge {
     /// Start.
@@ -84,7 +84,7 @@ impl OutlineEdge {
         bare.map(|(edge, line)| edge.keyed(line)).collect()
     }
 
-    /// The same edge run backwards.
+    /// The same edge in the opposite direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         Self {
@@ -99,17 +99,17 @@ impl OutlineEdge {
     }
 }
 
-/// An outline of which no two edges overlap or continue each other on one line, and the keys of
-/// their lines once asked for.
+/// An outline in which no two edges overlap or continue each other on one line; caches the keys of their
+/// lines.
 #[derive(Clone, Debug, Default)]
 pub struct Outline {
     edges: Box<[BareEdge]>,
-    /// As many as there are edges, or none if nobody has asked.
+    /// One for each edge, or none before the first use.
     lines: Box<[LineKey]>,
 }
 
 impl Outline {
-    /// Such an outline.
+    /// The outline of such edges.
     pub fn of_bare(edges: &[BareEdge]) -> Self {
         Self {
             edges: edges.into(),
@@ -117,7 +117,7 @@ impl Outline {
         }
     }
 
-    /// Return the outline that remains of some edges.
+    /// Return the outline that remains of any edges.
     pub fn of(edges: Vec<OutlineEdge>) -> Self {
         let edges = maximal(edges);
         let lines = edges.iter().map(|e| e.line).collect();
@@ -172,7 +172,7 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
     }
 }
 
-/// The edges that remain when opposite ones cancel, as [`cancel`] has them, in no more memory.
+/// The edges that remain when opposite ones cancel as in [`cancel`], without spare capacity.
 pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     if edges.is_sorted_by(|a, b| a.line < b.line) {
         return edges;
@@ -182,7 +182,7 @@ pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     kept
 }
 
-/// The edges as they come if none of them cancel or continue each other, else what remains.
+/// The edges unchanged if none of them cancel or continue each other, else the remaining ones.
 pub fn settled(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let ends = |e: &OutlineEdge| (Arc::as_ptr(&e.from), Arc::as_ptr(&e.to));
     let mut kept = cancel(edges.clone());
@@ -218,12 +218,12 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
 
 /// An edge in the order of lines.
 struct Place {
-    /// Of the line's key, told apart faster than the key.
+    /// The mixed key of the line, faster to compare than the key.
     mixed: u64,
     edge: u32,
 }
 
-/// The edges of each line in one run, in their own order.
+/// The edges grouped by line; within a line in the given order.
 fn by_line(edges: &[OutlineEdge]) -> SmallVec<[Place; 32]> {
     let places = (0..).zip(edges).map(|(edge, e)| Place {
         mixed: e.line.mixed(),
@@ -243,7 +243,7 @@ struct Event<'a> {
     change: i32,
 }
 
-/// Keeps what remains of the edges of one line.
+/// Keeps the remaining edges of one line.
 fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
@@ -268,7 +268,7 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
     });
 }
 
-/// Calls `emit` for each stretch of a line on which the sum of the changes before it is not zero.
+/// Calls `emit` for each stretch of a line on which the running sum of changes is not zero.
 fn stretches<'a>(
     events: &mut [Event<'a>],
     axis: usize,
@@ -289,7 +289,7 @@ fn stretches<'a>(
     }
 }
 
-/// Return whether one edge of a line is another run backwards.
+/// Return whether one edge of a line is the reverse of another.
 fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
     let same = |p, q| order_along(p, q, axis) == Ordering::Equal;
     same(&a.from, &b.to) && same(&a.to, &b.from)
@@ -321,8 +321,7 @@ fn emit(
 
 /// The polygon that an outline bounds, if it is one convex loop, with the outline's own corners.
 ///
-/// Edges on the face's own edges are taken as bounding it: the outline is that of a part of the
-/// face.
+/// Edges on the face's own edges need no test: the outline is that of a part of the face.
 pub fn convex_loop(support: &Arc<Plane>, edges: &[BareEdge]) -> Option<Polygon> {
     let start = edges.first()?;
     let mut at = start;
@@ -351,8 +350,7 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Return whether all of an outline lies on the inner side of an edge, and only its ends in its
-/// line.
+/// Return whether an outline lies on the inner side of an edge, with only the edge's ends on its line.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;
@@ -401,9 +399,9 @@ pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
     inside
 }
 
-/// The outlines of what a region has on the minus side of a plane across it, and on the plus side.
+/// The outlines of the parts of a region on the minus and on the plus side of a plane across it.
 ///
-/// Edges in the plane are made anew: they close what is left of the others.
+/// New edges in the plane close the cut outlines.
 ///
 /// # Example
 /// ```
@@ -439,7 +437,7 @@ pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [
     [minus, plus]
 }
 
-/// The edges in a plane that close those that end in it.
+/// The edges in a plane that close edges ending in it.
 fn chords(edges: &[BareEdge], carrier: &Carrier, cut: &Plane, axis: usize) -> Vec<BareEdge> {
     let ends = edges.iter().flat_map(|e| [(&e.to, 1), (&e.from, -1)]);
     let met = ends.filter(|(at, _)| at.side_of(cut) == Side::On);

@@ -13,7 +13,7 @@ pub type Lattice = [i64; 3];
 
 /// An oriented plane n·x + d = 0; the minus side (negative values) is its inside.
 ///
-/// The coefficients have no common divisor, so that equal oriented planes have equal coefficients.
+/// The coefficients have no common divisor: equal oriented planes have equal coefficients.
 ///
 /// # Bits
 /// Supporting planes of lattice triangles: |n| ≤ 2^108, |d| ≤ 2^164 (`arith::bounds`).
@@ -36,7 +36,7 @@ pub struct Plane {
     approx: [f64; 4],
 }
 
-/// The coefficients of a plane that is narrower than planes may be, as nearly all are.
+/// The coefficients of a plane narrower than the widest, as nearly all are.
 ///
 /// # Bits
 /// |n| < 2^62, |d| < 2^124 (`arith::bounds`).
@@ -108,7 +108,8 @@ impl Plane {
         }
     }
 
-    /// The plane at a coordinate of an axis whose normal has this sign along it; `None` for zero.
+    /// The plane at a coordinate of an axis, its normal with this sign along it; `None` if the sign is
+    /// zero.
     fn level(axis: usize, at: i64, sign: Sign) -> Option<Self> {
         let plane = Self::axis_cut(axis, 2 * at);
         match sign {
@@ -120,13 +121,13 @@ impl Plane {
 
     /// The plane through a lattice edge parallel to an axis; `None` if the edge is parallel to it.
     ///
-    /// Such planes are narrower than any plane through the edge and a normal.
+    /// Such planes are narrower than a plane through the edge along a normal.
     pub fn through_edge(a: &Lattice, b: &Lattice, axis: usize) -> Option<Self> {
         let n = edge_normal(a, b, axis);
         Self::new(n, -dot_lattice(&n, a))
     }
 
-    /// The same plane for questions about sides only: its coefficients may have a common divisor.
+    /// The same plane for side tests only: its coefficients may have a common divisor.
     pub fn beside_edge(a: &Lattice, b: &Lattice, axis: usize) -> Self {
         let n = edge_normal(a, b, axis);
         Self::primitive(n, -dot_lattice(&n, a))
@@ -203,10 +204,10 @@ impl Plane {
         }
     }
 
-    /// Return the orientation of a plane to another, if both are the same set of points.
+    /// Return the orientation of one plane to another, if both are the same set of points.
     #[allow(clippy::float_cmp)]
     pub fn coincides(&self, other: &Self) -> Option<Orientation> {
-        // Equal coefficients have equal doubles, which tell most planes apart.
+        // Equal coefficients have equal doubles; these differ for most planes.
         if (0..4).any(|i| self.approx[i].abs() != other.approx[i].abs()) {
             return None;
         }
@@ -217,7 +218,7 @@ impl Plane {
         opposite.then_some(Orientation::Opposite)
     }
 
-    /// The axis the plane is perpendicular to, if it is perpendicular to one.
+    /// The axis the plane is perpendicular to, if there is one.
     pub fn only_axis(&self) -> Option<usize> {
         match self.n {
             [_, 0, 0] => Some(0),
@@ -284,7 +285,7 @@ impl Plane {
         }
     }
 
-    /// Twice the plane's value at half the given coordinates, in doubles, and a bound of its error.
+    /// Twice the plane's value at half the given coordinates, in doubles, and a bound on its error.
     pub fn near_value_at_doubled(&self, doubled: &Lattice) -> (f64, f64) {
         let (a, p) = (&self.approx, doubled);
         let t = [
@@ -331,15 +332,15 @@ impl Plane {
     }
 }
 
-/// An offset, if planes may have it.
+/// An offset, if it is within the limit for planes.
 fn fitting(d: Int<3>) -> Option<Int<3>> {
     (d.bit_length() <= bounds::offset(COORDINATE_BITS)).then_some(d)
 }
 
 /// Relative error bound of a filtered sum of four products of rounded factors.
 ///
-/// Each factor carries one rounding (u = 2^-53), the product one, the sum of four terms three:
-/// at most 6u + O(u²) relative to the sum of magnitudes; 9u leaves room for the bound's own rounding.
+/// Each factor has one rounding (u = 2^-53), the product one, the sum of four terms three: at most 6u +
+/// O(u²) relative to the sum of magnitudes; 9u leaves room for the bound's own rounding.
 pub const FILTER: f64 = 9.0 / 9_007_199_254_740_992.0;
 
 /// The first non-zero sign of three components, zero if all vanish.
@@ -360,7 +361,7 @@ fn step(from: &Lattice, to: &Lattice) -> [i64; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
-/// The normal of the plane through an edge parallel to an axis.
+/// The normal of the plane that contains an edge and is parallel to an axis.
 fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
     let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut n = [0i128; 3];
@@ -369,7 +370,7 @@ fn edge_normal(a: &Lattice, b: &Lattice, axis: usize) -> [i128; 3] {
     n
 }
 
-/// The nearest double, by one machine instruction for short numbers.
+/// The nearest double; one machine instruction for short numbers.
 fn near(value: i128) -> f64 {
     i64::try_from(value).map_or_else(|_| as_double(value), as_double)
 }

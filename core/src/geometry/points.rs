@@ -1,5 +1,4 @@
-//! Exact questions about points of any construction: turns in a view, and sides of planes through
-//! them.
+//! Exact predicates of points of any construction: turns in a view, and sides of planes through points.
 
 use super::axes::each_axis;
 use super::doubles::Point;
@@ -8,7 +7,7 @@ use super::vertex::{Homogeneous, Vertex, NEAR};
 use crate::arith::bounds::{ANGLE_LIMBS, CROSS_LIMBS, ORIENTATION_LIMBS, SIDE_LIMBS};
 use crate::arith::{Filtered, Int, Sign};
 
-/// Sign of the turn a → b → c as two axes show it, positive to the left.
+/// Sign of the turn a → b → c projected to two axes, positive to the left.
 ///
 /// # Example
 /// ```
@@ -35,8 +34,8 @@ pub fn turn(points: [&Vertex; 3], [u, v]: [usize; 2]) -> Sign {
     (by_x - by_y + by_w).sign()
 }
 
-/// The side of the plane through three points on which a fourth lies; `Plus` is where the normal by
-/// the right-hand rule points, `On` is said of all if the three are on one line.
+/// The side of the plane through three points on which a fourth lies; the normal by the right-hand rule
+/// points to `Plus`. Always `On` if the three are on one line.
 ///
 /// # Example
 /// ```
@@ -51,11 +50,11 @@ pub fn side([a, b, c]: [&Vertex; 3], d: &Vertex) -> Side {
     clear_side([a, b, c, d].map(Vertex::approx)).or_exact(|| exact_side([a, b, c, d]))
 }
 
-/// The side where the points' approximations tell it.
+/// The side, where the points' approximations decide it.
 ///
-/// Differences of coordinates below m in magnitude are off by δ = [`NEAR`] m at most, and below s with
-/// that. A product of three is off by 3 s² δ, and there are six of them; rounding adds less than
-/// eight units in the last place of each.
+/// If coordinates are below m in magnitude, their differences are off by δ = [`NEAR`] m at most; let s
+/// bound the differences with that. A product of three is off by 3 s² δ, and there are six of them;
+/// rounding adds less than eight units in the last place of each.
 pub fn clear_side([a, b, c, d]: [Point; 4]) -> Filtered<Side> {
     let from = |p: &Point| each_axis(|i| p[i] - a[i]);
     let [u, v, w] = [&b, &c, &d].map(from);
@@ -85,7 +84,7 @@ fn exact_side(points: [&Vertex; 4]) -> Side {
     Side::from_sign((term(1, 2, 0) + term(2, 0, 1) + term(0, 1, 2)).sign())
 }
 
-/// The way from one point to another, times the weights of both.
+/// The vector from one point to another, times the weights of both.
 fn step(a: &Homogeneous, b: &Homogeneous) -> [Int<CROSS_LIMBS>; 3] {
     each_axis(|i| {
         let (to, from): (Int<CROSS_LIMBS>, _) = (b.x[i].mul(&a.w), a.x[i].mul(&b.w));
@@ -109,7 +108,7 @@ mod tests {
         [coordinate(), coordinate(), coordinate()]
     }
 
-    /// A lattice point, or the meet of a plane through three with two others across axes.
+    /// A lattice point, or the meet of a plane through three points with two across axes.
     fn point() -> impl Strategy<Value = Vertex> {
         let places = [-5i64..=5, -5i64..=5];
         let met = ([lattice(), lattice(), lattice()], places).prop_filter_map(

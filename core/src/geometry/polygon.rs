@@ -1,7 +1,7 @@
 //! Convex polygons in supporting planes, split exactly by planes.
 //!
-//! Each edge knows a plane that carries it, so that a new corner is always the meet of three
-//! planes of the input and widths do not grow with the number of cuts.
+//! Each edge knows a plane that carries it, so that a new corner is always the meet of three input planes
+//! and widths do not grow with the number of cuts.
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use super::vertex::Vertex;
 use crate::arith::convert::as_double;
 use crate::interrupt::poll;
 
-/// The support of an edge, beside the plane of the polygon.
+/// What an edge lies on, besides the plane of the polygon.
 #[derive(Clone, Debug)]
 pub enum Carrier {
     /// A lattice edge of a face, in the face's own direction.
@@ -35,7 +35,7 @@ impl Carrier {
         }
     }
 
-    /// The same plane for questions about sides only.
+    /// The same plane for side tests only.
     pub fn rim(&self, support: &Plane) -> Plane {
         match self {
             Self::Edge(edge) => {
@@ -66,8 +66,7 @@ impl Carrier {
         corners.iter().all(|corner| side(&corner.at) != inner)
     }
 
-    /// Return whether this is the border of the universe, which cuts half-spaces off and nothing
-    /// else.
+    /// Return whether this is the border of the universe, which cuts off only half-spaces.
     pub fn is_border(&self) -> bool {
         match self {
             Self::Edge(..) => false,
@@ -81,7 +80,7 @@ impl Carrier {
         }
     }
 
-    /// The line this carrier and the support have in common.
+    /// The common line of this carrier and the support.
     pub fn line(&self, support: &PlaneResidues) -> Line {
         match self {
             Self::Edge(edge) => {
@@ -101,7 +100,7 @@ impl Carrier {
     }
 }
 
-/// The axis-parallel plane through a face's edge, the face on its minus side.
+/// The plane through a face's edge parallel to an axis, with the face on its minus side.
 fn edge_plane(edge: &LatticeEdge, support: &Plane) -> Plane {
     let (a, b) = edge.ends();
     let axis = support.main_axis();
@@ -131,7 +130,7 @@ pub type Sides = SmallVec<[Side; 8]>;
 /// The ends of a segment inside a polygon.
 type Chord = SmallVec<[Arc<Vertex>; 2]>;
 
-/// Return whether there are corners on the minus side, and whether there are on the plus side.
+/// Return whether any corners are on the minus side, and whether any are on the plus side.
 pub fn straddle(sides: &[Side]) -> (bool, bool) {
     (sides.contains(&Side::Minus), sides.contains(&Side::Plus))
 }
@@ -163,7 +162,7 @@ pub struct Polygon {
 
 /// The sides of a plane on which a polygon lies, and its parts there.
 ///
-/// Pieces are moved on at once, never stored, so that boxing the large variant would only cost.
+/// Pieces are consumed at once, never stored, so that boxing the large variant would only cost.
 #[derive(Debug)]
 #[allow(clippy::large_enum_variant)]
 pub enum PolygonSplit {
@@ -264,8 +263,8 @@ impl Polygon {
         self.corners.iter().map(|c| c.at.side_of(cut)).collect()
     }
 
-    /// The ends of the segment in which a plane with corners strictly on both sides cuts the
-    /// polygon, in the order in which its border meets them.
+    /// The ends of the segment in which a plane with corners strictly on both sides cuts the polygon, in
+    /// order along its border.
     fn chord(&self, cut: &Arc<Plane>, sides: &[Side]) -> Chord {
         let n = self.corners.len();
         let mut ends = Chord::new();
@@ -285,13 +284,13 @@ impl Polygon {
         Arc::new(meet.expect("an edge with ends on both sides meets the plane"))
     }
 
-    /// The pieces on the minus and on the plus side of a plane that cuts the polygon in a chord.
+    /// The pieces on the minus and plus side of a plane that cuts the polygon in a chord.
     fn divided(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord) -> (Self, Self) {
         let half = |own| self.half(cut, sides, chord, own);
         (half(Side::Minus), half(Side::Plus))
     }
 
-    /// The piece on a strict side.
+    /// The piece on a side, not `On`.
     fn half(&self, cut: &Arc<Plane>, sides: &[Side], chord: &Chord, own: Side) -> Self {
         let n = self.corners.len();
         let along = |at: &Arc<Vertex>| Corner {
@@ -359,7 +358,8 @@ impl Polygon {
         Some(polygon)
     }
 
-    /// Return whether the polygon may reach beyond half a step outside low and high; may return false positives.
+    /// Return whether the polygon may reach half a step below `low` or above `high`; may return false
+    /// positives.
     fn reach(&self, axis: usize, low: i64, high: i64) -> (bool, bool) {
         let (mut below, mut above) = (false, false);
         for corner in &self.corners {
@@ -391,8 +391,7 @@ impl Polygon {
         }
     }
 
-    /// Return whether an edge of one polygon has the other entirely beyond it; both lie in one
-    /// plane.
+    /// Return whether an edge of one polygon has the other entirely beyond it; both lie in one plane.
     pub fn lies_beside(&self, other: &Self) -> bool {
         poll();
         self.has_beyond_an_edge(other) || other.has_beyond_an_edge(self)

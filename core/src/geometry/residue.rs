@@ -16,7 +16,7 @@ pub fn residue<const P: u64>(value: i128) -> u64 {
 /// The residue of any 128-bit number.
 #[inline]
 pub fn reduce<const P: u64>(value: u128) -> u64 {
-    // A fold modulo the Mersenne prime multiplies nothing.
+    // A fold modulo the Mersenne prime needs no multiplication.
     if P == P1 {
         reduce_p1(value)
     } else {
@@ -52,7 +52,7 @@ fn reduce_p1(value: u128) -> u64 {
 #[allow(clippy::cast_possible_truncation)]
 fn mul_p1(a: u64, b: u64) -> u64 {
     let product = u128::from(a).wrapping_mul(u128::from(b));
-    // Below 2^122, so that the two halves of 61 bits are all there is.
+    // Below 2^122, so that the two halves of 61 bits are all of it.
     let sum = (product as u64 & P1).wrapping_add((product >> 61) as u64);
     if sum >= P1 {
         sum - P1

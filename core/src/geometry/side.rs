@@ -1,4 +1,4 @@
-//! Answers to "where does it lie?": sides, orientations and splits.
+//! Where things lie: sides, orientations and splits.
 
 use std::cmp::Ordering;
 
@@ -41,7 +41,7 @@ impl Side {
         }
     }
 
-    /// Return whether this place and another lie strictly on different sides.
+    /// Return whether this side and another are strictly different.
     #[inline]
     pub fn is_across_from(self, other: Self) -> bool {
         self != Self::On && other == self.opposite()
@@ -56,7 +56,7 @@ impl Side {
         }
     }
 
-    /// The same place seen from the hyperplane with its sides exchanged.
+    /// The same place after the hyperplane's sides are exchanged.
     #[must_use]
     pub fn opposite(self) -> Self {
         match self {
@@ -108,8 +108,8 @@ impl Half {
     }
 }
 
-/// The orientation of two hyperplanes that are the same set of points to each other, or of a face
-/// of a solid to the face it came from.
+/// The orientation of two hyperplanes with the same points to each other, or of a face of a solid to the
+/// face it came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Orientation {
     /// Their minus sides agree.
@@ -142,7 +142,7 @@ impl Orientation {
         self == Self::Opposite
     }
 
-    /// Return what has a sign: itself, or its negative if the sides are exchanged.
+    /// Return a signed value, negated if the sides are exchanged.
     ///
     /// ```
     /// use bspcsg::geometry::side::Orientation;
@@ -161,7 +161,7 @@ impl Orientation {
 
 /// The sides of a hyperplane on which a convex piece lies; touching it does not count as crossing.
 ///
-/// The one-sided answers carry nothing: the piece that was asked about is the answer.
+/// One-sided answers carry nothing: the whole piece is the answer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Split<T> {
     /// The piece's relative interior is on the minus side.

@@ -1,10 +1,10 @@
-//! Integers without a bound on their width.
+//! Integers of any width.
 
 use num_bigint::{BigInt, Sign};
 
 use crate::arith::Int;
 
-/// The integer without a bound on its width.
+/// An integer as one of unbounded width.
 #[allow(clippy::cast_possible_truncation)]
 pub fn big<const N: usize>(value: &Int<N>) -> BigInt {
     let size = value.abs();

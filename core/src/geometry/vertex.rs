@@ -13,14 +13,14 @@ use super::side::Side;
 use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Int, P1};
 
-/// The distance that two doubles of one coordinate may have, relative to it: twice three units in
-/// the last place of 2^-52, and room for the rounding of the question.
+/// The largest relative difference of two doubles for one coordinate: twice three units of 2^-52 in the
+/// last place, and room for the rounding of the comparison.
 pub const NEAR: f64 = 8.0 * f64::EPSILON;
 
 /// An exact point (x/w, y/w, z/w) with w > 0.
 ///
-/// A constructed point is kept as what it was constructed from, and its coordinates are computed
-/// anew where doubles do not settle a question: they are wide, and rarely asked for.
+/// A constructed point stores its construction. Its coordinates are computed anew where doubles do not
+/// settle a question: they are wide and rarely needed.
 ///
 /// # Bits
 /// x, y, z below 2^379, w below 2^326 (`arith::bounds`).
@@ -59,7 +59,7 @@ enum Place {
     Given(Box<Homogeneous>),
 }
 
-/// A fingerprint that equal points share; unequal points differ but for chance 2^-183.
+/// A fingerprint of a point. Equal points share it; unequal points do so with probability 2^-183.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VertexKey([u64; 3]);
 
@@ -116,7 +116,7 @@ impl Vertex {
         }
     }
 
-    /// The coordinates, computed from what the point was constructed from.
+    /// The coordinates, computed from the construction.
     fn exact(&self) -> Coordinates {
         let known = match &self.place {
             Place::Lattice(p) => return Coordinates::of_lattice(p),
@@ -133,7 +133,7 @@ impl Vertex {
         [x / w, y / w, z / w]
     }
 
-    /// The lowest and the highest place where the point may be.
+    /// The lowest and the highest place the point may have.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         let p = self.approx();
         let slack = p.map(|c| c.abs() * 4.0 * f64::EPSILON);
@@ -159,7 +159,7 @@ impl Vertex {
         }
     }
 
-    /// The side on which the point lies of the plane through a lattice edge along an axis.
+    /// The side of the plane through a lattice edge along an axis on which the point lies.
     pub fn side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Side {
         let (a, b) = edge.ends();
         match &self.place {
@@ -171,11 +171,11 @@ impl Vertex {
         }
     }
 
-    /// The same where doubles tell it.
+    /// The same, where doubles decide it.
     ///
-    /// Coordinates carry one rounding, products of them with a lattice point's two, differences three
-    /// and the edge's steps one: five relative to the sizes of what is subtracted, and three more for
-    /// the products and their sum.
+    /// Coordinates carry one rounding, their products with a lattice point's two, differences three and the
+    /// edge's steps one: five relative to the sizes of the operands, and three more for the products and
+    /// their sum.
     fn near_side_of_edge(&self, edge: &LatticeEdge, axis: usize) -> Filtered<Side> {
         let (a, b) = edge.ends();
         let w = self.approx[3];
@@ -192,7 +192,7 @@ impl Vertex {
         Filtered::when(value.abs() > (first.1 + second.1) * FILTER, side)
     }
 
-    /// The plane's value here times a positive number, in doubles, and a bound of its error.
+    /// A positive multiple of the plane's value here, in doubles, and a bound on its error.
     pub fn near_value(&self, plane: &Plane) -> (f64, f64) {
         let a = plane.approx();
         let x = &self.approx;
@@ -212,7 +212,7 @@ impl Vertex {
         Filtered::when(value.abs() > doubt, side)
     }
 
-    /// Return whether the point lies in a plane by what it was constructed from; may return false negatives.
+    /// Return whether the point lies in a plane of its construction; may return false negatives.
     fn is_known_in(&self, plane: &Plane) -> bool {
         let is_it = |own: &Arc<Plane>| {
             std::ptr::eq(Arc::as_ptr(own), plane) || own.coincides(plane).is_some()
@@ -252,8 +252,8 @@ impl Vertex {
         self.compare(other, axis)
     }
 
-    /// An axis along which another vertex lies elsewhere: that along which it is farthest, where doubles
-    /// tell.
+    /// An axis along which another vertex has another coordinate: the one of the largest difference in
+    /// doubles, if that is certain.
     pub fn axis_to(&self, other: &Self) -> usize {
         let (p, q) = (self.approx(), other.approx());
         let length = each_axis(|i| (q[i] - p[i]).abs());
@@ -264,7 +264,7 @@ impl Vertex {
         axes.find(differs).unwrap_or(longest)
     }
 
-    /// The order by one coordinate where doubles tell it.
+    /// The order by one coordinate, where doubles decide it.
     fn near_order(&self, other: &Self, axis: usize) -> Filtered<Ordering> {
         let left = self.approx[axis] * other.approx[3];
         let right = other.approx[axis] * self.approx[3];
@@ -274,8 +274,8 @@ impl Vertex {
 
     /// Return whether two vertices are the same point.
     ///
-    /// What a point was constructed from meets nowhere else, so that another point that lies in all
-    /// of that is the same.
+    /// The planes and edges of a construction meet in one point only, so that a point in all of them is the
+    /// same.
     pub fn same(&self, other: &Self) -> bool {
         if let (Place::Lattice(p), Place::Lattice(q)) = (&self.place, &other.place) {
             return p == q;
@@ -316,7 +316,7 @@ impl Vertex {
         }
     }
 
-    /// Twice a coordinate, where the point was constructed with one on the lattice or halfway.
+    /// Twice a coordinate, where the construction puts it on the lattice or halfway.
     pub fn doubled(&self, axis: usize) -> Option<i64> {
         match &self.place {
             Place::Lattice(p) => Some(2 * p[axis]),
@@ -381,7 +381,7 @@ mod tests {
             let plane = Plane::beside_edge(&a, &b, axis);
             let cut = Arc::new(Plane::axis_cut(axis, place));
             let crossing = Vertex::on_edge(&LatticeEdge::new(p, q), &cut);
-            // What doubles cannot tell: a point of the edge itself.
+            // What doubles cannot decide: a point of the edge itself.
             let own = Vertex::on_edge(&edge, &cut);
             for at in [Some(Vertex::lattice(p)), crossing, own].into_iter().flatten() {
                 prop_assert_eq!(at.side_of_edge(&edge, axis), at.side_of(&plane));

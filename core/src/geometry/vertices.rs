@@ -1,4 +1,4 @@
-//! Exact vertex identity: one number for each point, whatever it was made from.
+//! Exact vertex identity: one number for each point, however it was constructed.
 
 use std::hash::BuildHasher;
 use std::sync::Arc;
@@ -16,9 +16,9 @@ pub struct VertexTable {
     points: Vec<Arc<Vertex>>,
     /// The points in doubles, each coordinate within three units in the last place.
     places: Vec<[f64; 3]>,
-    /// By fingerprint the last point that has it.
+    /// The last point with each fingerprint.
     last: HashMap<u64, u32>,
-    /// For each point the one before it that has the same fingerprint, or [`NONE`].
+    /// For each point, the previous one with the same fingerprint, or [`NONE`].
     previous: Vec<u32>,
 }
 
@@ -67,7 +67,7 @@ impl VertexTable {
         next
     }
 
-    /// The point that is this vertex, among those with one fingerprint.
+    /// The point equal to this vertex, among those with one fingerprint.
     fn among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
         let before = |id: &u32| Some(self.previous[*id as usize]).filter(|p| *p != NONE);
         let last = self.last.get(&fingerprint).copied();
@@ -95,7 +95,7 @@ impl VertexTable {
     }
 }
 
-/// The lattice point that a constructed one is, if it is: questions about these are cheap.
+/// The lattice point that a constructed vertex equals, if any: lattice points are cheap to test.
 fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     if vertex.as_lattice().is_some() {
         return None;
@@ -105,18 +105,18 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
 
-/// A place in doubles with all but some forty leading bits rounded away.
+/// A place in doubles, its coordinates rounded to some forty leading bits.
 ///
-/// The digits of a double above zero are ordered as it is, so that two doubles of one coordinate
-/// differ by less than [`Blur::DOUBT`] in them; nearly always they round alike.
+/// The bits of positive doubles have the order of their values. So two doubles for one coordinate differ by
+/// less than [`Blur::DOUBT`] in them and nearly always round alike.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Blur([u64; 3]);
 
 impl Blur {
-    /// The number of bits that are rounded away.
+    /// The number of bits rounded away.
     const BITS: u32 = 12;
 
-    /// Six units in the last place, twice that beside a power of two; the next power of two.
+    /// Six units in the last place, twice that beside a power of two, rounded up to a power of two.
     const DOUBT: u64 = 16;
 
     const HALF: u64 = 1 << (Self::BITS - 1);
@@ -125,17 +125,17 @@ impl Blur {
         Self(place.map(|c| (digits(c) + Self::HALF) >> Self::BITS))
     }
 
-    /// Those of the smallest doubles in magnitude that may stand for the same point.
+    /// The blur of the smallest doubles in magnitude that may stand for the same point.
     fn lowest(place: &[f64; 3]) -> Self {
         Self(place.map(|c| (digits(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
     }
 
-    /// Those of the largest such doubles.
+    /// The blur of the largest such doubles.
     fn highest(place: &[f64; 3]) -> Self {
         Self(place.map(|c| (digits(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
     }
 
-    /// Each coordinate from one of two, as the bits of a number tell.
+    /// Picks each coordinate from one of two, by a bit of a number.
     fn mixed(low: &Self, high: &Self, bits: usize) -> Self {
         let pick = |i: usize| {
             if bits >> i & 1 == 0 {
@@ -166,7 +166,7 @@ mod tests {
     fn a_point_has_one_number_however_it_is_made() {
         let mut table = VertexTable::default();
         let wall = |axis: usize, at: i64| Arc::new(Plane::axis_cut(axis, at));
-        // Where three planes meet, and the same as a lattice point.
+        // A meet of three planes, and the same point as a lattice point.
         let met = Vertex::meet(&wall(0, 6), &wall(1, 4), &wall(2, 2)).expect("a corner");
         let first = table.number(&Arc::new(met));
         assert_eq!(table.number_at([3, 2, 1]), first);

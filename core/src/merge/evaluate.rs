@@ -21,15 +21,15 @@ use crate::tree::node::Branch;
 use crate::tree::solid::Solid;
 use crate::tree::table::Table;
 
-/// An operand of which kernels took so many elements is likely to be a step of a chain of which the
-/// next step wants as much: that takes a millisecond or more, and to wake a pool some 50 µs.
+/// An operand for which kernels solved this many elements is probably a step of a chain whose next step
+/// takes as long: a millisecond or more, while waking a pool takes some 50 µs.
 const POOL_AFTER: u64 = 512;
 
-/// The value of an expression whose operands are these solids.
+/// The value of an expression over these solids.
 ///
 /// Always (G1): a point is inside the result where the expression holds for the operands' sides.
-/// If all operands are reduced, so is the result (G2). An operand that turns out to overlap itself is
-/// united with itself, and the evaluation starts again.
+/// If all operands are reduced, so is the result (G2). An operand found to overlap itself is united with
+/// itself, and the evaluation restarts.
 ///
 /// # Errors
 /// `PitchMismatch` if the operands live on different lattices.
@@ -80,7 +80,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
         let is_open = |k: &usize| !operands[*k].is_reduced();
         let doubted = (0..operands.len()).filter(is_open).collect();
         let descent = Descent::new(&sources, Rule::Positive, true, operands.len());
-        // Mostly one operand overlaps itself. Where many do, each would cost a descent of its own.
+        // Usually only one operand overlaps itself; ending at each of many would cost a descent each.
         let descent = descent.doubting(doubted, std::mem::take(&mut is_first));
         let roots = operands.iter().map(|s| s.root().clone()).collect();
         let run = |roots| descent.run(expression.clone(), roots);
@@ -107,7 +107,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
     }
 }
 
-/// Unites operands with themselves, those that are not known to be reduced.
+/// Unites those of the numbered operands with themselves that are not known to be reduced.
 fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile) -> Result<()> {
     for k in numbers {
         let operand = &operands[*k];
@@ -120,7 +120,7 @@ fn unite_those(operands: &mut [Solid], numbers: &[usize], profile: &mut Profile)
     Ok(())
 }
 
-/// The value for two meshes as they were given, by the arrangement of their faces.
+/// The value for two unchanged meshes, by the arrangement of their faces.
 fn fresh_pair(
     expression: &Expression,
     operands: &[Solid],
@@ -150,7 +150,7 @@ fn fresh_pair(
     Ok((solid, counters))
 }
 
-/// The solid, or nothing if it is a mesh in one plane, which bounds nothing.
+/// The solid, or the empty set if it is a mesh in one plane, which bounds nothing.
 fn bounding(solid: &Solid) -> Solid {
     let is_flat = |s: &Source| s.mesh().is_some_and(|m| m.are_in_one_plane(m.face_ids()));
     if solid.whole_mesh().is_some_and(|mesh| is_flat(mesh)) {
@@ -159,8 +159,8 @@ fn bounding(solid: &Solid) -> Solid {
     solid.clone()
 }
 
-/// The error that explains a failed operation on a solid: if stored data say that it is reduced,
-/// their word is checked now.
+/// The error that explains a failed operation on a solid; if only stored data say that it is reduced,
+/// checks that now.
 pub fn explained(solid: &Solid, error: Error) -> Error {
     if error.kind() != ErrorKind::Internal || !solid.is_claimed() {
         return error;
@@ -177,8 +177,8 @@ fn false_claim() -> Error {
     Error::new(ErrorKind::BadSnapshot, text)
 }
 
-/// The error of reduced operands of which one overlaps itself: the word of stored data or about a
-/// mesh was wrong, or there is a defect.
+/// The error when a reduced operand overlaps itself: stored data or the claim about a mesh was wrong, or
+/// there is a defect.
 fn wrongly_reduced(operands: &[Solid], suspects: &[usize]) -> Error {
     if suspects.iter().any(|k| operands[*k].is_claimed()) {
         return false_claim();
@@ -192,7 +192,7 @@ fn wrongly_reduced(operands: &[Solid], suspects: &[usize]) -> Error {
     })
 }
 
-/// The error of an operand of which a source overlaps itself, if one does.
+/// The error for an operand with a source that overlaps itself, if there is one.
 fn wrong_source(operand: &Solid, number: usize) -> Option<Error> {
     for (slot, source) in operand.sources().iter().enumerate() {
         match overlaps_itself(source) {
@@ -222,8 +222,8 @@ pub fn overlaps_itself(source: &Arc<Source>) -> Result<bool> {
     )?)
 }
 
-/// Return whether the elements of a solid are its reduced boundary; looks, if nobody has, and first
-/// at places where the boundary seems to cross itself.
+/// Return whether the elements of a solid are its reduced boundary; computes it on first use, and first
+/// tests places where the boundary seems to cross itself.
 ///
 /// # Errors
 /// `Internal`.
@@ -259,8 +259,7 @@ pub fn normalize(solid: &Solid, rule: Rule) -> Result<Solid> {
     Ok(solid.united().get_or_make(|| united).clone())
 }
 
-/// The solid united with itself, if that is known, or once the meshes it was made of have been
-/// checked.
+/// The solid united with itself, if that is known or follows from checking the meshes it was made of.
 ///
 /// # Errors
 /// `Internal`.
@@ -271,8 +270,7 @@ pub fn settled(solid: &Solid) -> Result<Option<Solid>> {
     Ok((simple_by_meshes(solid)? == Some(true)).then(|| solid.clone()))
 }
 
-/// Return whether a solid is simple, if that is known, or once the meshes it was made of have been
-/// checked.
+/// Return whether a solid is simple, if that is known or follows from checking the meshes it was made of.
 fn simple_by_meshes(solid: &Solid) -> Result<Option<bool>> {
     if let Some(known) = solid.simple().get() {
         return Ok(Some(*known));
@@ -309,7 +307,7 @@ fn unite(solid: &Solid, rule: Rule) -> Result<Solid> {
     }
 }
 
-/// The root of the union of shells, each of which is simple.
+/// The root of the union of simple shells.
 fn union(solid: &Solid, shells: Vec<Branch>) -> Result<Branch> {
     let count = as_number(shells.len());
     let mut terms: Vec<Term> = (0..count).map(Term::Operand).collect();
@@ -319,7 +317,7 @@ fn union(solid: &Solid, shells: Vec<Branch>) -> Result<Branch> {
     descent.run(Expression::new(terms)?, shells)
 }
 
-/// The root of a solid united with itself in all cells; `None` if nothing in them overlaps.
+/// The root of a solid united with itself by a descent; `None` if nothing overlaps.
 fn by_descent(solid: &Solid, rule: Rule) -> Result<Option<Branch>> {
     let sources = Sources::new(solid.sources().clone());
     let descent = Descent::new(&sources, rule, false, 1);
@@ -350,7 +348,7 @@ fn common_pitch(expression: &Expression, solids: &[Solid]) -> Result<Pitch> {
     Ok(pitch)
 }
 
-/// The operands' sources in the order of their first appearance.
+/// The operands' sources in order of first appearance.
 fn joint_table(solids: &[Solid]) -> Table {
     let tables = solids.iter().map(Solid::sources);
     tables.fold(Table::default(), |all, one| {

@@ -4,7 +4,7 @@ use crate::arith::convert::as_number;
 use crate::error::{Error, ErrorKind, Result};
 use crate::interrupt::poll;
 
-/// One line of an expression; numbers name earlier lines.
+/// One line of an expression; numbers refer to earlier lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Term {
     /// An operand, by its number.
@@ -28,7 +28,7 @@ impl Term {
         }
     }
 
-    /// The same with other arguments.
+    /// The same term with other arguments.
     fn with(&self, list: Vec<u32>) -> Self {
         match self {
             Self::And(_) => Self::And(list),
@@ -61,12 +61,12 @@ pub struct Expression {
     pub(super) terms: Vec<Term>,
 }
 
-/// An expression taken apart: the union, intersection or symmetric difference of two others.
+/// An expression split in two: the union, intersection or symmetric difference of two others.
 #[derive(Debug)]
 pub struct Parted {
     /// The two others; they have no operand in common.
     pub halves: [Expression; 2],
-    /// The expression that they make, the first as operand 0 and the second as operand 1.
+    /// The expression that combines them, the first as operand 0 and the second as operand 1.
     pub whole: Expression,
 }
 
@@ -76,7 +76,7 @@ impl Parted {
         self.halves.each_ref().map(Expression::operands)
     }
 
-    /// The entries of operands of the first, and of the second.
+    /// The entries for operands of the first, and of the second.
     pub fn divide<T>(&self, entries: Vec<(u32, T)>) -> [Vec<(u32, T)>; 2] {
         let [ours, _] = self.operands();
         let is_ours = |entry: &(u32, T)| ours.binary_search(&entry.0).is_ok();
@@ -93,7 +93,7 @@ impl Parted {
 }
 
 impl Expression {
-    /// An expression; every line may name earlier lines only.
+    /// An expression; lines may refer to earlier lines only.
     pub fn new(terms: Vec<Term>) -> Result<Self> {
         for (i, term) in terms.iter().enumerate() {
             poll();
@@ -123,9 +123,9 @@ impl Expression {
         list
     }
 
-    /// The expression as one of two others, each with about half of the operands, or of a symmetric
-    /// difference the last argument alone; `None` if its value is made from one line, or operands occur
-    /// in both.
+    /// The expression split in two, each with about half of the operands; for a symmetric difference the
+    /// second is the last argument alone. `None` if its value depends on one line, or operands occur in
+    /// both.
     pub fn parted(&self) -> Option<Parted> {
         let mut top = self.terms.len() - 1;
         let mut negate = false;
@@ -165,7 +165,7 @@ impl Expression {
         Some(Parted { halves, whole })
     }
 
-    /// For each line how often it names operands, itself or by other lines.
+    /// For each line, how often it refers to operands, directly or through other lines.
     fn sizes(&self) -> Vec<usize> {
         let mut sizes: Vec<usize> = Vec::with_capacity(self.terms.len());
         for term in &self.terms {
@@ -176,7 +176,7 @@ impl Expression {
         sizes
     }
 
-    /// The expression that the line `top` would be with only some of its arguments.
+    /// The expression of line `top` restricted to some of its arguments.
     fn of(&self, arguments: &[u32], top: usize) -> Self {
         let mut terms = self.terms[..top].to_vec();
         let last = if let [line] = arguments {
@@ -197,7 +197,7 @@ impl Expression {
         self.words(word, scratch) != 0
     }
 
-    /// The values for 64 cases at once: a bit of each word is one case.
+    /// The values for 64 cases at once, one in each bit of a word.
     pub fn words(&self, operand: impl Fn(u32) -> u64, scratch: &mut Vec<u64>) -> u64 {
         self.words_of_lines(operand, scratch);
         scratch.last().copied().unwrap_or(0)
@@ -218,12 +218,12 @@ impl Expression {
         }
     }
 
-    /// The operands that bound the value at 64 places at once, given the operands' values on the two
-    /// sides; a bit of each word is one place.
+    /// The operands that bound the value at 64 places at once, given the operands' values on the two sides;
+    /// each bit of a word is one place.
     ///
-    /// They are those whose faces would be left if the lines were carried out one by one: where the value
-    /// of a union or an intersection changes, the first argument that changes gives its face, and of a
-    /// symmetric difference the last one.
+    /// These operands' faces would remain if the lines were evaluated one by one: where the value of a
+    /// union or an intersection changes, the first argument that changes gives its face; for a symmetric
+    /// difference, the last one.
     ///
     /// ```
     /// use bspcsg::merge::expression::{Expression, Term};
@@ -260,7 +260,7 @@ impl Expression {
     }
 }
 
-/// Ask for the owners of some places the first of some lines that changes there.
+/// Ask the first of some lines that changes at a place for its owner there.
 fn ask<'a>(places: u64, lines: impl Iterator<Item = &'a u32>, changes: &[u64], asked: &mut [u64]) {
     let mut open = places;
     for line in lines.map(|line| *line as usize) {

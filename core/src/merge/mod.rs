@@ -1,4 +1,4 @@
-//! Set operations: one descent over trees and deferred leaves, and generic tree merging.
+//! Set operations: one descent over trees and deferred leaves, and generic merging of trees.
 
 pub mod arrangement;
 pub mod descent;

@@ -26,12 +26,12 @@ pub enum SetOp {
     SymmetricDifference,
 }
 
-/// The result of an operation for one operand where the other is a leaf.
+/// The result of an operation whose other operand is a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Outcome {
     /// A leaf, whatever the operand is.
     Leaf(Label),
-    /// The operand as it is.
+    /// The operand, unchanged.
     Operand,
     /// The operand's complement.
     Complement,
@@ -79,7 +79,7 @@ impl SetOp {
 }
 
 impl Outcome {
-    /// The outcome that a function of one label amounts to.
+    /// The outcome equivalent to a function of one label.
     fn of(function: impl Fn(Label) -> Label) -> Self {
         match (function(Label::Out), function(Label::In)) {
             (Label::Out, Label::In) => Self::Operand,
@@ -88,7 +88,7 @@ impl Outcome {
         }
     }
 
-    /// The tree this outcome makes of an operand; its nodes are shared.
+    /// The tree that results from an operand; shares its nodes.
     pub fn apply<S: Space>(self, operand: &PartitionTree<S>) -> PartitionTree<S> {
         match self {
             Self::Leaf(label) => PartitionTree::Leaf(label),

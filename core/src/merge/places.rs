@@ -1,4 +1,4 @@
-//! A look at a solid around given places: enough where its boundary is seen to cross itself.
+//! Tests of a solid around given places: enough if its boundary crosses itself there.
 
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -10,14 +10,14 @@ use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// Elements of a list for which a local tree is grown where halving separates no more.
+/// The most elements for which a local tree is built where halving no longer separates them.
 const STUCK: usize = 256;
 
 /// Return whether a small cell around one of the places shows that a solid is not the reduced
 /// boundary; may return false negatives.
 ///
 /// # Cost
-/// Lists are divided where places are, and one local tree is grown for each place at most.
+/// Divides lists only at the places, and builds at most one local tree for each place.
 pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     let sources = Sources::new(solid.sources().clone());
     let mut open: Vec<(Branch, Vec<Lattice>)> = vec![(solid.root().clone(), places.to_vec())];
@@ -44,7 +44,7 @@ pub fn overlaps_at(solid: &Solid, places: &[Lattice]) -> bool {
     false
 }
 
-/// Return whether elements of a list overlap in one of the small cells around places.
+/// Return whether elements of a list overlap in a small cell around one of the places.
 fn overlaps_in(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) -> bool {
     let mut open = vec![(cell, list, places)];
     while let Some((cell, list, places)) = open.pop() {
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
     use crate::merge::scenes::cuboids;
 
-    /// Two rows of boxes side by side; the two in the middle overlap.
+    /// Two rows of boxes side by side; the middle two overlap.
     #[test]
     fn an_overlap_is_seen_where_it_is_and_nowhere_else() {
         let apart = |i: i64| [[8 * i; 3], [8 * i + 4; 3]];

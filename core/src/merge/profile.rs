@@ -1,4 +1,4 @@
-//! What an evaluation did, stage by stage.
+//! The stages of an evaluation and their costs.
 
 use super::division::Defect;
 use std::time::Instant;
@@ -8,24 +8,24 @@ use std::time::Instant;
 pub struct Stage {
     /// Its name.
     pub name: &'static str,
-    /// The time that it took.
+    /// Its duration.
     pub seconds: f64,
     /// The number of things that it found or made.
     pub count: usize,
 }
 
-/// A reason for which an arrangement leaves the work to the descent.
+/// A reason why an arrangement leaves the work to the descent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Declined {
-    /// The operands are not two different meshes as they were given, or the solid is no such mesh.
+    /// The operands are not two different unchanged meshes, or the solid is not an unchanged mesh.
     Operands,
     /// The boxes around the meshes are apart.
     Apart,
     /// The meshes touch nearly everywhere.
     AllOver,
-    /// Faces are crowded: boxes do not tell them apart.
+    /// Faces are crowded: boxes do not separate them.
     Crowded,
-    /// The operand of this number overlaps itself where the other one meets it.
+    /// The operand with this number overlaps itself where the other meets it.
     Overlap(usize),
     /// Faces are too thin to count winding numbers in front of them.
     Thin,
@@ -40,7 +40,7 @@ impl From<Defect> for Declined {
 }
 
 impl Declined {
-    /// The operand that is known to overlap itself, if one is.
+    /// The operand known to overlap itself, if any.
     pub fn overlapping(self) -> Option<usize> {
         match self {
             Self::Overlap(operand) => Some(operand),
@@ -62,7 +62,7 @@ impl Declined {
     }
 }
 
-/// The stages of an evaluation, in their order.
+/// The stages of an evaluation, in order.
 ///
 /// # Example
 /// ```
@@ -74,14 +74,14 @@ impl Declined {
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Profile {
-    /// What was done.
+    /// The stages done.
     pub stages: Vec<Stage>,
-    /// The reason for which the arrangement left the work to the descent, if it did.
+    /// The reason why the arrangement left the work to the descent, if it did.
     pub declined: Option<Declined>,
 }
 
 impl Profile {
-    /// Does the work of a stage.
+    /// Runs and records a stage.
     pub fn timed<T>(
         &mut self,
         name: &'static str,

@@ -1,4 +1,4 @@
-//! The rest of an expression where some operands are known, or known to be equal.
+//! What remains of an expression if some operands are known, or known to be equal.
 
 use std::sync::Arc;
 
@@ -26,14 +26,14 @@ enum Known {
 }
 
 impl Expression {
-    /// Puts in what is known and folds constants.
+    /// Substitutes known operands and folds constants.
     pub fn residual(&self, known: impl Fn(u32) -> Option<bool>) -> Residual {
         self.folded(known, |folding, operand| {
             folding.append(Term::Operand(operand))
         })
     }
 
-    /// Puts in what is known and folds constants; `add` makes a line of an operand that is not known.
+    /// Substitutes known operands and folds constants; `add` makes a line for an unknown operand.
     fn folded(
         &self,
         known: impl Fn(u32) -> Option<bool>,
@@ -56,8 +56,8 @@ impl Expression {
         folding.close()
     }
 
-    /// The same set where some operands are equal: `first` maps each to the one that stands for it. Of
-    /// equal operands of one list only the first is named.
+    /// An expression for the same set if some operands are equal: `first` maps each to its representative.
+    /// Lists name only the first of equal operands.
     ///
     /// ```
     /// use bspcsg::merge::expression::{Expression, Term};
@@ -79,10 +79,10 @@ impl Expression {
         Self { terms }
     }
 
-    /// The rest of the expression where some operands are equal.
+    /// What remains of the expression if some operands are equal.
     ///
-    /// Equal arguments of one line fold. Operands of different lines that are equal, but by other faces,
-    /// stay: whose faces are left at a place depends on the others ([`Self::owners`]).
+    /// Folds equal arguments of one line. Keeps operands of different lines that are equal but have other
+    /// faces: whose faces remain at a place depends on the others ([`Self::owners`]).
     ///
     /// ```
     /// use bspcsg::merge::expression::{Expression, Term};
@@ -113,12 +113,12 @@ impl Expression {
     }
 }
 
-/// The first operand that equals another one.
+/// The first operand equal to another one.
 #[derive(Clone, Copy, Debug)]
 pub struct Twin {
     /// Its number.
     pub first: u32,
-    /// True if the other one lists the same faces by number, not just coincident ones.
+    /// Whether the other one lists the same faces by number, not just coincident ones.
     pub is_same_source: bool,
 }
 
@@ -141,27 +141,27 @@ impl Known {
     }
 }
 
-/// An expression that is being folded.
+/// The state of folding an expression.
 struct Folding {
     /// The lines so far, folded.
     folded: Vec<Known>,
     /// The new lines.
     terms: Vec<Term>,
-    /// The new lines among their equals.
+    /// For each new line, its equals.
     lines: Vec<Line>,
 }
 
-/// A line among its equals.
+/// What is known of a line's equals.
 #[derive(Clone, Copy)]
 struct Line {
-    /// The first line that equals it, as far as that is known.
+    /// The first line known to equal it.
     twin: u32,
-    /// True if the list at hand names the line, and its complement.
+    /// Whether the current list names the line, and its complement.
     is_named: [bool; 2],
 }
 
 impl Folding {
-    /// Nothing yet of so many lines.
+    /// Nothing folded yet, with room for `count` lines.
     fn of(count: usize) -> Self {
         Self {
             folded: Vec::with_capacity(count),
@@ -205,8 +205,8 @@ impl Folding {
         }
     }
 
-    /// The lines of a list that are open, the first of equal ones; `None` if a value or two lines that
-    /// are opposite decide all.
+    /// The undecided lines of a list, without repetition; `None` if a constant or two opposite lines decide
+    /// it.
     fn open(&mut self, list: &[u32], absorbing: bool) -> Option<Vec<(u32, bool)>> {
         let mut open: Vec<(u32, bool)> = Vec::new();
         let mut is_decided = false;
@@ -261,7 +261,7 @@ impl Folding {
         }
     }
 
-    /// True if a symmetric difference names an odd number of lines that equal this one.
+    /// Whether a symmetric difference names an odd number of lines equal to this one.
     fn is_odd(&mut self, line: u32) -> &mut bool {
         let twin = self.twin(line);
         &mut self.lines[twin].is_named[0]
@@ -285,7 +285,7 @@ impl Folding {
     }
 }
 
-/// Keeps the lines the value depends on.
+/// Keeps the lines that the value depends on.
 fn close(mut terms: Vec<Term>, line: u32, negate: bool) -> Residual {
     if let Term::Operand(k) = terms[line as usize] {
         return Residual::Literal(k, negate);

@@ -1,4 +1,4 @@
-//! Small solids that share a cell, for the tests beside the stages of an evaluation.
+//! Small solids that share a cell, for tests of the stages of an evaluation.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -33,7 +33,7 @@ pub fn tetrahedron(corners: [Lattice; 4]) -> Solid {
     solid(corners.to_vec(), faces.to_vec())
 }
 
-/// The pyramid over a polygon that turns left as seen from the apex.
+/// The pyramid over a polygon that is counterclockwise seen from the apex.
 pub fn pyramid(apex: Lattice, base: &[Lattice]) -> Solid {
     let top = as_number(base.len());
     let sides = (0..top).map(|i| [i, (i + 1) % top, top]);
@@ -41,7 +41,7 @@ pub fn pyramid(apex: Lattice, base: &[Lattice]) -> Solid {
     solid([base, &[apex]].concat(), sides.chain(bottom).collect())
 }
 
-/// The prism over a polygon that turns left as seen from above, and lies at one height.
+/// The prism over a horizontal polygon that is counterclockwise seen from above.
 pub fn prism(base: &[Lattice], height: i64) -> Solid {
     let count = as_number(base.len());
     let above = base.iter().map(|[x, y, z]| [*x, *y, z + height]);
@@ -97,8 +97,8 @@ fn solid(vertices: Vec<Lattice>, faces: Vec<[u32; 3]>) -> Solid {
     Solid::of_source(Arc::new(source), false)
 }
 
-/// Two tetrahedra of which a corner of the second lies in the first: three of its faces cross the
-/// last face of that.
+/// Two tetrahedra; a corner of the second is inside the first, and its three faces there cross the last
+/// face of the first.
 pub fn tetrahedra() -> [Solid; 2] {
     let a = [[0, 0, 0], [16, 0, 0], [0, 16, 0], [0, 0, 16]];
     let b = [[5, 4, 3], [25, 5, 4], [6, 27, 2], [4, 6, 24]];
@@ -115,7 +115,7 @@ pub fn made_of(solids: &[Solid; 2], combined: fn(Vec<u32>) -> Term) -> Solid {
     evaluate(&both(combined), solids).expect("bounded solids").0
 }
 
-/// Solids in the smallest cell that holds all of them.
+/// Solids in the smallest cell that contains them all.
 pub struct Shared {
     pub cell: Cell,
     pub sources: Sources,
@@ -161,7 +161,7 @@ pub fn both(combined: fn(Vec<u32>) -> Term) -> Expression {
     Expression::new(terms).expect("well formed")
 }
 
-/// The numbers of whole faces and of parts that a node lists.
+/// The numbers of whole faces and of parts in a node.
 pub fn counts(node: &Node) -> (usize, usize) {
     match node {
         Node::Deferred(leaf) => {

@@ -1,4 +1,4 @@
-//! Operands of one list that are the same mesh: a union needs one of them.
+//! Equal meshes among the operands of one list: a union needs only one.
 
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
@@ -10,21 +10,21 @@ use crate::interrupt::poll;
 use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
-/// Rows of a mesh that tell it from most others; meshes of equal samples are compared whole.
+/// The number of rows in a mesh's sample; meshes with equal samples are compared completely.
 const SAMPLE: usize = 32;
 
-/// Different meshes with one sample to which others are compared. So all comparisons together are
-/// at most so many passes over the operands.
+/// The most different meshes with one sample to compare others with. So all comparisons together cost at
+/// most this many passes over the operands.
 const KINDS: usize = 4;
 
-/// The expression with no list that names two operands which are one mesh; `None` if no two operands
-/// are.
+/// The expression without lists that name two operands with equal meshes; `None` if no two operands are
+/// equal.
 pub(super) fn without_twins(expression: &Expression, solids: &[Solid]) -> Option<Expression> {
     let firsts = firsts(solids)?;
     Some(expression.merged(|operand| firsts[operand as usize]))
 }
 
-/// For each operand the first that is the same mesh; `None` if all differ.
+/// For each operand, the first with an equal mesh; `None` if all differ.
 fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
     let mut known: HashMap<u64, Vec<(u32, &Solid)>> = HashMap::default();
     let mut found = false;
@@ -47,7 +47,7 @@ fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
     found.then_some(firsts)
 }
 
-/// A number that equal meshes have in common; `None` for what operations have made.
+/// A hash that equal meshes share; `None` for results of operations.
 fn sample(solid: &Solid) -> Option<u64> {
     let mut hasher = FxHasher::default();
     solid.root().complement.hash(&mut hasher);

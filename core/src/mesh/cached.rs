@@ -1,11 +1,11 @@
-//! Values that are made on first use and then stay.
+//! Values made on first use and kept.
 
 use once_cell::race::OnceBox;
 
-/// A value that is made on first use; nobody ever waits for it.
+/// A value made on first use, without locks.
 ///
-/// Threads that ask at the same time each make it, and the first answer stays. A process that is
-/// forked meanwhile finds the value unmade, never locked by a thread that it does not have.
+/// Threads that ask at the same time each make it, and the first answer stays. A process forked meanwhile
+/// finds the value unmade, never locked by a thread that it does not have.
 #[derive(Debug)]
 pub struct Cached<T>(OnceBox<T>);
 
@@ -16,7 +16,7 @@ impl<T> Default for Cached<T> {
 }
 
 impl<T: Clone> Clone for Cached<T> {
-    /// The same value, if somebody has made it.
+    /// The same value, if it is made already.
     fn clone(&self) -> Self {
         self.get().cloned().map_or_else(Self::new, Self::of)
     }
@@ -33,12 +33,12 @@ impl<T> Cached<T> {
         Self(OnceBox::with_value(Box::new(value)))
     }
 
-    /// The value, if somebody has made it.
+    /// The value, if it is made already.
     pub fn get(&self) -> Option<&T> {
         self.0.get()
     }
 
-    /// The value, made if nobody has yet. All makers must make equal ones.
+    /// The value, made on first use. All makers must make equal ones.
     pub fn get_or_make(&self, make: impl FnOnce() -> T) -> &T {
         self.0.get_or_init(|| Box::new(make()))
     }

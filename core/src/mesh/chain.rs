@@ -1,4 +1,4 @@
-//! The test whether the boundary of a surface vanishes, without looking for pairs.
+//! Tests whether the boundary of a surface vanishes, without pairing edges.
 
 use super::handle::VertexId;
 use super::tasks::each_chunk;
@@ -6,9 +6,8 @@ use crate::arith::convert::low_limb;
 
 /// Return whether every directed edge occurs as often as its opposite.
 ///
-/// Each edge is given a number of 128 bits that looks random; it is added for one direction and
-/// subtracted for the other, modulo 2^128. A closed surface sums to zero, whatever its order. An
-/// open one sums to a number that is zero by chance 2^-128.
+/// Each edge has a number of 128 bits that looks random: added for one direction, subtracted for the other,
+/// modulo 2^128. A closed surface sums to zero, in any order. An open one does so with probability 2^-128.
 pub fn is_closed(faces: &[[VertexId; 3]]) -> bool {
     let sum = |_, faces: &[[VertexId; 3]]| faces.iter().map(boundary).fold(0, u128::wrapping_add);
     let sums = each_chunk(faces, sum);
@@ -38,7 +37,7 @@ const SALT: [u64; 4] = [
     0xA54F_F53A_5F1D_36F1,
 ];
 
-/// A number that depends on each bit of the key as if by chance: two rounds of multiply and fold.
+/// A number that depends on each bit of the key: two rounds of multiply and fold.
 fn scattered(key: u64) -> u128 {
     let first = u128::from(key ^ SALT[0]) * u128::from(key.rotate_left(29) ^ SALT[1]);
     let (low, high) = (low_limb(first), (first >> 64) as u64);
@@ -52,7 +51,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Corners are few, so that edges repeat and now and then all cancel.
+        /// Few corners, so that edges repeat and sometimes all cancel.
         #[test]
         fn closed_is_what_a_count_of_edges_says(
             faces in prop::collection::vec(prop::array::uniform3(0u32..5), 0..6),

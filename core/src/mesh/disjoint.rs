@@ -1,14 +1,14 @@
-//! Disjoint sets of numbers: what is connected with what.
+//! Disjoint sets of numbers, for connected components.
 
 use super::handle::VertexId;
 use crate::arith::convert::as_number;
 use crate::interrupt::spend;
 
-/// Numbers from 0 on in sets, each set named by its least.
+/// The numbers from 0 on, in sets; the least number of a set is its name.
 ///
 /// # Source
-/// Tarjan, van Leeuwen, *Worst-case analysis of set union algorithms*, 1984: linking by index, and
-/// ways that are halved.
+/// Tarjan, van Leeuwen, *Worst-case analysis of set union algorithms*, 1984: linking by index, and path
+/// halving.
 ///
 /// # Example
 /// ```
@@ -24,17 +24,17 @@ pub struct DisjointSets {
 }
 
 impl DisjointSets {
-    /// So many numbers, each in a set of its own.
+    /// `count` numbers, each in a set of its own.
     pub fn of_one(count: usize) -> Self {
         Self {
             lower: (0..as_number(count)).collect(),
         }
     }
 
-    /// So many vertices, in one set if triangles connect them.
+    /// `count` vertices, in one set if triangles connect them.
     ///
-    /// Each vertex first takes the least number that is around it when its triangles are passed;
-    /// mostly that is its set's name, and hardly a triangle has different ones to join.
+    /// Each vertex first takes the least number around it so far. Mostly that is the name of its set, so
+    /// that few triangles have different sets to join.
     ///
     /// # Example
     /// ```
@@ -67,21 +67,21 @@ impl DisjointSets {
         sets
     }
 
-    /// The lowest of the numbers that some vertices name.
+    /// The least number that the vertices point to.
     #[inline]
     fn lowest(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
         let lower = |v: &VertexId| self.lower[v.place()];
         lower(a).min(lower(b)).min(lower(c))
     }
 
-    /// Makes each number name its set: what it named until now is lower, and comes first.
+    /// Points each number to the name of its set. Numbers point to lower ones, which are done first.
     fn shorten(&mut self) {
         for at in 0..self.lower.len() {
             self.lower[at] = self.lower[self.lower[at] as usize];
         }
     }
 
-    /// No numbers yet, and room for some.
+    /// No numbers yet, with room for `count`.
     pub fn with_capacity(count: usize) -> Self {
         Self {
             lower: Vec::with_capacity(count),
@@ -100,7 +100,7 @@ impl DisjointSets {
         next
     }
 
-    /// The least number of a set; the way there is halved for the next question.
+    /// The least number of a set; halves the path to it for later calls.
     #[inline]
     pub fn least(&mut self, number: u32) -> u32 {
         let mut at = number as usize;
@@ -111,14 +111,14 @@ impl DisjointSets {
         as_number(at)
     }
 
-    /// Makes two sets one.
+    /// Joins two sets.
     #[inline]
     pub fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.least(a), self.least(b));
         self.join_named(a, b);
     }
 
-    /// Makes two sets one, given by their names, and returns that one's.
+    /// Joins two sets given by their names, and returns the name of the union.
     #[inline]
     pub fn join_named(&mut self, a: u32, b: u32) -> u32 {
         let least = a.min(b);

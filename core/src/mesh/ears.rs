@@ -31,7 +31,7 @@ pub fn is_convex(corners: &[Lattice], axes: (usize, usize)) -> bool {
     strict && starts == 1
 }
 
-/// Return whether two edges of an outline that are no neighbours have a point in common.
+/// Return whether two edges of an outline that are not neighbours have a point in common.
 fn crosses_itself(corners: &[Lattice], axes: (usize, usize)) -> bool {
     let n = corners.len();
     let edge = |i: usize| (&corners[i], &corners[(i + 1) % n]);

@@ -8,8 +8,8 @@ use crate::geometry::doubles::{Point, Triangle};
 pub struct Faces<'a> {
     /// The vertices.
     pub vertices: &'a [Point],
-    /// The triangles, each directed edge with one opposite, but where vertices were joined by their
-    /// places: there an edge has as many in either direction.
+    /// The triangles. Each directed edge has one opposite; where vertices were joined by place, it has as
+    /// many as there are of it.
     pub triangles: &'a [[VertexId; 3]],
 }
 

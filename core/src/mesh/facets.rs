@@ -1,4 +1,4 @@
-//! Facets of any kind onto the lattice: points, segments, planar polygons.
+//! Facets of any kind on the lattice: points, segments, planar polygons.
 
 use super::ears::{is_convex, triangles};
 use super::grid::Pitch;
@@ -11,15 +11,15 @@ use crate::interrupt::poll;
 /// A convex facet, or a convex part of one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Facet {
-    /// One corner, two, or those of a convex polygon; unused coordinates are zero.
+    /// The corners: one, two, or a convex polygon's; unused coordinates are zero.
     pub corners: Vec<Lattice>,
-    /// Marks of the edges, by the corner they leave, that are diagonals of the input facet.
+    /// For each corner, whether the edge that leaves it is a diagonal of the input facet.
     pub seams: Vec<bool>,
     /// The number of the input facet.
     pub source: u32,
 }
 
-/// Facets may have at most this many corners: outlines are examined in quadratic time.
+/// The most corners of a facet: outlines are examined in quadratic time.
 const MOST_CORNERS: usize = 1 << 14;
 
 /// The pitch for coordinates of this size and extent.
@@ -84,7 +84,7 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
     }
 }
 
-/// The flaws of facets that are mended instead of refused.
+/// Which flaws of facets to mend instead of refusing them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lenience {
     /// Make triangles of polygons that are not planar.
@@ -192,11 +192,10 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
     Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
 }
 
-/// Explain why a polygon has no normal: it is flat, or what it turns one way round it turns the
-/// other.
+/// Explain why a polygon has no normal: it is flat, or its areas of either orientation cancel.
 fn without_normal(corners: &[Lattice], source: u32) -> Error {
     let (kind, text) = match corners {
-        // Of more than three corners none lies between its neighbours on one line.
+        // Flat corners are gone: the first three of more are not on one line.
         [a, b, c, _, ..] => match Plane::through(a, b, c) {
             Some(plane) if corners.iter().all(|p| plane.side_of_lattice(p) == Side::On) => {
                 let text = "crosses itself: its areas of either orientation cancel";
@@ -218,7 +217,7 @@ fn part(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
     }
 }
 
-/// The corners without repeated ones and without those between their neighbours on one line.
+/// The corners without repeated ones and without those on the line through their neighbours.
 fn without_flat_corners(given: &[Lattice]) -> Vec<Lattice> {
     let mut corners = given.to_vec();
     loop {
@@ -236,8 +235,8 @@ fn without_flat_corners(given: &[Lattice]) -> Vec<Lattice> {
     }
 }
 
-/// The plane through the corner where the sum of cross products is the normal, for the polygon's
-/// own turning sense; with planar corners, their plane.
+/// The plane through the first corner whose normal is the sum of cross products, so that the polygon turns
+/// counterclockwise; the corners' plane if they have one.
 ///
 /// # Bits
 /// A product of differences is below 2^108, two of them for each of 2^14 corners below 2^123.
@@ -313,7 +312,7 @@ mod tests {
         assert_eq!(kind(&bent), Some(ErrorKind::NonPlanar));
         let bow = [[0, 0, 0], [4, 4, 0], [5, 1, 0], [0, 4, 0]];
         assert_eq!(kind(&bow), Some(ErrorKind::NotSimple));
-        // The two halves are of one size.
+        // The two halves have equal areas.
         let even = [[0, 0, 0], [4, 4, 0], [4, 0, 0], [0, 4, 0]];
         assert_eq!(kind(&even), Some(ErrorKind::NotSimple));
         let skew = [

@@ -39,7 +39,7 @@ pub struct Finding {
 const PLACES: usize = 8;
 
 impl Finding {
-    /// A finding about numbered places, of which the first few are kept.
+    /// A finding about numbered places; keeps the first few.
     pub fn about(
         code: &'static str,
         severity: Severity,

@@ -1,4 +1,4 @@
-//! The lattice: the only door between doubles and integers.
+//! The lattice: the only place where doubles become integers.
 
 use crate::arith::bounds::COORDINATE_BITS;
 use crate::arith::convert::{as_double, as_whole};
@@ -53,7 +53,7 @@ impl Pitch {
         i64::from(self.0)
     }
 
-    /// The pitch for coordinates of this size and extent: the default unless they do not fit it.
+    /// The pitch for coordinates of this size and extent: the default if they fit it.
     ///
     /// Coarser by powers of 1000 until the largest coordinate fits; finer for meshes less than
     /// 10^6 steps across, as long as they fit.
@@ -88,7 +88,7 @@ impl Pitch {
         }
     }
 
-    /// How many steps a coordinate lies beyond one of the lattice, by the exact difference.
+    /// The steps from a lattice coordinate to `x`, by the exact difference.
     pub fn steps_beyond(self, x: f64, place: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 <= 0 {
@@ -98,7 +98,7 @@ impl Pitch {
         }
     }
 
-    /// By what model units are multiplied; `None` for steps of several units, which divide.
+    /// The factor from model units to steps; `None` for steps of several units, which divide.
     pub(super) fn steps_per_unit(self) -> Option<f64> {
         (self.0 <= 0).then(|| power_of_ten(-self.0))
     }
@@ -111,7 +111,7 @@ impl Pitch {
     /// The nearest lattice coordinate, by the exact product; halves go away from zero.
     #[inline]
     pub fn snap(self, x: f64) -> Result<i64> {
-        // Nor does what is not finite.
+        // This refuses infinities and NaN too.
         if !self.fits(x) {
             return Err(self.refused(x));
         }
@@ -211,7 +211,7 @@ const BELOW_HALF: f64 = 0.5 - f64::EPSILON / 4.0;
 #[inline]
 fn snap_product(x: f64, power: f64) -> f64 {
     let product = x * power;
-    // To the nearest, halves away from zero, without a branch that goes either way as often.
+    // To the nearest, halves away from zero, without an unpredictable branch.
     let rounded = as_double(as_whole(product + BELOW_HALF.copysign(product)));
     let doubt = product.abs() * f64::EPSILON;
     if (product - rounded).abs() + doubt < 0.5 {
@@ -220,7 +220,7 @@ fn snap_product(x: f64, power: f64) -> f64 {
     snap_doubtful(x, power, product, rounded)
 }
 
-/// Rounds the exact product, which is near the middle between `rounded` and a neighbour.
+/// Rounds the exact product, which is near the midpoint of `rounded` and a neighbour.
 #[cold]
 #[allow(clippy::float_cmp)]
 fn snap_doubtful(x: f64, power: f64, product: f64, rounded: f64) -> f64 {

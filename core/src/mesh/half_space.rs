@@ -11,7 +11,7 @@ use crate::geometry::plane::Plane;
 
 /// The half-space of the points with normal·x ≤ offset, in lattice steps.
 ///
-/// `rounded` says how the plane was moved onto the lattice; `None` if it is the one asked for.
+/// `rounded` says how the plane was moved onto the lattice; `None` if it was not.
 ///
 /// # Errors
 /// As [`bounding_plane`].

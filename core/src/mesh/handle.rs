@@ -1,4 +1,4 @@
-//! Handles: numbers that say what they number.
+//! Handles: numbers typed by what they number.
 
 use std::fmt;
 
@@ -121,7 +121,7 @@ impl fmt::Display for VertexId {
 pub struct NodeId(pub u32);
 
 impl NodeId {
-    /// The root, where lists begin with it.
+    /// The root, in lists that begin with it.
     pub const ROOT: Self = Self(0);
 
     /// The first node of a list, and all after it.
@@ -166,7 +166,7 @@ impl SourceFace {
         Self { slot, id }
     }
 
-    /// The face, turned like this.
+    /// The face with this orientation.
     pub fn oriented(self, orientation: Orientation) -> OrientedFace {
         OrientedFace {
             face: self,

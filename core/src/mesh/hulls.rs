@@ -1,4 +1,4 @@
-//! Convex hulls of points that are put on the lattice.
+//! Convex hulls of points that are snapped to the lattice.
 
 use std::collections::hash_map::Entry;
 
@@ -22,21 +22,22 @@ pub struct Hull {
     pub vertices: Vec<Point>,
     /// The triangles.
     pub triangles: Vec<[VertexId; 3]>,
-    /// True if it is a hull on the lattice, too: then its faces do not cross there.
+    /// Whether its faces are a convex hull on the lattice too, where they then do not cross.
     pub is_convex_there: bool,
 }
 
-/// The sine of the angle by which faces may turn inwards against each other: of ordinary ones, rounding
-/// turns none so far, and it leaves no point before a face by more than so much of the hull's size.
+/// The sine of the angle by which faces may turn inwards against each other. Rounding has turned no
+/// ordinary face inwards so far, and leaves no point before a face by more than this part of the hull's
+/// size.
 const FOLD: f64 = 1e-7;
 
-/// The hull of points, empty if they lie in a plane but for rounding; exact for their places on the
-/// lattice.
+/// The hull of points, exact for their places on the lattice; empty if they lie in a plane but for
+/// rounding.
 ///
-/// A point is off its place by rounding. So one that lies within twice the farthest of these from the
-/// hull of the others is no corner. Where faces of the exact hull would look inwards between the
-/// coordinates that were given, these are put on the lattice; where that does not help, for it is no
-/// coarser than the doubles, the faces are those of the hull of what was given.
+/// Rounding moves a point off its place. So a point is no corner if it lies within twice the largest such
+/// distance from the hull of the others. Where faces of the exact hull would look inwards between the given
+/// coordinates, these are snapped. Where that does not help, as on a lattice no coarser than the doubles,
+/// the faces are those of the hull of the given points.
 ///
 /// # Errors
 /// As [`Pitch::snap`].
@@ -54,7 +55,7 @@ const FOLD: f64 = 1e-7;
 /// ```
 pub fn hull_of(points: &[Point], pitch: Pitch) -> Result<Hull> {
     let lattice = snap_all(points, pitch)?;
-    // Below 2^53 in magnitude, so that doubles hold them.
+    // Below 2^53 in magnitude: exact in doubles.
     let steps: Vec<Point> = lattice.iter().map(|p| p.map(as_double)).collect();
     let radius = moved_by(points, &steps, pitch);
     let faces = hull_beyond(&steps, radius);
@@ -80,7 +81,7 @@ pub fn hull_of(points: &[Point], pitch: Pitch) -> Result<Hull> {
     })
 }
 
-/// The exact hull of points between doubles.
+/// The exact hull of the points as doubles.
 fn hull_as_given(points: &[Point]) -> Hull {
     let faces = hull(points);
     let used = corners_of(&faces);
@@ -91,8 +92,8 @@ fn hull_as_given(points: &[Point]) -> Hull {
     }
 }
 
-/// How far rounding may have moved a point, in steps: to its place on the lattice and, unless all are
-/// there, when its coordinates were computed.
+/// How far rounding may have moved a point, in steps: by snapping and, unless all are on the lattice, when
+/// its coordinates were computed.
 fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
     let squares = points.iter().zip(steps).map(|(point, place)| {
         let off = |i: usize| pitch.steps_beyond(point[i], place[i]);
@@ -110,11 +111,11 @@ fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
     }
 }
 
-/// Roundings of a point that a matrix has turned, by the spacing of doubles at the largest coordinate:
-/// a half of each of three products and three sums, along two axes or three at once.
+/// Rounding of a point that a matrix has turned, in spacings of doubles at the largest coordinate: a half
+/// for each of three products and three sums, along two axes or all three.
 const COMPUTED: f64 = 4.0;
 
-/// Faces by the places of their corners among the used points.
+/// Faces by the index of their corners among the used points.
 fn numbered(faces: &[[usize; 3]], used: &[usize]) -> Vec<[VertexId; 3]> {
     let place = |p: usize| used.partition_point(|q| *q < p);
     faces
@@ -123,8 +124,8 @@ fn numbered(faces: &[[usize; 3]], used: &[usize]) -> Vec<[VertexId; 3]> {
         .collect()
 }
 
-/// Return whether all triangles of a nearly convex mesh have its middle behind them, and none turns
-/// inwards against a neighbour.
+/// Return whether all triangles of a nearly convex mesh face away from its middle, and none turns inwards
+/// against a neighbour.
 ///
 /// Seen from the middle they then lie side by side, so that none crosses another.
 fn looks_outwards(vertices: &[Point], triangles: &[[VertexId; 3]]) -> bool {
@@ -152,7 +153,7 @@ fn looks_outwards(vertices: &[Point], triangles: &[[VertexId; 3]]) -> bool {
     })
 }
 
-/// Return whether a triangle turns inwards against another one with an edge of it.
+/// Return whether a triangle turns inwards against another that shares an edge with it.
 fn turns_inwards(facing: &Facing, other: &Triangle) -> bool {
     let ways = [normal(facing.triangle()), normal(other)];
     let bend = cross(&ways[0], &ways[1]);
@@ -213,8 +214,8 @@ mod tests {
         );
     }
 
-    /// A corner beside the edge of a box lies in the plane of a side on the lattice, and above it where
-    /// it was given: the thin faces there turn by as much as it is farther up than off the edge.
+    /// A corner beside the edge of a box lies in the plane of a side on the lattice, but above it as given:
+    /// the thin faces there turn by its height over its distance from the edge.
     #[test]
     fn thin_faces_look_outwards() {
         let mut mended = 0;

@@ -1,4 +1,4 @@
-//! Images: a motion makes one of a thing, as long as somebody has that.
+//! Images of a thing under motions, shared while in use.
 
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError, Weak};
 
@@ -6,23 +6,23 @@ use rustc_hash::FxHashMap as HashMap;
 
 use crate::geometry::spaces::motion::Motion;
 
-/// The images of a thing by the motions that made them. They are not kept alive.
+/// The images of a thing by the motions that made them, as weak references.
 ///
-/// Nobody waits for ever: in a process that was forked, a thread that is not there may hold the lock.
-/// Who does not get it has an image of its own.
+/// No call blocks for ever. In a forked process a thread that no longer exists may hold the lock; whoever
+/// does not get it uses an image of its own.
 #[derive(Debug)]
 pub struct Images<T>(Mutex<Known<T>>);
 
 #[derive(Debug)]
 struct Known<T> {
     images: HashMap<Motion, Weak<T>>,
-    /// The number of images at which those that nobody has any more are left out: twice as many as
-    /// were left last time, so that each costs two looks.
+    /// Beyond this many images, drop those no longer in use. It is twice the number kept last time, so that
+    /// each image costs two looks.
     full: usize,
 }
 
-/// Turns that others get before the lock counts as held for ever. A thread holds it while it looks up
-/// an image, and at times while it goes through all of them; a process forked meanwhile never gets it.
+/// Yields before the lock counts as held for ever. A thread holds it while it looks up an image, and at
+/// times while it drops old ones; a process forked meanwhile never gets it.
 const TURNS: usize = 1000;
 
 impl<T> Default for Images<T> {
@@ -33,12 +33,12 @@ impl<T> Default for Images<T> {
 }
 
 impl<T> Images<T> {
-    /// The image that somebody has.
+    /// The image, if one is in use.
     pub fn get(&self, motion: &Motion) -> Option<Arc<T>> {
         self.free()?.images.get(motion)?.upgrade()
     }
 
-    /// The image that somebody has by now, else this one, which is remembered.
+    /// The image in use by now, else this one, which is remembered.
     pub fn keep(&self, motion: &Motion, image: Arc<T>) -> Arc<T> {
         let Some(mut known) = self.free() else {
             return image;
@@ -84,8 +84,8 @@ mod tests {
         assert!(images.free().expect("nobody holds it").images.len() < 10);
     }
 
-    // Found: threads that moved one solid at the same time could make two images of its source,
-    // and `mesh.source` told them apart.
+    // Found: threads that moved one solid at the same time could make two images of its source, which
+    // `mesh.source` showed as different.
     #[test]
     fn threads_that_make_an_image_at_once_share_one() {
         let motion = Motion::of_axes(&[1, 2, 3], &[0, 0, 1]).expect("a motion");

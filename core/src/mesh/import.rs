@@ -1,4 +1,4 @@
-//! From arrays of doubles to a source: snapping, judging, welding.
+//! From arrays of doubles to a source: snaps, checks and welds.
 
 use super::chain::is_closed;
 use super::finding::{Finding, Severity};
@@ -19,11 +19,11 @@ use crate::mesh::handle::VertexId;
 /// Sizes of numbers that a message shows without an exponent.
 const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
 
-/// Reads a closed triangle mesh onto the lattice.
+/// Snaps a closed triangle mesh to the lattice.
 ///
-/// `vertices` are in model units, `faces` index them, counterclockwise as seen from outside.
-/// Faces without area are left out; vertices at one place are welded if the faces do not close by
-/// index; T-junctions are accepted where the pieces of each line cancel.
+/// `vertices` are in model units, `faces` index them, counterclockwise as seen from outside. Drops faces
+/// without area; welds vertices at one place if the faces do not close by index; accepts T-junctions if the
+/// pieces of each line cancel.
 ///
 /// # Errors
 /// `NonFinite`, `IndexOutOfRange`, `TooLarge`, `EmptyMesh`, and `NotClosed` with the faces at open edges.
@@ -107,7 +107,7 @@ fn check_indices(faces: &[[i64; 3]], count: usize) -> Result<Vec<[VertexId; 3]>>
     ))
 }
 
-/// Copies indices; says whether all are below the limit.
+/// Copies indices; returns whether all are below the limit.
 #[allow(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -217,7 +217,7 @@ fn weigh(mesh: &TriangleMesh) -> (f64, Vec<u32>) {
     (volumes.iter().sum(), flat.concat())
 }
 
-/// Leaves out some faces, given in ascending order.
+/// Drops some faces, given in ascending order.
 fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Finding>) {
     if faces.is_empty() {
         return;
@@ -232,7 +232,7 @@ fn drop_faces(mesh: &mut TriangleMesh, faces: Vec<u32>, findings: &mut Vec<Findi
     findings.push(Finding::about("zero_area", Severity::Note, &places, text));
 }
 
-/// The share of a run of faces in [`weigh`].
+/// The part of [`weigh`] for a run of faces.
 fn weigh_chunk(
     faces: &[[VertexId; 3]],
     vertices: &[Lattice],
@@ -277,8 +277,8 @@ fn surely_wide(u: &[f64; 3], v: &[f64; 3]) -> bool {
     certain(0, 1) || certain(1, 2) || certain(2, 0)
 }
 
-/// The ends of edges without an opposite by index; vertices are welded by place, then edges
-/// cancelled along lines, if the faces do not close by index.
+/// The ends of edges without an opposite by index. If the faces do not close by index, welds vertices by
+/// place and then cancels edges along lines.
 fn close(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Result<Vec<VertexId>> {
     if is_closed(&mesh.faces) {
         return Ok(Vec::new());
@@ -340,7 +340,7 @@ fn rounded(number: f64) -> String {
     }
 }
 
-/// The faces with vertices at one lattice point made one; `None` if there are no such vertices.
+/// The faces with vertices at one lattice point merged; `None` if there are no such vertices.
 fn weld(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
     let image = mesh.firsts();
     let changed = VertexId::all().zip(&image).any(|(i, v)| i != *v);

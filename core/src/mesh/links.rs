@@ -1,4 +1,4 @@
-//! Irregular vertices: several fans of faces, or more than two faces of an edge, share them.
+//! Irregular vertices: shared by several fans of faces, or on an edge of more than two faces.
 //!
 //! The link of a vertex has a directed edge for each face around it: from the corner after the
 //! vertex to the one before it. The faces make one fan if the link is one cycle.
@@ -8,12 +8,12 @@ use super::tasks::each_chunk;
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
-/// Edges that a [`Short`] link holds; around most vertices of most meshes there are six.
+/// The most edges in a [`Short`] link; around most vertices of most meshes there are six.
 const ROOM: usize = 8;
 
 /// The starts, then the ends of a link's edges; zero where there is none.
 ///
-/// Fifteen bits of each corner stand for it, under a set top bit.
+/// A corner's label is its low fifteen bits under a set top bit.
 type Short = [u16; 2 * ROOM];
 
 /// The vertices of a closed surface whose link is not one cycle, sorted.
@@ -23,9 +23,9 @@ pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> 
     without_cycle(&Asked::new(vertices, vertex_count), faces)
 }
 
-/// Those of some vertices of a closed surface whose link is not one cycle, sorted.
+/// The given vertices of a closed surface whose link is not one cycle, sorted.
 ///
-/// `vertices` ascend. One pass over the faces, and memory for the links of these vertices only.
+/// `vertices` ascend. Costs one pass over the faces, and memory for the links of these vertices only.
 pub fn irregular_among(
     vertices: Vec<VertexId>,
     faces: &[[VertexId; 3]],
@@ -40,13 +40,13 @@ pub fn irregular_among(
     without_cycle(&Asked::new(vertices.collect(), vertex_count), faces)
 }
 
-/// Some vertices of a mesh, and their places among each other.
+/// Some vertices of a mesh, and the index of each among them.
 struct Asked {
     /// Ascending.
     vertices: Vec<VertexId>,
     /// A bit for each vertex of the mesh.
     words: Vec<u64>,
-    /// The number of those before each word.
+    /// The number of these vertices before each word.
     before: Vec<u32>,
 }
 
@@ -83,7 +83,7 @@ impl Asked {
     }
 }
 
-/// Those of some vertices whose link is not one cycle, by a sort of the corners there.
+/// The given vertices whose link is not one cycle; sorts the corners at them.
 fn without_cycle(asked: &Asked, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
     if asked.vertices.is_empty() {
         return Vec::new();
@@ -103,9 +103,9 @@ fn without_cycle(asked: &Asked, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
         .collect()
 }
 
-/// The places of those vertices whose short link does not show that they are regular.
+/// The places of vertices whose short link does not prove them regular.
 ///
-/// `place` says which of `count` vertices are looked at.
+/// `place` maps the vertices in question to `0..count`.
 fn doubtful(
     faces: &[[VertexId; 3]],
     count: usize,
@@ -146,9 +146,9 @@ fn label(vertex: VertexId) -> u16 {
 
 /// Return whether a link is surely one cycle; its starts must be its ends in another order.
 ///
-/// The walk below maps label to label. If it first returns after `count` steps, it saw as many
-/// labels, all different; no label is seen that no start has, since the walk stays at zero from
-/// there on. So the starts' labels differ, and with them the corners: nothing was confused.
+/// The walk maps label to label. If it first returns after `count` steps, it saw `count` labels, all
+/// different. All are labels of starts, since the walk stays at zero once it leaves these. So the labels of
+/// the starts differ, and with them the corners: no two share a label.
 fn is_short_cycle(link: &Short, count: usize) -> bool {
     if count > ROOM {
         return false;
@@ -163,7 +163,7 @@ fn is_short_cycle(link: &Short, count: usize) -> bool {
     label == link[0]
 }
 
-/// The label after another; those after all edges with that label, mixed, if several have it.
+/// The label after another; if several edges start with that label, the bitwise or of their ends.
 fn after(link: &Short, label: u16) -> u16 {
     (0..ROOM).fold(0, |found, i| {
         let mask = if link[i] == label { u16::MAX } else { 0 };
@@ -171,7 +171,7 @@ fn after(link: &Short, label: u16) -> u16 {
     })
 }
 
-/// Says if the link of a vertex is one cycle; its corners are sorted, and there are some.
+/// Return whether the link of a vertex is one cycle; its corners are sorted and not empty.
 fn is_cycle(link: &[[VertexId; 3]]) -> bool {
     if link.windows(2).any(|pair| pair[0][1] == pair[1][1]) {
         return false;
@@ -199,7 +199,7 @@ mod tests {
         let corners = (corners, 0u32..3, any::<bool>());
         prop::collection::vec(corners, 1..6).prop_map(|all| {
             let tetrahedron = |(c, high, turned): &(Vec<u32>, u32, bool)| {
-                // Far numbers share their lower bits.
+                // Numbers far apart share their lower bits.
                 let [a, b, c, d] = [0, 1, 2, 3].map(|i| c[i] + (high << 15) * (as_number(i) % 2));
                 let faces = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
                 let faces = faces.map(|[a, b, c]| if *turned { [a, c, b] } else { [a, b, c] });

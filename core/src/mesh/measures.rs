@@ -1,4 +1,4 @@
-//! Volume, area and moments of a mesh in doubles, the sums rounded once.
+//! Volume, area and moments of a mesh in doubles; sums are rounded once.
 
 use super::handle::VertexId;
 use crate::arith::{DoubleDouble, Sum};
@@ -7,27 +7,27 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::Point;
 use crate::interrupt::poll;
 
-/// The error of a tetrahedron's volume by the lengths of three edges, along axes: each of the six
-/// products of which it is a sixth has three rounded differences, two products and three sums.
+/// The error of a tetrahedron's volume relative to the product of three edges' lengths along axes: each of
+/// the six products in six volumes has three rounded differences, two products and three sums.
 const ROUNDING: f64 = 8.0 / 6.0 * f64::EPSILON;
 
-/// The part of a volume that rounding may be: 2^-32. Of a body that fills its box it is about 2^-48,
-/// of a sheet as much more as it is thinner.
+/// The largest part of a volume that may be rounding: 2^-32. A body that fills its box has about 2^-48, a
+/// sheet as much more as it is thinner.
 const MOST_LOST: f64 = f64::EPSILON * 1_048_576.0;
 
 /// The sums over all faces.
 #[derive(Debug)]
 pub struct Measures {
-    /// Of the signed tetrahedra between the faces and a point.
+    /// The sum of the signed tetrahedra between the faces and a point.
     pub volume: f64,
-    /// Of the faces.
+    /// The sum over the faces.
     pub area: f64,
 }
 
-/// Measures a mesh; each face's part is rounded, their sums are not rounded further.
+/// Measures a mesh; rounds each face's part, and each sum once.
 ///
-/// Where the volume drowns in the rounding of its parts, as that of a needle far larger than thick
-/// does, these are taken in two doubles each.
+/// Where rounding drowns the volume, as of a needle far longer than thick, the parts are taken in two
+/// doubles each.
 pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]) -> Measures {
     let (mut volume, mut area) = (Sum::default(), Sum::default());
     let mut size = 0.0;
@@ -36,7 +36,7 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
         let [a, b, c] = face.map(|vertex| vertices[vertex.place()]);
         let normal = normal(&[a, b, c]);
         let from_middle = less(&a, &middle);
-        // With the normal of the edges no digits cancel that a small face far out would need.
+        // With the normal of the edges a small face far out loses no digits to cancellation.
         volume.add(dot(&normal, &from_middle) / 6.0);
         area.add(dot(&normal, &normal).sqrt() / 2.0);
         size += length(less(&b, &a)) * length(less(&c, &a)) * length(from_middle);
@@ -53,7 +53,7 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
     }
 }
 
-/// The length of a way along the axes.
+/// The length of a vector along the axes.
 fn length(way: [f64; 3]) -> f64 {
     way.iter().map(|x| x.abs()).sum()
 }
@@ -63,18 +63,17 @@ fn length(way: [f64; 3]) -> f64 {
 pub struct Moments {
     /// The moment of order 0.
     pub volume: f64,
-    /// The centroid, seen from the point that the mesh was measured from; not finite without volume.
+    /// The centroid, relative to the point the mesh was measured from; not finite without volume.
     pub centroid: [f64; 3],
-    /// The integrals of the products of two coordinates, seen from the centroid.
+    /// The integrals of the products of two coordinates, relative to the centroid.
     pub second: [[f64; 3]; 3],
 }
 
 /// Measures a mesh from a point near it, in two doubles for each number.
 ///
 /// # Source
-/// A tetrahedron of volume V with a corner at the origin and the others at p, q, r has the first
-/// moments V/4 (p + q + r), and the second ones V/20 times the sum of the products of p, q, r and of
-/// p + q + r, each with itself.
+/// A tetrahedron of volume V with corners at the origin, p, q and r has the first moments V/4 (p + q + r).
+/// Its second moments are V/20 times the sum of the products of p, q, r and p + q + r, each with itself.
 pub fn moments(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]) -> Moments {
     let zero = DoubleDouble::default();
     let (mut six, mut first, mut second) = (zero, [zero; 3], [[zero; 3]; 3]);
@@ -146,7 +145,7 @@ mod tests {
             let near = |a: f64, b: f64| (a - b).abs() < 1e-6;
             assert!(near(found.volume, 24.0));
             assert!((0..3).all(|i| near(found.centroid[i] + middle[i], [1.0, 1.5, 2.0][i])));
-            // The volume by a twelfth of the square of a side.
+            // The volume times a twelfth of the square of a side.
             assert!((0..3).all(|i| near(found.second[i][i], [8.0, 18.0, 32.0][i])));
             assert!(near(found.second[0][1], 0.0) && near(found.second[2][1], 0.0));
         }
@@ -155,7 +154,7 @@ mod tests {
     #[test]
     fn volume_does_not_drown_in_length() {
         let (vertices, faces) = cuboid([1e6, 1e-6, 3.0]);
-        // A turn about the diagonal of two axes makes no coordinate small.
+        // A rotation about the diagonal of two axes makes no coordinate small.
         let (cos, sin) = (0.6, 0.8);
         let turned = |[x, y, z]: [f64; 3]| [x * cos - y * sin, x * sin + y * cos, z + x];
         let vertices: Vec<_> = vertices.into_iter().map(turned).collect();

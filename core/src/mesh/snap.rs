@@ -1,14 +1,14 @@
-//! Many points onto the lattice at once, to the same places as one by one.
+//! Snaps many points to the lattice at once, to the same places as one by one.
 
 use super::grid::{snap_point, Pitch};
 use super::tasks::fill_chunks;
 use crate::error::{Error, Result};
 use crate::geometry::plane::Lattice;
 
-/// Among the doubles around 1.5·2^52 are the integers and nothing else: adding it rounds.
+/// The doubles around 1.5·2^52 are exactly the integers: adding it rounds.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
-/// Below this magnitude the sum with [`ROUNDER`] stays among them.
+/// Below this magnitude the sum with [`ROUNDER`] stays among these integers.
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
 const EXACT: f64 = (1u64 << 51) as f64;
 
@@ -48,11 +48,10 @@ fn at_row(error: &Error, row: usize) -> Error {
     Error::at(error.kind(), vec![row as u64], text)
 }
 
-/// Rounds the products with a power; says whether doubles left no doubt about any.
+/// Rounds the products with a power; returns whether no result is in doubt.
 ///
-/// The rounded product is within `f64::EPSILON / 2` of the exact one, relatively. If it is also
-/// nearer to an integer than one half by more than that, then that integer is nearest to the exact
-/// product.
+/// The rounded product is within `f64::EPSILON / 2` of the exact one, relatively. If its distance to an
+/// integer is below one half by more than that, this integer is nearest to the exact product.
 fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool {
     let mut clear = true;
     for (point, place) in points.as_flattened().iter().zip(lattice.as_flattened_mut()) {

@@ -35,7 +35,7 @@ pub struct Source {
     findings: Vec<Finding>,
 }
 
-/// The faces and vertices of a source.
+/// The geometry of a source.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// Triangles on the lattice.
@@ -44,8 +44,8 @@ pub enum Shape {
     HalfSpace(Arc<Plane>),
 }
 
-/// Look at one vertex alone if at most one in so many is asked for; of more all are looked at, which is
-/// kept for the next operation.
+/// Examine only the used vertices if they are fewer than one in this many. Otherwise examine all, and keep
+/// the answer for the next operation.
 const ALONE_IF_ONE_IN: usize = 4;
 
 /// The code of the finding that vertices were welded.
@@ -54,7 +54,7 @@ pub(super) const WELDED: &str = "welded";
 static NEXT_ID: AtomicU64 = AtomicU64::new(0);
 
 impl Source {
-    /// A source of this shape; ids increase with each call and carry no meaning.
+    /// A source of this shape; ids increase with each call and mean nothing.
     pub fn new(pitch: Pitch, shape: Shape, findings: Vec<Finding>) -> Self {
         Self {
             id: NEXT_ID.fetch_add(1, Ordering::Relaxed),
@@ -72,7 +72,7 @@ impl Source {
         }
     }
 
-    /// A source of a mesh of which the open vertices and the smallest cell are known already.
+    /// A source of a mesh with its open vertices and its smallest cell, which are known already.
     pub fn checked(
         mesh: TriangleMesh,
         pitch: Pitch,
@@ -87,14 +87,14 @@ impl Source {
         }
     }
 
-    /// The source with more that was noticed about it.
+    /// The source with more findings.
     #[must_use]
     pub fn noting(mut self, findings: Vec<Finding>) -> Self {
         self.findings.extend(findings);
         self
     }
 
-    /// The source with its close pairs, which are those of the source that it is an image of.
+    /// The source with the close pairs of the source that it is an image of.
     #[must_use]
     pub fn with_close_pairs(self, pairs: Vec<[u32; 2]>) -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Source {
         }
     }
 
-    /// A source of the same shape, of which other things may be said.
+    /// A source of the same shape with an id of its own.
     #[must_use]
     pub fn renamed(&self) -> Self {
         let named = Self::new(self.pitch, self.shape.clone(), self.findings.clone());
@@ -115,7 +115,7 @@ impl Source {
         }
     }
 
-    /// The images that motions have made of it.
+    /// The images of this source under motions.
     pub fn images(&self) -> &Images<Self> {
         &self.images
     }
@@ -130,7 +130,7 @@ impl Source {
         self.pitch
     }
 
-    /// Return what was noticed at import, and where the surface is no manifold.
+    /// Return the findings of import, and where the surface is not manifold.
     pub fn findings(&self) -> Vec<Finding> {
         let mut findings = self.findings.clone();
         findings.extend(self.irregularity());
@@ -168,8 +168,8 @@ impl Source {
         FaceId::all().take(self.face_count())
     }
 
-    /// The ends of edges that have no opposite by index, sorted: of edges that cancel along lines
-    /// only, as at T-junctions.
+    /// The ends of edges without an opposite by index, sorted: of edges that cancel along lines only, as at
+    /// T-junctions.
     pub fn open_vertices(&self) -> &[VertexId] {
         let Some(mesh) = self.mesh() else {
             return &[];
@@ -183,9 +183,9 @@ impl Source {
         })
     }
 
-    /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
+    /// Vertices on edges of more than two faces, or with several fans, sorted.
     ///
-    /// They are looked for on first use.
+    /// Found on first use.
     pub fn irregular_vertices(&self) -> &[VertexId] {
         let Some(mesh) = self.mesh() else {
             return &[];
@@ -199,7 +199,7 @@ impl Source {
         })
     }
 
-    /// Those of [`Self::irregular_vertices`] for which `is_used` holds.
+    /// The [`Self::irregular_vertices`] for which `is_used` holds.
     pub fn irregular_among(
         &self,
         is_used: impl Fn(VertexId) -> bool,
@@ -219,7 +219,7 @@ impl Source {
         }
     }
 
-    /// Return whether the faces close, by index or along lines, as all do that were imported.
+    /// Return whether the faces close, by index or along lines; all imported ones do.
     pub fn closes(&self) -> bool {
         let Some(mesh) = self.mesh() else {
             return true;
@@ -234,7 +234,7 @@ impl Source {
     }
 
     /// Return whether the given mesh closes wherever rounding takes its corners: no face was left out, no
-    /// corner lies in an edge of another face, and those that were welded have equal doubles.
+    /// corner lies in an edge of another face, and welded vertices have equal doubles.
     pub fn closes_when_moved(&self) -> bool {
         self.mesh().is_none_or(|m| m.numbers.is_none())
             && self.open_vertices().is_empty()
@@ -245,8 +245,8 @@ impl Source {
         self.findings.iter().any(|f| f.code == WELDED)
     }
 
-    /// Vertices that were welded with others of which the doubles differ, sorted: around them the
-    /// faces do not have the corners that were given.
+    /// Vertices welded with others whose doubles differ, sorted: faces around them do not have the corners
+    /// as given.
     pub fn blurred_vertices(&self) -> &[VertexId] {
         match self.mesh() {
             Some(mesh) if self.is_welded() => self.blurred.get_or_make(|| mesh.blurred()),
@@ -254,14 +254,13 @@ impl Source {
         }
     }
 
-    /// The answer to whether it crosses itself once its doubles along some axes are those of the lattice,
-    /// once somebody has looked.
+    /// Whether it crosses itself once its doubles along some axes are those of the lattice, if it is known.
     pub fn crosses_once_snapped(&self, axes: [bool; 3]) -> &Cached<bool> {
         let [x, y, z] = axes.map(usize::from);
         &self.snapped[x + 2 * y + 4 * z]
     }
 
-    /// The pairs of faces that touch on the lattice but share no edge, once somebody has looked.
+    /// The pairs of faces that touch on the lattice but share no edge, if they are known.
     pub fn close_pairs(&self) -> &Cached<Vec<[u32; 2]>> {
         &self.close
     }
@@ -344,7 +343,7 @@ impl Source {
             .map_or(face.0, |n| n[face.place()])
     }
 
-    /// The smallest cell around everything; `None` if there is nothing.
+    /// The smallest cell around the source; `None` if it is empty.
     pub fn cell(&self) -> Option<Cell> {
         *self.cell.get_or_make(|| match &self.shape {
             Shape::Mesh(mesh) => mesh.bounds().map(|(low, high)| Cell::around(&low, &high)),
@@ -368,11 +367,11 @@ mod tests {
             source.expect("it is closed").closes_when_moved()
         };
         assert!(closes([1.0; 3], &faces));
-        // One face names another corner, which is welded.
+        // One face has another corner, which is welded.
         let loose = [[4, 2, 1], faces[1], faces[2], faces[3]];
         assert!(closes([0.0; 3], &loose));
         assert!(!closes([0.1, 0.0, 0.0], &loose));
-        // An edge is divided in one face, without and with one that has no area.
+        // An edge is divided in one face, without and with an extra face that has no area.
         let divided = [[0, 2, 4], [4, 2, 1], faces[1], faces[2], faces[3]];
         assert!(!closes([1.0, 0.0, 0.0], &divided));
         let flat = [&divided[..], &[[0, 4, 1]]].concat();

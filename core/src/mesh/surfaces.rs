@@ -1,23 +1,23 @@
-//! The connected surfaces of a mesh, and what it has of each kind.
+//! The connected surfaces of a mesh, and counts of its parts.
 
 use super::disjoint::DisjointSets;
 use super::handle::VertexId;
 use crate::interrupt::poll;
 
-/// The numbers of different things of each kind that make up a mesh.
+/// Counts of the different parts of a mesh.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Counts {
     /// Vertices that a face uses.
     pub vertices: usize,
-    /// Pairs of vertices that a face connects, whichever way.
+    /// Pairs of vertices that a face connects, in either direction.
     pub edges: usize,
-    /// Directed edges that are not there once, or have no opposite.
+    /// Directed edges that do not occur exactly once, or have no opposite.
     pub open_edges: usize,
     /// Connected surfaces.
     pub surfaces: usize,
 }
 
-/// Counts what a mesh is made of, by index.
+/// Counts the parts of a mesh, by index.
 pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
     let fans = Fans::new(faces, vertex_count);
     let mut edges = 0;
@@ -42,7 +42,7 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
     }
 }
 
-/// Count the open ones of an edge's two directions; one that begins where it ends is open.
+/// Count the open directions of an edge; a loop from a vertex to itself is open.
 fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {
@@ -77,7 +77,7 @@ pub fn surfaces(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<u32> {
     faces.iter().filter_map(number_of).collect()
 }
 
-/// The edges at the lower of their vertices, in compressed rows.
+/// The edges at the lower of their two vertices, in compressed rows.
 struct Fans {
     starts: Vec<u32>,
     /// The higher vertex, and whether the edge runs towards it.

@@ -4,11 +4,10 @@ use rayon::prelude::*;
 
 use crate::interrupt::{carried, handed_over, spend, Task};
 
-/// Elements of one task: some 50 µs of work, far above what handing it over costs.
+/// Elements of one task: some 50 µs of work, far above the cost of scheduling it.
 pub const CHUNK: usize = 1 << 14;
 
-/// Return whether work may be shared: outside of a pool, handing it over costs more than most
-/// calls.
+/// Return whether this thread is in a pool: outside of one, sharing work costs more than most calls.
 pub fn in_pool() -> bool {
     rayon::current_thread_index().is_some()
 }
@@ -58,7 +57,7 @@ pub fn fill_chunks<T: Sync, U: Send, R: Send>(
     chunks.enumerate().map(value).collect()
 }
 
-/// A value for each item, in order: each is a task of this worth.
+/// A value for each item, in order, with a task of this worth for each.
 pub fn each<T: Send, R: Send>(
     worth: Worth,
     items: Vec<T>,
@@ -78,7 +77,7 @@ pub fn each<T: Send, R: Send>(
 /// The worth of sharing work among threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Worth {
-    /// Less than handing it over costs.
+    /// Less than the cost of scheduling it.
     Nothing,
     /// Enough for a task in a pool.
     Task,
@@ -87,7 +86,7 @@ pub enum Worth {
 }
 
 impl Worth {
-    /// Waking a pool, or nothing.
+    /// `Pool` if it pays, else `Nothing`.
     #[must_use]
     pub const fn pool_if(pays: bool) -> Self {
         if pays {
@@ -140,7 +139,7 @@ mod tests {
         }
     }
 
-    /// A caller who does shares himself.
+    /// A caller that runs all shares itself.
     const ALONE: Means = Means {
         wants_to_stop: || false,
         hand_over: |task, share| task.run(share),

@@ -1,9 +1,9 @@
-//! The terrains in a mesh in doubles: pieces of which each line along an axis meets at most one
-//! triangle, as the needles between a hole and the border of a face, or those of a cone.
+//! The terrains in a mesh in doubles: pieces that each line along an axis meets in at most one triangle, as
+//! the needles between a hole and the border of a face, or those of a cone.
 //!
-//! A piece is found by a guess and proved exactly: seen along the axis all its triangles turn the same
-//! way, and its outline winds at most once around each point. So its triangles cross nothing but
-//! what belongs to other pieces.
+//! A piece is found by a guess and proved exactly: seen along the axis all its triangles turn the same way,
+//! and its outline winds at most once around each point. So its triangles cross only triangles of other
+//! pieces.
 //!
 //! # Source
 //! De Berg, Cheong, van Kreveld, Overmars, *Computational Geometry*, third edition, section 9: a
@@ -22,25 +22,25 @@ use crate::mesh::faces::{edges, Faces};
 use crate::mesh::handle::VertexId;
 use crate::mesh::topology::NONE;
 
-/// Triangles this many times as long as they are high are needles. Others meet the boxes of a few
-/// only, and are compared with these sooner than terrains are found.
+/// A needle is at least this many times as long as high. The boxes of other triangles meet few others, and
+/// comparing these is faster than finding terrains.
 const NEEDLE: f64 = 16.0;
 
-/// Needles that are compared with each other before terrains are found, at most.
+/// The most needles that are compared pairwise, without terrains.
 const MAX_NEEDLES_COMPARED: usize = 256;
 
 /// Pieces of fewer triangles are not worth a sweep.
 const LEAST: usize = 4;
 
-/// Mates whose normals differ by no more than an angle with this tangent belong together: more than
-/// those of any round thing, less than a corner that is meant as one.
+/// The tangent of the largest angle between normals of mates in one piece: more than in any round body,
+/// less than at a corner meant as one.
 const BENT: f64 = 0.5;
 
-/// Return for each of some triangles the number of its terrain; `NONE` where none is proved, and for
-/// all but needles.
+/// For each of some triangles, the number of its terrain; `NONE` where none is proved, and for all but
+/// needles.
 ///
 /// # Cost
-/// One look at each triangle; that of sorting the needles, and a sweep over the outline of each piece.
+/// One look at each triangle, a sort of the needles, and a sweep over the outline of each piece.
 pub fn terrains(faces: &Faces, some: &[u32]) -> Vec<u32> {
     let is_thin = |t: &u32| is_needle(&faces.corners(*t));
     let needles: Vec<u32> = some.iter().copied().filter(is_thin).collect();
@@ -88,13 +88,13 @@ pub fn is_needle(triangle: &Triangle) -> bool {
     longest * longest > NEEDLE * NEEDLE * dot(&n, &n)
 }
 
-/// Needles, by their places among these.
+/// Needles, by their index among these.
 struct Search<'a> {
     faces: &'a Faces<'a>,
     needles: &'a [u32],
-    /// By directed edge, the triangle that has it.
+    /// The triangle of each directed edge.
     owners: HashMap<[VertexId; 2], u32>,
-    /// The number of each one's piece.
+    /// The piece of each needle.
     pieces: Vec<u32>,
 }
 
@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
         self.faces.corners(self.needles[at as usize])
     }
 
-    /// The triangles by their areas: rounding turned the normals of large ones least.
+    /// The triangles by area, largest first: rounding turned their normals least.
     fn largest_first(&self) -> Vec<u32> {
         let squares = (0..as_number(self.needles.len())).map(|at| {
             let n = normal(&self.corners(at));
@@ -188,7 +188,7 @@ impl<'a> Search<'a> {
         edges(self.triangle(at)).map(|[from, to]| self.owners.get(&[to, from]).copied())
     }
 
-    /// The edges that only one triangle of a piece has, seen so that all turn to the left.
+    /// The edges of only one triangle of a piece, seen so that all triangles turn left.
     fn outline(&self, piece: &[u32], view: View) -> Vec<[Place; 2]> {
         let number = self.pieces[piece[0] as usize];
         let mut outline = Vec::new();
@@ -206,7 +206,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Return whether a surface with these normals on both sides of an edge is hardly bent there.
+/// Return whether the surface between these two normals is hardly bent.
 fn is_smooth(a: &Point, b: &Point) -> bool {
     let (along, across) = (dot(a, b), cross(a, b));
     along > 0.0 && dot(&across, &across) <= BENT * BENT * along * along
@@ -216,7 +216,7 @@ fn is_smooth(a: &Point, b: &Point) -> bool {
 mod tests {
     use super::*;
 
-    /// A plate with a hole of many sides, lifted by a function: both sides of the ring around it.
+    /// A plate with a hole of many sides, lifted by a function: top and bottom of the ring around the hole.
     fn ring(count: u32, height: impl Fn(f64, f64) -> f64) -> (Vec<Point>, Vec<[VertexId; 3]>) {
         let mut vertices = Vec::new();
         for radius in [1.0, 3.0] {
@@ -284,7 +284,7 @@ mod tests {
         triangles.extend(shifted.collect::<Vec<_>>());
         let apart = found(&vertices, &triangles);
         assert!(apart[0] != NONE && apart[400] != NONE && apart[0] != apart[400]);
-        // A bridge from the outer border of one to the inner border of the other makes them one.
+        // A bridge from the outer border of one to the inner border of the other makes them one piece.
         triangles.extend(VertexId::rows([[201, 200, 400], [201, 400, 401]]));
         assert!(found(&vertices, &triangles)
             .iter()

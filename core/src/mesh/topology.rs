@@ -59,7 +59,7 @@ impl Topology {
         &self.mates
     }
 
-    /// Vertices at the ends of edges that more than two faces use, or with several fans, sorted.
+    /// Vertices on edges of more than two faces, or with several fans, sorted.
     pub fn irregular(&self) -> &[VertexId] {
         &self.irregular
     }
@@ -79,7 +79,7 @@ impl Topology {
     }
 }
 
-/// Count the half-edges that leave a vertex in the fan of one of them; open fans count as endless.
+/// Count the half-edges that leave a vertex in the fan of one of them; an open fan gives `usize::MAX`.
 fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     let mut half = start;
     let mut count = 0;
@@ -155,9 +155,9 @@ impl Outgoing {
     }
 }
 
-/// The half-edges left over after opposite edges cancel along each line of the lattice.
+/// The half-edges that remain after opposite edges cancel along each line of the lattice.
 ///
-/// A closed surface with T-junctions leaves none: on each line the pieces of its edges cancel.
+/// None of a closed surface with T-junctions remain: on each line the pieces of its edges cancel.
 pub fn open_edges(
     vertices: &[Lattice],
     faces: &[[VertexId; 3]],

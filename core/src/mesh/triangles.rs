@@ -1,4 +1,4 @@
-//! Triangles on the lattice.
+//! Triangle meshes on the lattice.
 
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
@@ -19,7 +19,7 @@ pub struct TriangleMesh {
     pub doubles: Vec<[f64; 3]>,
     /// Triangles, counterclockwise as seen from outside.
     pub faces: Vec<[VertexId; 3]>,
-    /// The index each face had in its input, where faces were left out.
+    /// The index of each face in the input, if faces were left out.
     pub numbers: Option<Vec<u32>>,
 }
 
@@ -54,7 +54,7 @@ impl TriangleMesh {
     /// Return whether some faces lie in one plane.
     ///
     /// # Cost
-    /// Up to the first that leaves the plane of the first.
+    /// Stops at the first face off the plane of the first.
     pub fn are_in_one_plane(&self, mut faces: impl Iterator<Item = FaceId>) -> bool {
         let Some([a, b, c]) = faces.next().map(|face| self.corners(face)) else {
             return true;
@@ -66,12 +66,12 @@ impl TriangleMesh {
         faces.all(|face| self.corners(face).iter().all(lies_in))
     }
 
-    /// For each vertex the first at its place on the lattice.
+    /// For each vertex, the first vertex at its place on the lattice.
     pub fn firsts(&self) -> Vec<VertexId> {
         firsts(&self.vertices)
     }
 
-    /// Vertices that are the first at their place, where others have other doubles, sorted.
+    /// The first vertices at places where other vertices have other doubles, sorted.
     pub fn blurred(&self) -> Vec<VertexId> {
         let firsts = VertexId::all().zip(self.firsts());
         let bits = |v: VertexId| self.doubles[v.place()].map(f64::to_bits);
@@ -82,7 +82,7 @@ impl TriangleMesh {
         blurred
     }
 
-    /// The farthest that a coordinate is from the double it came from, rounded.
+    /// The largest distance of a coordinate from the double it came from, rounded.
     ///
     /// More than half a step if the lattice was refined since.
     pub fn snapped_by(&self, pitch: Pitch) -> f64 {
@@ -104,7 +104,7 @@ impl TriangleMesh {
     }
 }
 
-/// For each point the number of the first at its place.
+/// For each point, the number of the first point at its place.
 pub fn firsts(points: &[Lattice]) -> Vec<VertexId> {
     let mut first: HashMap<Lattice, VertexId> =
         HashMap::with_capacity_and_hasher(points.len(), FxBuildHasher);

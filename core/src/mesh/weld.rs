@@ -1,4 +1,4 @@
-//! Points with equal coordinates as one point.
+//! Merges points with equal coordinates.
 
 use super::handle::VertexId;
 use crate::arith::convert::{as_number, low_limb};
@@ -44,24 +44,24 @@ pub fn welded(points: &[[f64; 3]]) -> Welded {
 #[derive(Debug, Default)]
 struct Different {
     points: Vec<[f64; 3]>,
-    /// As many as a power of two, of which at most half are taken.
+    /// Their number is a power of two; at most half are taken.
     slots: Vec<Slot>,
 }
 
-/// A place in the table. It holds no coordinates, so that the caches of the processor hold the
-/// table for four times as many points.
+/// A place in the table. It has no coordinates, so that processor caches have room for four times as many
+/// points.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
-    /// The number of a point plus one, or 0 where nothing is.
+    /// The number of a point plus one, or 0 if the slot is free.
     next: u32,
     hash: u32,
 }
 
-/// Slots of a table that has its first point.
+/// Slots of a table with its first point.
 const FIRST_SLOTS: usize = 64;
 
 impl Different {
-    /// The number of a point, a new one if no equal was here before.
+    /// The number of a point; a new one if no equal point is known.
     fn number_of(&mut self, point: [f64; 3]) -> VertexId {
         if self.slots.len() <= 2 * self.points.len() {
             self.grow();
@@ -104,12 +104,12 @@ impl Different {
     }
 }
 
-/// Says whether two points have the same bits, which NaN has in common with itself.
+/// Return whether two points have the same bits; a NaN equals itself here.
 fn are_same([a, b, c]: &[f64; 3], [x, y, z]: &[f64; 3]) -> bool {
     a.to_bits() == x.to_bits() && b.to_bits() == y.to_bits() && c.to_bits() == z.to_bits()
 }
 
-/// A hash of which all bits depend on all bits of a point.
+/// A hash whose bits all depend on all bits of a point.
 ///
 /// Coordinates of single precision end in zeros, which a product alone would keep.
 fn hash_of([x, y, z]: &[f64; 3]) -> u32 {
@@ -125,7 +125,7 @@ const ODD: [u64; 3] = [
     0xbb67_ae85_84ca_a73b,
 ];
 
-/// The halves of a product, one added to the other without carries.
+/// The exclusive or of the halves of a product.
 fn folded(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
     low_limb(product >> 64) ^ low_limb(product)
@@ -170,7 +170,7 @@ mod tests {
             (place + slots.len() - home) % slots.len()
         };
         let taken: Vec<_> = (0..slots.len()).filter(|&k| slots[k].next != 0).collect();
-        // At half of the slots taken, a random hash ends half a slot from home on average.
+        // With half of the slots taken, a random hash ends half a slot from home on average.
         assert!(taken.iter().map(|&place| away(place)).sum::<usize>() < taken.len());
     }
 

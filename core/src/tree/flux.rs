@@ -1,8 +1,7 @@
-//! The volume of a tree as a sum over its leaves, kept at the nodes.
+//! The volume of a tree as a sum over its leaves, cached in the nodes.
 //!
-//! The volume of a bounded solid is the flux of (0, 0, z) through its boundary, so each node stands
-//! for the flux through the boundary in its cell, and a chain of operations sums anew only what it
-//! changed.
+//! The volume of a bounded solid is the flux of (0, 0, z) through its boundary. Each node stores the flux
+//! through the boundary in its cell, so that a chain of operations sums anew only what it changed.
 
 use std::sync::Arc;
 
@@ -24,7 +23,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 
-/// Return what a branch contributes; computed where no operation before has left it.
+/// Return what a branch contributes; computes only what is not cached.
 pub fn share(root: &Branch) -> Share {
     for branch in unknown(root).into_iter().rev() {
         match &*branch.node {
@@ -48,7 +47,7 @@ pub fn share(root: &Branch) -> Share {
     sum
 }
 
-/// The share of a branch's node, which the branch's complement bit has not turned yet.
+/// The cached share of a branch's node, without the branch's complement bit.
 fn known(branch: &Branch) -> Option<Share> {
     match &*branch.node {
         Node::Leaf(_) => Some(Share::NONE),
@@ -57,7 +56,7 @@ fn known(branch: &Branch) -> Option<Share> {
     }
 }
 
-/// The branches whose shares are not known, each before those below it.
+/// The branches without a cached share, each before those below it.
 fn unknown(root: &Branch) -> Vec<&Branch> {
     let mut found = Vec::new();
     let mut open = vec![root];
@@ -79,7 +78,7 @@ struct Sum {
     cell: Cell,
     /// Six times the flux through faces inside the cell, in cubic steps.
     inside: Int<4>,
-    /// That through everything else.
+    /// The flux through everything else.
     rest: Share,
 }
 
@@ -110,7 +109,7 @@ fn leaf_share(leaf: &Deferred, cell: &Cell) -> Share {
 }
 
 impl Sum {
-    /// The part of a whole face in the cell.
+    /// Adds the part of a whole face in the cell.
     fn add_face(&mut self, corners: &[Lattice; 3], orientation: Orientation) {
         let area = minor(corners, 0, 1);
         if area == 0 {
@@ -127,7 +126,7 @@ impl Sum {
         }
     }
 
-    /// The part of a whole face in the cell, cut by walls across several axes.
+    /// Adds the part of a whole face in the cell, cut by walls across several axes.
     fn add_clipped(&mut self, corners: &[Lattice; 3], area: i128, orientation: Orientation) {
         let normal = [minor(corners, 1, 2), minor(corners, 2, 0), area];
         if let Some(ring) = Triangle::new(corners, normal).clipped(&self.walls) {
@@ -137,7 +136,7 @@ impl Sum {
         }
     }
 
-    /// The part of a half-space's border in the cell.
+    /// Adds the part of a half-space's border in the cell.
     fn add_plane(&mut self, source: &Source, orientation: Orientation) {
         let Some(polygon) = source.clip(FaceId::ONLY, &self.cell) else {
             return;
@@ -149,7 +148,7 @@ impl Sum {
         self.rest.flux.add(&Flux { value, error }, orientation);
     }
 
-    /// The part of a part in the cell.
+    /// Adds the part of a part in the cell.
     fn add_part(&mut self, part: &Part, orientation: Orientation) {
         let bounded = part.source.mesh().is_some();
         self.rest.open |= !bounded && part.edges.iter().any(|e| e.carrier.is_border());
@@ -176,7 +175,7 @@ fn part_flux(part: &Part) -> Flux {
     part_slope(part).map_or(Flux::ZERO, |slope| fan_flux(&fixed_ends(part), None, slope))
 }
 
-/// The flux through what walls leave of an outline: signed triangles from one corner to all edges.
+/// The flux through an outline, clipped by walls if given: signed triangles from one corner to all edges.
 fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     let Some([apex, _]) = ends.first() else {
         return Flux::ZERO;
@@ -198,7 +197,7 @@ fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     Flux { value, error }
 }
 
-/// The edges of a part's outline; each corner is computed once.
+/// The edges of a part's outline; computes each corner once.
 fn fixed_ends(part: &Part) -> SmallVec<[[Fixed; 2]; 8]> {
     let mut seen: SmallVec<[(&Arc<Vertex>, Fixed); 8]> = SmallVec::new();
     let mut fixed = |vertex| {

@@ -1,4 +1,4 @@
-//! The partition tree of a solid: dyadic cuts above, deferred leaves below.
+//! The partition tree of a solid: dyadic cuts, with deferred leaves below.
 
 use std::sync::Arc;
 
@@ -22,7 +22,7 @@ use crate::mesh::source::Source;
 pub enum Node {
     /// No boundary: one winding number everywhere.
     Leaf(i32),
-    /// A preliminary leaf: its boundary is listed, not yet partitioned.
+    /// A preliminary leaf: its boundary is listed but not yet partitioned.
     Deferred(Deferred),
     /// The cell's dyadic cut.
     Cut(Halves),
@@ -43,21 +43,21 @@ impl Node {
 pub struct Halves {
     /// Minus half first.
     pub children: [Branch; 2],
-    /// The node's share of the volume, once somebody has asked.
+    /// The node's cached share of the volume.
     pub share: Cached<Share>,
 }
 
 /// A subtree in its place.
 ///
-/// The node describes `cell`; what the parent's half has around it is uniformly `outside`
-/// (path compression). With `complement` set the node's winding numbers w count as 1 − w.
+/// The node describes `cell`; the rest of the parent's half is uniformly `outside` (path compression). If
+/// `complement` is set, the node's winding numbers w count as 1 − w.
 #[derive(Clone, Debug)]
 pub struct Branch {
     /// The region of the node.
     pub cell: Cell,
     /// The winding number around the cell.
     pub outside: i32,
-    /// True if the node is meant turned inside out.
+    /// Whether the node is turned inside out.
     pub complement: bool,
     /// The node.
     pub node: Arc<Node>,
@@ -74,7 +74,7 @@ impl Branch {
         }
     }
 
-    /// A node that covers a cell of its own.
+    /// A branch for a node and the cell that it covers.
     pub fn of_node(cell: Cell, node: Node) -> Self {
         match node {
             Node::Leaf(w) => Self::uniform(cell, w),
@@ -98,7 +98,7 @@ impl Branch {
         }
     }
 
-    /// A winding number of the node as this branch means it.
+    /// A winding number of the node, complemented if this branch is.
     pub fn oriented(&self, w: i32) -> i32 {
         if self.complement {
             1 - w
@@ -117,7 +117,7 @@ impl Branch {
         }
     }
 
-    /// A child as this branch means it: the branch's complement bit is passed on.
+    /// A child, complemented if this branch is.
     #[must_use]
     pub fn child(&self, child: &Self) -> Self {
         if self.complement {
@@ -130,7 +130,7 @@ impl Branch {
 
 /// A preliminary leaf: elements, and the winding number at the cell's low corner.
 ///
-/// Every element that meets the closed cell is listed; an element that does not may be.
+/// All elements that meet the closed cell are listed; others may be.
 #[derive(Debug, Default)]
 pub struct Deferred {
     /// Whole faces by source, sources in the order of the expression.
@@ -139,41 +139,41 @@ pub struct Deferred {
     pub parts: Vec<PartElement>,
     /// The winding number at the cell's low corner.
     pub corner: i32,
-    /// True if a kernel left the elements; else they are an operand's boundary, as it was.
+    /// True if a kernel made the elements; else they are an operand's boundary, unchanged.
     pub worked: bool,
-    /// The node's share of the volume, once somebody has asked.
+    /// The node's cached share of the volume.
     pub share: Cached<Share>,
 }
 
 /// Whole faces of one source with one orientation.
 #[derive(Clone, Debug)]
 pub struct Group {
-    /// True if they may touch other elements anywhere: local trees or a grid left them. Other faces
+    /// True if they may touch other elements anywhere, as results of local trees or a grid. Other faces
     /// touch only where one was cut.
     pub touching: bool,
-    /// The source in which the faces live.
+    /// The source of the faces.
     pub source: Arc<Source>,
-    /// The orientation of the faces, seen from the source.
+    /// The orientation of the faces relative to the source.
     pub orientation: Orientation,
     /// The faces, ascending.
     pub faces: Vec<FaceId>,
 }
 
-/// A part of a face, perhaps turned around.
+/// A part of a face, with an orientation.
 #[derive(Clone, Debug)]
 pub struct PartElement {
     /// The part.
     pub part: Arc<Part>,
-    /// Its orientation, seen from the source.
+    /// Its orientation relative to the source.
     pub orientation: Orientation,
 }
 
 /// The part of a face that is boundary inside its home cell.
 ///
-/// The outline runs on the face's own edges, input planes and the home cell's border.
+/// The outline runs along the face's own edges, input planes and the home cell's border.
 #[derive(Debug)]
 pub struct Part {
-    /// The source in which the face lives.
+    /// The source of the face.
     pub source: Arc<Source>,
     /// The face.
     pub face: FaceId,
@@ -181,14 +181,15 @@ pub struct Part {
     pub home: Cell,
     /// The outline, counterclockwise on the face; no two edges overlap or continue each other.
     pub edges: Box<[BareEdge]>,
-    /// The lattice points next to the corners of a box around it: walls lie halfway between them.
+    /// The lattice points next to the corners of a box around it; its walls lie halfway between lattice
+    /// points.
     pub around: [Lattice; 2],
-    /// The flux through the part, once somebody has asked.
+    /// The cached flux through the part.
     pub flux: Cached<Flux>,
 }
 
 impl PartElement {
-    /// The element, or its other side if the flag is set.
+    /// The element, turned over if the flag is set.
     #[must_use]
     pub fn turned_if(&self, turned: bool) -> Self {
         Self {
@@ -199,7 +200,7 @@ impl PartElement {
 }
 
 impl Part {
-    /// The part of a face that an outline bounds in a cell.
+    /// The part of a face inside an outline in a cell.
     ///
     /// No two of the edges may overlap or continue each other on one line.
     pub fn new(
@@ -229,7 +230,7 @@ impl Part {
         OutlineEdge::keyed(self.edges.to_vec(), &support)
     }
 
-    /// A lattice box that holds all of the part; `around` may be half a step smaller.
+    /// A lattice box that contains the part; `around` may be half a step smaller.
     pub fn enclosing(&self) -> [Lattice; 2] {
         let [low, high] = self.around;
         [low.map(|x| x - 1), high.map(|x| x + 1)]
@@ -240,9 +241,9 @@ impl Part {
         bounds(self.edges.iter().map(|edge| &*edge.from))
     }
 
-    /// The convex pieces, derived from the outline.
+    /// The convex pieces, computed from the outline.
     ///
-    /// They are not kept: they take more room than the part, and a part is rarely asked twice.
+    /// Not cached: they take more room than the part, and are rarely needed twice.
     pub fn pieces(&self) -> Vec<Polygon> {
         if let Some(whole) = outline::convex_loop(&self.source.plane(self.face), &self.edges) {
             return vec![whole];
@@ -265,7 +266,7 @@ impl Deferred {
         self.groups.iter().all(faces) && self.parts.iter().all(part)
     }
 
-    /// Return whether nothing is listed.
+    /// Return whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,4 +1,4 @@
-//! The convex pieces of parts, with boxes around them.
+//! The convex pieces of parts, with their boxes.
 
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ mod tests {
     use crate::mesh::handle::FaceId;
     use crate::mesh::import::import;
 
-    /// All of a face of a tetrahedron as a part.
+    /// A whole face of a tetrahedron as a part.
     fn part() -> Arc<Part> {
         let corners = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 4.0]];
         let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];

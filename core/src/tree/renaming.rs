@@ -1,4 +1,4 @@
-//! Solids of which the sources have new names: what is said of the one is not said of the other.
+//! Solids with renamed sources: attributes of one do not apply to the other.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::mesh::cached::Cached;
 use crate::mesh::source::Source;
 
 impl Solid {
-    /// The same solid, its sources under new names.
+    /// The same solid with renamed sources.
     #[must_use]
     pub fn renamed(&self) -> Self {
         let mut renaming = Renaming::default();
@@ -20,7 +20,7 @@ impl Solid {
     }
 }
 
-/// Renamed sources, nodes and parts: one stays one. Keys are addresses, and last as long as the solid.
+/// Renamed sources, nodes and parts; each is renamed once. Keys are addresses, valid while the solid lives.
 #[derive(Default)]
 struct Renaming {
     sources: HashMap<u64, Arc<Source>>,
@@ -52,7 +52,7 @@ impl Renaming {
         self.replaced(root)
     }
 
-    /// The node of which all children have been made.
+    /// The renamed node, once its children are.
     fn node(&mut self, node: &Arc<Node>) -> Arc<Node> {
         match &**node {
             Node::Leaf(_) => Arc::clone(node),

@@ -1,4 +1,4 @@
-//! Solids: a tree, the winding number outside its root, and the sources it refers to.
+//! Solids: a tree, the winding number outside its root, and its sources.
 
 use std::sync::Arc;
 
@@ -12,8 +12,8 @@ use crate::mesh::cached::Cached;
 use crate::mesh::grid::Pitch;
 use crate::mesh::source::{Shape, Source};
 
-/// Sources a table may hold beyond twice those that are named, so that operands of short
-/// expressions keep their numbers.
+/// Sources that a table may have beyond twice those the tree uses, so that operands of short expressions
+/// keep their numbers.
 const SPARE: usize = 64;
 
 /// A set of points as a partition tree. Immutable; clones share everything.
@@ -41,21 +41,21 @@ pub struct Solid {
     root: Branch,
     pitch: Pitch,
     sources: Table,
-    /// The number of sources that the tree named when that was last counted.
+    /// The number of sources that the tree used when last counted.
     named: usize,
     reduced: bool,
-    /// True if stored data say that it is reduced, or that an operand was.
+    /// Whether stored data say that it, or an operand, is reduced.
     claimed: bool,
-    /// Solids of meshes nobody has checked: if all are simple, this solid is reduced.
+    /// Solids of unchecked meshes: if all are simple, this solid is reduced.
     doubts: Option<Arc<[Solid]>>,
     simple: Arc<Cached<bool>>,
     united: Arc<Cached<Solid>>,
-    /// The elements in cells that kernels took, when the solid was made.
+    /// The number of elements in cells that kernels solved to make the solid.
     effort: u64,
 }
 
 impl Solid {
-    /// A solid from its parts; `reduced` says that its elements are the reduced boundary.
+    /// A solid from its parts; `reduced` says whether its elements are the reduced boundary.
     pub fn new(root: Branch, pitch: Pitch, sources: Table, reduced: bool) -> Self {
         let named = sources.len();
         Self {
@@ -72,34 +72,33 @@ impl Solid {
         }
     }
 
-    /// The same solid, made by kernels that took so many elements.
+    /// The same solid, with the number of elements that kernels solved to make it.
     #[must_use]
     pub fn by_effort(self, effort: u64) -> Self {
         Self { effort, ..self }
     }
 
-    /// The number of elements that kernels took when the solid was made: in a chain the next step
-    /// will be about as long as the last one.
+    /// The number of elements that kernels solved to make the solid: in a chain the next step takes about
+    /// as long as the last one.
     pub fn effort(&self) -> u64 {
         self.effort
     }
 
-    /// The same solid, reduced by the word of stored data that somebody may have forged.
+    /// The same solid, reduced according to stored data, which may be forged.
     #[must_use]
     pub fn claimed(mut self) -> Self {
         self.claimed = self.reduced;
         self
     }
 
-    /// Return whether it is reduced by the word of stored data only.
+    /// Return whether only stored data say that it is reduced.
     pub fn is_claimed(&self) -> bool {
         self.claimed
     }
 
-    /// The solid that operations have made of these operands, reduced if they are.
+    /// The solid as the result of operations on these operands, reduced if they all are.
     ///
-    /// Where that is not known yet, the solid remembers the meshes that decide it, unless they are
-    /// many.
+    /// If that is not known yet, the solid remembers the meshes that decide it, unless they are many.
     #[must_use]
     pub fn made_of(mut self, operands: &[Self]) -> Self {
         let open: Vec<&Self> = operands.iter().filter(|o| !o.is_reduced()).collect();
@@ -119,17 +118,17 @@ impl Solid {
         self
     }
 
-    /// The meshes that decide whether the solid is reduced, where that is so.
+    /// The meshes that decide whether the solid is reduced, if they are known.
     pub fn doubts(&self) -> Option<&[Self]> {
         self.doubts.as_deref()
     }
 
-    /// Return whether meshes are known that decide whether the solid is reduced.
+    /// Return whether known meshes decide if the solid is reduced.
     fn is_settled_by_meshes(&self) -> bool {
         self.doubts.is_some() || self.whole_mesh().is_some()
     }
 
-    /// The same solid as a tree of other sources, which are equal to its own.
+    /// The same solid as a tree over other sources equal to its own.
     pub(super) fn of_others(&self, root: Branch, sources: Table) -> Self {
         Self {
             root,
@@ -140,7 +139,7 @@ impl Solid {
         }
     }
 
-    /// The mesh, if the solid is one as it was given.
+    /// The mesh, if the solid is an unchanged mesh.
     pub fn whole_mesh(&self) -> Option<&Arc<Source>> {
         let Node::Deferred(leaf) = &*self.root.node else {
             return None;
@@ -155,11 +154,11 @@ impl Solid {
         (whole && group.source.mesh().is_some()).then_some(&group.source)
     }
 
-    /// A solid made of operands of which none named more than `named` sources.
+    /// The solid, given that no operand it was made from used more than `named` sources.
     ///
-    /// Once the table has outgrown that by far, the sources that the tree does not name are left
-    /// out; the others keep their order. So chains of operations do not collect what they cut away,
-    /// and counting costs little per operation.
+    /// Once the table has far outgrown this number, drops the sources that the tree does not use; the
+    /// others keep their order. So chains of operations do not collect what they cut away, and counting
+    /// costs little per operation.
     #[must_use]
     pub fn outgrowing(mut self, named: usize) -> Self {
         self.named = named;
@@ -172,12 +171,12 @@ impl Solid {
         self
     }
 
-    /// The ids of the sources that the tree names: faces of others bound nothing.
+    /// The ids of the sources that the tree uses: other sources bound nothing.
     pub fn names(&self) -> HashSet<u64> {
         names(&self.root)
     }
 
-    /// Return the number of sources that the tree named when that was last counted.
+    /// Return the number of sources that the tree used when last counted.
     pub fn named(&self) -> usize {
         self.named
     }
@@ -245,26 +244,24 @@ impl Solid {
         self.reduced || self.simple.get() == Some(&true)
     }
 
-    /// The same solid, its elements declared or found to be the reduced boundary.
+    /// The same solid, with its elements known to be the reduced boundary or not.
     #[must_use]
     pub fn with_reduced(mut self, reduced: bool) -> Self {
         self.reduced = reduced;
         self.claimed = false;
         self.doubts = None;
-        // Not the caches of the solid as it was: nobody has looked at this one.
+        // Not the old solid's caches: this one is unchecked.
         self.simple = Arc::default();
         self.united = Arc::default();
         self
     }
 
-    /// The answer to whether the elements are the reduced boundary, once somebody has looked; shared
-    /// by clones.
+    /// The cached answer to whether the elements are the reduced boundary; shared by clones.
     pub fn simple(&self) -> &Cached<bool> {
         &self.simple
     }
 
-    /// The solid united with itself, if it overlaps itself and somebody has computed that; shared by
-    /// clones.
+    /// The cached union of the solid with itself, for solids that overlap themselves; shared by clones.
     pub fn united(&self) -> &Cached<Self> {
         &self.united
     }

@@ -12,15 +12,15 @@ pub struct Stats {
     pub leaves: usize,
     /// Deferred leaves.
     pub deferred: usize,
-    /// Whole faces listed, a face once for each leaf.
+    /// Listed whole faces, once for each leaf.
     pub elements: usize,
-    /// Parts listed.
+    /// Listed parts.
     pub parts: usize,
     /// The longest path, in cuts.
     pub depth: usize,
 }
 
-/// Counts a solid's tree; shared subtrees count each time they are met.
+/// Counts a solid's tree; shared subtrees count at each occurrence.
 pub fn stats(solid: &Solid) -> Stats {
     let mut total = Stats::default();
     let mut open = vec![(solid.root().node.clone(), 0)];

@@ -1,4 +1,4 @@
-//! Tables of sources: what grows by one source from step to step costs one source to grow.
+//! Tables of sources that grow cheaply: a step that adds one source costs one source.
 
 use std::sync::{Arc, OnceLock, RwLock, TryLockError};
 
@@ -9,8 +9,8 @@ use crate::mesh::source::Source;
 
 /// The sources of a solid or an evaluation, in the order of the expression.
 ///
-/// Most tables are those of a single mesh, for which nothing else is made. Longer ones are the
-/// beginning of a log that others may share and continue.
+/// Most tables have a single mesh, and nothing else is allocated. Longer ones are a prefix of a log that
+/// others may share and extend.
 #[derive(Clone, Debug, Default)]
 pub struct Table(Entries);
 
@@ -22,8 +22,8 @@ enum Entries {
     Many(Beginning),
 }
 
-/// The first sources of a log. Who is first to continue it, or continues it in the same way, shares
-/// it on; else the beginning is copied.
+/// A prefix of a log. The first table to extend the log, and tables that extend it the same way, share it;
+/// others copy the prefix.
 #[derive(Clone, Debug, Default)]
 struct Beginning {
     log: Arc<Log>,
@@ -32,13 +32,13 @@ struct Beginning {
 
 type Chunk = Box<[OnceLock<Arc<Source>>]>;
 
-/// Sources that are only ever added.
+/// An append-only list of sources.
 #[derive(Debug, Default)]
 struct Log {
-    /// Chunk k has room for 2^k sources, so that none ever moves.
+    /// Chunk k has room for 2^k sources, so that no source ever moves.
     chunks: [OnceLock<Chunk>; 31],
-    /// The slots by the sources' ids; whoever adds holds this. Nobody waits for it: in a process
-    /// that was forked it may be held by a thread that is not there.
+    /// The slots by source id, locked while sources are added. Nobody blocks on it: in a forked process, a
+    /// thread that no longer exists may hold it.
     slots: RwLock<HashMap<u64, usize>>,
 }
 
@@ -61,7 +61,7 @@ impl Log {
         slots.insert(source.id(), slots.len());
     }
 
-    /// The slot of a source, if that is one of the first `len`.
+    /// The slot of a source among the first `len`.
     fn slot(&self, source: &Source, len: usize) -> Option<usize> {
         let found = match free(self.slots.try_read()) {
             Some(slots) => slots.get(&source.id()).copied(),
@@ -71,7 +71,7 @@ impl Log {
     }
 }
 
-/// Return what a lock guards, unless somebody holds it.
+/// Return what a lock guards, unless it is held.
 fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
     match lock {
         Ok(guard) => Some(guard),
@@ -81,7 +81,7 @@ fn free<T>(lock: Result<T, TryLockError<T>>) -> Option<T> {
 }
 
 impl<'a> FromIterator<&'a Arc<Source>> for Table {
-    /// A table of these sources; the first place of each counts.
+    /// A table of these sources, at their first occurrences.
     fn from_iter<I: IntoIterator<Item = &'a Arc<Source>>>(sources: I) -> Self {
         Self::default().extended(sources)
     }
@@ -105,7 +105,7 @@ impl Table {
     /// The source in a slot.
     ///
     /// # Panics
-    /// If there is none.
+    /// If the slot is empty.
     pub fn get(&self, slot: Slot) -> &Arc<Source> {
         let found = match &self.0 {
             Entries::One(only) if slot.0 == 0 => Some(only),
@@ -129,7 +129,7 @@ impl Table {
         Slot::all().take(self.len()).map(|slot| self.get(slot))
     }
 
-    /// This table and after it the sources of another that it does not have.
+    /// This table, followed by the other's sources that it lacks.
     #[must_use]
     pub fn joined(&self, other: &Self) -> Self {
         if let (Entries::Many(own), Entries::Many(others)) = (&self.0, &other.0)
@@ -140,7 +140,7 @@ impl Table {
         self.extended(other.iter())
     }
 
-    /// This table and after it the given sources that it does not have.
+    /// This table, followed by the given sources that it lacks.
     fn extended<'a>(&self, sources: impl IntoIterator<Item = &'a Arc<Source>>) -> Self {
         let entries = self.0.clone();
         Self(sources.into_iter().fold(entries, Entries::with))
@@ -148,7 +148,7 @@ impl Table {
 }
 
 impl Entries {
-    /// These entries and a source, if they do not have it.
+    /// These entries, with a source added if it is new.
     fn with(self, source: &Arc<Source>) -> Self {
         match self {
             Self::None => Self::One(Arc::clone(source)),
@@ -164,7 +164,7 @@ impl Beginning {
         self.log.slot(source, self.len)
     }
 
-    /// This beginning and a source, if it does not have it.
+    /// This prefix, with a source added if it is new.
     fn with(mut self, source: &Arc<Source>) -> Self {
         if !self.add(source) {
             self.log = Arc::new(self.log.copied(self.len));
@@ -173,7 +173,7 @@ impl Beginning {
         self
     }
 
-    /// Adds a source if it is new; false if the log goes on with another one, or somebody adds one.
+    /// Adds a source if it is new; false if the log continues differently, or is locked.
     fn add(&mut self, source: &Arc<Source>) -> bool {
         let Some(mut slots) = free(self.log.slots.try_write()) else {
             return false;
@@ -190,7 +190,7 @@ impl Beginning {
 }
 
 impl Log {
-    /// A log of the first sources of this one.
+    /// A new log of this one's first sources.
     fn copied(&self, len: usize) -> Self {
         let mut slots = HashMap::default();
         let copy = Self::default();

@@ -1,19 +1,19 @@
-//! Watching algorithms on trees at work: what they tell, and to whom.
+//! Tracing of algorithms on trees.
 //!
-//! An algorithm that can be watched is generic over who watches. For `()`, who does not listen, no
-//! event is made and nothing is left of it in the compiled code; a list keeps all events. Events are
-//! plain numbers, which can be stored and shown elsewhere.
+//! A traced algorithm is generic over its watcher. For `()`, which ignores events, none is made and the
+//! compiled code has no trace of it; a list keeps all events. Events are plain numbers, which can be stored
+//! and shown elsewhere.
 
-/// A listener who is told what an algorithm does.
+/// Receives the events of an algorithm.
 pub trait Watcher<E> {
-    /// True if anything is listened to: what only events need is not worked out otherwise.
+    /// Whether events are used; if not, data that only events need is not computed.
     const LISTENS: bool;
 
-    /// Takes an event, which is made only if it is wanted.
+    /// Takes an event, which is only made if it is used.
     fn tell(&mut self, event: impl FnOnce() -> E);
 }
 
-/// Nobody.
+/// Ignores all events.
 impl<E> Watcher<E> for () {
     const LISTENS: bool = false;
 
@@ -21,7 +21,7 @@ impl<E> Watcher<E> for () {
     fn tell(&mut self, _: impl FnOnce() -> E) {}
 }
 
-/// All events in their order.
+/// Keeps all events in order.
 impl<E> Watcher<E> for Vec<E> {
     const LISTENS: bool = true;
 

@@ -29,8 +29,7 @@ pub(super) fn meet(a: &Plane, b: &Plane, c: &Plane) -> Option<Homogeneous> {
 /// The meet of a lattice edge's line with a plane; `None` if they are parallel.
 ///
 /// # Bits
-/// The denominator is a difference of two values at lattice points, far below that of three
-/// planes.
+/// The denominator is a difference of two values at lattice points, far below that of three planes.
 pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &Plane) -> Option<Homogeneous> {
     let (va, vb) = (cut.value_at(a), cut.value_at(b));
     let x = each_axis(|i| -> Int<6> {

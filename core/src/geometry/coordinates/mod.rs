@@ -1,4 +1,4 @@
-//! Homogeneous coordinates of constructed points, as wide as what they are constructed from asks.
+//! Homogeneous coordinates of constructed points, as wide as their construction requires.
 
 mod homogeneous;
 mod long;
@@ -15,14 +15,14 @@ use crate::geometry::side::Side;
 
 /// Coordinates in four limbs where all planes are short, else in six.
 pub enum Coordinates {
-    /// Of short planes.
+    /// From short planes.
     Short(Homogeneous<4>),
-    /// Of any planes.
+    /// From any planes.
     Long(Homogeneous),
 }
 
 impl Coordinates {
-    /// Those of a lattice point.
+    /// The coordinates of a lattice point.
     pub fn of_lattice(p: &Lattice) -> Self {
         Self::Short(Homogeneous {
             x: p.map(Int::from_i64),
@@ -30,7 +30,7 @@ impl Coordinates {
         })
     }
 
-    /// Those of the meet of three planes; `None` if they have no single common point.
+    /// The coordinates of the meet of three planes; `None` if they have no single common point.
     pub fn of_planes(a: &Plane, b: &Plane, c: &Plane) -> Option<Self> {
         match (a.short(), b.short(), c.short()) {
             (Some(a), Some(b), Some(c)) => short::meet(&a, &b, &c).map(Self::Short),
@@ -38,7 +38,7 @@ impl Coordinates {
         }
     }
 
-    /// Those of the meet of a lattice edge's line with a plane; `None` if they are parallel.
+    /// The coordinates of the meet of a lattice edge's line with a plane; `None` if they are parallel.
     pub fn on_edge(edge: &LatticeEdge, cut: &Plane) -> Option<Self> {
         let (a, b) = edge.ends();
         match cut.short() {

@@ -1,6 +1,6 @@
-//! Meets of short planes, in machine words wherever these hold the result.
+//! Meets of short planes, in machine words wherever the result fits.
 //!
-//! The widths are those of `arith::bounds::SHORT_NORMAL_BITS` and what is asserted beside it.
+//! The widths are `arith::bounds::SHORT_NORMAL_BITS` and those asserted beside it.
 
 use super::homogeneous::Homogeneous;
 use crate::arith::Int;
@@ -32,8 +32,8 @@ pub(super) fn on_edge(a: &Lattice, b: &Lattice, cut: &ShortPlane) -> Option<Homo
     Homogeneous::positive([x(0), x(1), x(2)], Int::from_i128(vb - va))
 }
 
-/// The point of a line at which a plane is zero, from two lattice points and its values there, as
-/// cuts across axes have them.
+/// The point of a line at which a plane is zero, from two lattice points and the plane's values there; for
+/// cuts across axes.
 ///
 /// # Bits
 /// Each coordinate is a difference of two products of a value in a machine word and a lattice
@@ -51,7 +51,7 @@ fn on_edge_by_words(a: &Lattice, va: i64, b: &Lattice, vb: i64) -> Option<Homoge
     })
 }
 
-/// The axis and the offset of a plane across an axis with a lead of one or two, as cuts have.
+/// The axis and the offset of a plane across an axis, if its lead is one or two as that of a cut.
 fn as_cut(plane: &ShortPlane) -> Option<(usize, i64)> {
     let axis = match plane.n {
         [_, 0, 0] => 0,

@@ -1,10 +1,9 @@
 //! Convex hulls of points in space, exactly.
 //!
-//! Points are added one by one to a polytope, each where it lies outside of faces, which it then
-//! sees. A face is seen only by points strictly before it. So the faces that a point sees are a
-//! disk, whose rim it joins to new faces; none of these is flat, because a point before a face is
-//! not on a line with an edge of it. Points in the plane of a face that are not before another one
-//! lie in the polytope already.
+//! Points are added one by one to a polytope. A point sees the faces that it lies strictly before; they are
+//! a disk, and new faces join its rim to the point. No new face is flat, because a point before a face is
+//! not on a line with an edge of it. A point in the plane of a face and before no other face already lies
+//! in the polytope.
 //!
 //! # Source
 //! Barber, Dobkin, Huhdanpaa 1996, "The quickhull algorithm for convex hulls".
@@ -26,15 +25,15 @@ struct Face {
     corners: [usize; 3],
     /// The face behind the edge from each corner to the next.
     beside: [usize; 3],
-    /// Points before this face, each listed at one face only.
+    /// Points before this face; each point is listed at one face only.
     before: Vec<usize>,
     is_gone: bool,
 }
 
 /// The triangles of the convex hull of finite points, as their numbers.
 ///
-/// All corners are corners of the hull as a set: none lies within an edge or a side of it. Empty if
-/// all points lie in one plane.
+/// All corners are corners of the hull as a set: none lies within an edge or a side of it. Empty if all
+/// points lie in one plane.
 ///
 /// # Example
 /// ```
@@ -52,8 +51,8 @@ pub fn hull(points: &[Point]) -> Vec<[usize; 3]> {
 
 /// The triangles of a convex hull of finite points that may each be off by a radius.
 ///
-/// Points that lie no farther than twice the radius from the hull of the others are no corners, and
-/// none lies farther outside. Empty if all points lie so near to one plane that it may hold them.
+/// A point is no corner if it lies within twice the radius of the hull of the others; no point lies farther
+/// outside. Empty if one plane may hold all points.
 ///
 /// # Example
 /// ```
@@ -85,12 +84,13 @@ pub fn hull_beyond(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
     faces
 }
 
-/// Of corners that are one but for rounding none is sharp; after the first pass one of them is left.
+/// The most passes. Where several corners are one but for rounding, none is sharp; the first pass leaves
+/// one of them.
 const PASSES: usize = 3;
 
-/// Points of one plane, each off by a radius, lie within so many from the plane of three of them that
-/// are far apart: each of these counts by how far the plane goes on beyond it, at most three times,
-/// twice and once, and the point itself once.
+/// Points of one plane, each off by a radius, lie within this many radii of the plane through three of them
+/// that are far apart. The three contribute at most three, two and one, by how far the plane extends beyond
+/// each, and the point itself one.
 const FLAT: f64 = 7.0;
 
 /// The points that faces use, ascending.
@@ -117,7 +117,7 @@ fn is_flat_within(points: &[Point], most: f64) -> bool {
     let (low, high) = (farthest(&|p| -p[axis]), farthest(&|p| p[axis]));
     let along = less(&high, &low);
     let length = dot(&along, &along);
-    // Measured from the line, so that a plane through points near it keeps its digits.
+    // Relative to the line, so that a plane through points near it keeps its digits.
     let off = |p: &Point| {
         let way = less(p, &low);
         let share = dot(&way, &along) / length;
@@ -158,10 +158,10 @@ fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize
     sharp
 }
 
-/// Beyond so much of the size of a hull doubles leave no doubt about distances.
+/// Relative to the size of a hull: doubles decide distances beyond this.
 const CLEAR: f64 = 1e-12;
 
-/// The largest distance along an axis of a corner of faces from one of them.
+/// The largest distance along an axis between corners of faces and the first of them.
 fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {
     let Some([first, ..]) = faces.first() else {
         return 0.0;
@@ -174,8 +174,8 @@ fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {
     ways.map(most).fold(0.0, f64::max)
 }
 
-/// Return whether triangles around a corner lie in three planes or more, so that it is within no
-/// edge and no side.
+/// Return whether triangles around a corner lie in three planes or more: the corner is then inside no edge
+/// and no side.
 fn has_three_planes(planes: &[Triangle]) -> bool {
     let others: Vec<&Triangle> = planes.iter().filter(|p| are_apart(&planes[0], p)).collect();
     others.iter().any(|third| are_apart(others[0], third))
@@ -191,13 +191,13 @@ struct Polytope<'a> {
     faces: Vec<Face>,
     /// Faces that may have points before them.
     waiting: Vec<usize>,
-    /// For each point the round in which it is added, if there are several.
+    /// For each point, the round that adds it, if there are several rounds.
     rounds: Vec<usize>,
 }
 
 impl<'a> Polytope<'a> {
-    /// The hull of several groups of points, those of the first in full; of the others those
-    /// farther outside than a distance.
+    /// The hull of several groups of points: of all points of the first, and of those of the others that
+    /// are farther outside than a distance.
     fn around(points: &'a [Point], groups: &[&[usize]], most: f64) -> Vec<[usize; 3]> {
         let all = groups.concat();
         let Some(first) = simplex(points, groups[0]).or_else(|| simplex(points, &all)) else {
@@ -225,7 +225,7 @@ impl<'a> Polytope<'a> {
         left.map(|face| face.corners).collect()
     }
 
-    /// Adds the points of a round and of those before that lie farther outside than a distance.
+    /// Adds the points up to a round that lie farther outside than a distance.
     fn add_all(&mut self, round: usize, most: f64) {
         let is_left = |f: &usize| !self.faces[*f].is_gone;
         self.waiting = (0..self.faces.len()).filter(is_left).collect();
@@ -250,20 +250,20 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// Leaves out the points before a face that lie within a distance from it.
+    /// Drops the points before a face that lie within a distance of it.
     fn leave_out(&mut self, face: usize, most: f64) {
         let (triangle, points) = (self.triangle(face), self.points);
         let before = &mut self.faces[face].before;
         before.retain(|p| is_beyond(&points[*p], &triangle, most));
     }
 
-    /// Return whether a point lies within a distance from all that it sees.
+    /// Return whether a point lies within a distance of the faces that it sees.
     fn is_within(&self, point: usize, seen: &[usize], most: f64) -> bool {
         let corners: Vec<Point> = seen.iter().flat_map(|f| self.triangle(*f)).collect();
         !is_beyond(&self.points[point], &corners, most)
     }
 
-    /// Makes the tetrahedron of four points in general position, and sorts all others before it.
+    /// Makes the tetrahedron of four points in general position, and distributes the others.
     fn start(&mut self, [a, b, c, d]: [usize; 4], all: Vec<usize>) {
         let corners = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
         let beside = [[2, 3, 1], [0, 3, 2], [1, 3, 0], [2, 1, 0]];
@@ -287,8 +287,8 @@ impl<'a> Polytope<'a> {
         self.faces[face].corners.map(|corner| self.points[corner])
     }
 
-    /// Lists points at the first face they lie before, of those from a number on; those before none
-    /// lie in the polytope for good.
+    /// Lists each point at the first face it lies before, of those from a number on; points before none lie
+    /// in the polytope for good.
     fn distribute(&mut self, mut points: Vec<usize>, from: usize) {
         for face in from..self.faces.len() {
             let triangle = self.triangle(face);
@@ -303,7 +303,7 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// The point of the first rounds that seems farthest before a face; any would do.
+    /// The point of the rounds so far that seems farthest before a face; any would do.
     fn farthest(&self, face: usize, round: usize) -> Option<usize> {
         if self.faces[face].is_gone {
             return None;
@@ -319,11 +319,11 @@ impl<'a> Polytope<'a> {
         })
     }
 
-    /// Adds a point: all faces that it sees give way to new ones around it.
+    /// Adds a point: new faces at the rim replace those that it sees.
     fn add(&mut self, point: usize, seen: Vec<usize>, rim: &[Rim]) {
         let first = self.faces.len();
-        // The rim is a cycle: each new face is beside those that start where it ends, and end where
-        // it starts.
+        // The rim is a cycle: each new face is beside the one that starts where it ends, and the one that
+        // ends where it starts.
         let starts: HashMap<usize, usize> = rim
             .iter()
             .enumerate()
@@ -347,7 +347,7 @@ impl<'a> Polytope<'a> {
         self.distribute(orphans, first);
     }
 
-    /// The faces that a point sees, taken away, and the edges around them.
+    /// The faces that a point sees, removed, and the edges around them.
     fn seen(&mut self, point: usize, face: usize) -> (Vec<usize>, Vec<Rim>) {
         let (mut seen, mut rim) = (vec![face], Vec::new());
         self.faces[face].is_gone = true;
@@ -379,17 +379,16 @@ impl<'a> Polytope<'a> {
     }
 }
 
-/// An edge around the faces that a point sees.
+/// An edge of the rim around the faces that a point sees.
 struct Rim {
     start: usize,
     end: usize,
-    /// The face on its other side, and which edge of it this is.
+    /// The face on its other side, and the number of the edge in that face.
     behind: usize,
     slot: usize,
 }
 
-/// Four of some points of which none lies in the plane of the others, the last behind the first
-/// three.
+/// Four of the points in general position, the last behind the first three.
 fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
     let all = || some.iter().copied();
     let a = all().min_by(|p, q| order(&points[*p], &points[*q]))?;
@@ -415,7 +414,7 @@ fn simplex(points: &[Point], some: &[usize]) -> Option<[usize; 4]> {
     })
 }
 
-/// Return whether three points lie on one line: then they do along each axis.
+/// Return whether three points lie on one line: then they do in each projection along an axis.
 fn are_in_line(points: &Triangle) -> bool {
     (0..3).all(|axis| {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -432,7 +431,7 @@ mod tests {
     use super::{hull, hull_beyond, side, Point, Side};
     use proptest::prelude::*;
 
-    /// Points of a small grid, most of them in common lines and planes.
+    /// Points of a small grid: many share lines and planes.
     fn grid_points() -> impl Strategy<Value = Vec<Point>> {
         let coordinate = (-2i32..3).prop_map(f64::from);
         prop::collection::vec(prop::array::uniform3(coordinate), 0..40)

@@ -1,8 +1,8 @@
 //! The points that two triangles in doubles have in common, exactly.
 //!
-//! Points that surfaces share never make them cross: where two surfaces pass through each other
-//! they do so along lines. So common points count as nothing, and a common stretch of a line is
-//! told apart by whether it runs inside the triangles or along their edges.
+//! Surfaces that pass through each other do so along lines, never in single points. So common points count
+//! as nothing, and a common stretch of a line is classified by whether it runs inside the triangles or
+//! along their edges.
 #![allow(clippy::float_cmp, reason = "equal corners are meant to the last bit")]
 
 use crate::arith::{Filtered, Sign};
@@ -29,12 +29,12 @@ pub enum Meeting {
     Overlap,
 }
 
-/// Return what two triangles that have area have in common.
+/// Return what two triangles with area have in common.
 pub fn meeting(p: &Triangle, q: &Triangle) -> Meeting {
     meeting_of(&Facing::of(p), &Facing::of(q))
 }
 
-/// Return what two prepared triangles that have area have in common.
+/// Return what two prepared triangles with area have in common.
 pub fn meeting_of(p: &Facing, q: &Facing) -> Meeting {
     if are_clear(p, q) {
         Meeting::Clear
@@ -67,8 +67,8 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
     }
 }
 
-/// Return whether doubles alone show that two triangles have nothing or one corner in common: most
-/// pairs.
+/// Return whether doubles alone show that two triangles have nothing or one corner in common, as most pairs
+/// do.
 pub fn are_clear(p: &Facing, q: &Facing) -> bool {
     let common = Common::of(p.triangle(), q.triangle());
     if common.several() {
@@ -101,7 +101,7 @@ impl Common {
     /// Return whether more than one corner of the first is common.
     #[inline]
     fn several(self) -> bool {
-        // No two corners of a triangle that has area are the same.
+        // Corners of a triangle with area are distinct.
         self.0.count_ones() > 1
     }
 
@@ -118,7 +118,7 @@ impl Common {
         self.0 >> (3 * i) & ENDS[edge] != 0
     }
 
-    /// The same as the second triangle sees it.
+    /// The same with the two triangles exchanged.
     #[inline]
     fn turned(self) -> Self {
         const DIAGONAL: u16 = 0b100_010_001;
@@ -130,8 +130,7 @@ impl Common {
     }
 }
 
-/// Return whether a triangle is clearly on one side of the plane of another, but for common
-/// corners.
+/// Return whether a triangle is clearly on one side of the plane of another, except at common corners.
 #[inline]
 fn lies_beside(t: &Facing, common: Common, plane: &Facing) -> bool {
     let corners = t.triangle().iter().enumerate();
@@ -139,8 +138,8 @@ fn lies_beside(t: &Facing, common: Common, plane: &Facing) -> bool {
     plane.clearly_beside(others.map(|(_, corner)| corner))
 }
 
-/// Return whether a triangle, seen along an axis, is clearly beyond an edge of another, but for a
-/// corner that is an end of the edge: seen so, each point of the other is one point.
+/// Return whether a triangle, seen along an axis, is clearly beyond an edge of another, except at an end of
+/// the edge. Seen so, no two points of the other coincide.
 fn lies_outside(t: &Facing, common: Common, other: &Facing, axis: usize) -> bool {
     let Filtered::Certain(inner) = other.clear_turn(axis) else {
         return false;
@@ -158,10 +157,10 @@ fn lies_outside(t: &Facing, common: Common, other: &Facing, axis: usize) -> bool
     })
 }
 
-/// Return whether a triangle lies on another that is its mate at an edge, given by its number in
-/// the second; both have area. If not, they have nothing but the edge in common.
+/// Return whether a triangle folds onto its mate at an edge, given by its number in the mate; both have
+/// area. If not, only the edge is common.
 pub fn folds_over(p: &Facing, q: &Facing, edge: usize) -> bool {
-    // Seen so that both face one way, they lie on different sides of the edge.
+    // In a view where both face one way, they lie on different sides of the edge.
     let is_spread = |axis: usize| {
         let own = p.clear_turn(axis);
         own.is_certain() && q.clear_turn(axis) == own
@@ -174,7 +173,7 @@ pub fn folds_over(p: &Facing, q: &Facing, edge: usize) -> bool {
     (0..3).all(|axis| facing(p, axis) == -facing(q, axis))
 }
 
-/// On which sides of a triangle's plane the corners of another lie.
+/// The sides of a triangle's plane on which the corners of another lie.
 fn sides(triangle: &Triangle, plane: &Triangle) -> [Side; 3] {
     let facing = Facing::of(plane);
     let side = |p: &Point| {
@@ -194,7 +193,7 @@ fn has_corner([a, b, c]: &Triangle, p: &Point) -> bool {
     is_same(p, a) || is_same(p, b) || is_same(p, c)
 }
 
-/// Return whether two points are one; arrays would be compared as slices, which takes longer.
+/// Return whether two points are equal; comparing arrays as slices is slower.
 #[inline]
 fn is_same(p: &Point, q: &Point) -> bool {
     p[0] == q[0] && p[1] == q[1] && p[2] == q[2]
@@ -230,7 +229,7 @@ fn is_same_edge(p: &Triangle, i: usize, q: &Triangle, j: usize) -> bool {
     a == d && b == c || a == c && b == d
 }
 
-/// The corner that is alone on its side, and not in the plane where another can be.
+/// The corner that is alone on its side; not one in the plane if another will do.
 fn alone(sides: [Side; 3]) -> usize {
     let single = |i: &usize| {
         let others = sides.iter().filter(|s| **s == sides[*i]).count();
@@ -239,12 +238,12 @@ fn alone(sides: [Side; 3]) -> usize {
     (0..3).find(single).unwrap_or(0)
 }
 
-/// Return whether the stretches in which two triangles cover the line that their planes share have
-/// more than a point in common.
+/// Return whether the stretches in which two triangles cover the common line of their planes share more
+/// than a point.
 ///
-/// The edges at the lone corners `p[i]` and `q[k]` end the stretches. Which of two such edges comes
-/// first on the line is the sign of the volume they span, up to a sign that is the same for all
-/// four pairs; `On` says that they meet there.
+/// The edges at the lone corners `p[i]` and `q[k]` end the stretches. The sign of the volume that two such
+/// edges span says which comes first on the line, up to a sign that is the same for all four pairs; `On`
+/// means that they meet there.
 fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     let ends = |t: &Triangle, at: usize| [t[(at + 1) % 3], t[(at + 2) % 3]];
     let order = |our: &Point, their: &Point| side(&[p[i], *our, q[k]], their);
@@ -254,7 +253,8 @@ fn has_common_stretch(p: &Triangle, i: usize, q: &Triangle, k: usize) -> bool {
     straddle(&orders) == (true, true)
 }
 
-/// Return whether two triangles of one plane have an area in common: no edge's line separates them.
+/// Return whether two triangles of one plane have an area in common: no line through an edge separates
+/// them.
 fn overlap(p: &Triangle, q: &Triangle) -> bool {
     let facing = |axis: usize| turn(seen_along(p, axis));
     let Some(axis) = (0..3).find(|axis| facing(*axis) != Sign::Zero) else {
@@ -271,7 +271,7 @@ fn lie_apart(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     (0..2).any(|i| high(p, i) <= low(q, i) || high(q, i) <= low(p, i))
 }
 
-/// Return whether one triangle lies on the outer side of an edge of another, or on its line.
+/// Return whether one triangle lies on the outer side of the line through an edge of another, or on it.
 fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     let inner = turn(*p);
     (0..3).any(|i| {
@@ -281,7 +281,7 @@ fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     })
 }
 
-/// Return whether a triangle has no area, so that its points all lie on its neighbours' edges.
+/// Return whether a triangle has no area, so that all its points lie on its neighbours' edges.
 pub fn has_no_area(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     a == b || b == c || c == a || is_flat(triangle)
@@ -291,12 +291,12 @@ pub fn has_no_area(triangle: &Triangle) -> bool {
 mod tests {
     use super::*;
 
-    /// A corner of a small grid, by a number; there triangles touch in every way.
+    /// A corner of a small grid, by a number; triangles on this grid touch in every way.
     fn corner(number: u32, step: f64) -> Point {
         [1, 3, 9].map(|place| f64::from(number / place % 3) * step)
     }
 
-    /// Numbers that look random, below a bound.
+    /// Pseudorandom numbers below a bound.
     fn numbers(bound: u32) -> impl Iterator<Item = u32> {
         let next = |x: &u32| Some(x.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
         std::iter::successors(Some(7), next).map(move |x| (x >> 8) % bound)
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn what_doubles_show_holds_exactly() {
-        // Thirds are rounded, so that triangles of one plane are not quite so.
+        // Rounded thirds put triangles of one plane slightly off it.
         for step in [1.0, 1.0 / 3.0, 0.1] {
             let (mut corners, mut clear, mut met) = (numbers(27), 0, 0);
             for _ in 0..20_000 {

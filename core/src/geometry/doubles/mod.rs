@@ -1,7 +1,7 @@
 //! Exact questions about points given in doubles.
 //!
-//! A filter in doubles settles what is clear; the rest is computed in integers: the coordinates
-//! times a power of two, in fixed width where their exponents lie close together.
+//! A filter in doubles settles clear cases. Integers decide the others: coordinates times a power of two,
+//! in fixed width if their exponents lie close together.
 #![allow(
     clippy::float_cmp,
     reason = "equal coordinates are meant to the last bit"
@@ -21,15 +21,15 @@ use super::axes::each_axis;
 use super::side::Side;
 use crate::arith::{mantissa_and_exponent, Filtered, Int, Sign};
 
-/// A point of space in doubles; finite.
+/// A point of space in finite doubles.
 pub type Point = [f64; 3];
 
 /// A triangle by its corners.
 pub type Triangle = [Point; 3];
 
-/// A number for each coordinate of a place: equal coordinates, zeros of any sign too, have one.
+/// A number for each coordinate of a place; equal coordinates have equal numbers, zeros of either sign too.
 ///
-/// Meant for hash tables, as [`folded`] has them.
+/// Meant for hash tables, as it uses [`folded`].
 ///
 /// # Example
 /// ```
@@ -45,8 +45,8 @@ pub fn digits(place: &Point) -> [u64; 3] {
 
 /// The bits of a double, the upper half folded into the lower one; different bits stay different.
 ///
-/// Short numbers differ in the upper bits of their doubles only. A product hash drops these: it
-/// would put all whole coordinates in the same few places.
+/// Short numbers differ only in the upper bits of their doubles. A product hash drops these and would put
+/// all whole coordinates in the same few slots.
 #[inline]
 pub fn folded(bits: u64) -> u64 {
     bits ^ (bits >> (u64::BITS / 2))
@@ -61,13 +61,13 @@ const SIDE_BOUND: f64 = (7.0 + 56.0 * ROUNDING) * ROUNDING;
 /// The same paper, the bound A of orient2d.
 const TURN_BOUND: f64 = (3.0 + 16.0 * ROUNDING) * ROUNDING;
 
-/// Sums of products beyond these may have lost digits to underflow, or overflowed: the filter's
-/// bounds suppose that neither happened. A product of three differences below 1e100 that lost
-/// 2^-1074 in one step is off by 1e-223 at most, far less than the bound at 1e-200.
+/// The filter's bounds assume no underflow and no overflow; sums of products beyond this range may have had
+/// either. A product of three differences below 1e100 that lost 2^-1074 in one step is off by 1e-223 at
+/// most, far less than the bound at 1e-200.
 const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
 
-/// Exponents this far apart still fit: 53 + 70 bits a coordinate, 124 a difference, 249 a minor of
-/// two rows, 375 a determinant of three.
+/// The largest difference of exponents that fits: 53 + 70 bits a coordinate, 124 a difference, 249 a minor
+/// of two rows, 375 a determinant of three.
 const SPAN: i32 = 70;
 
 /// A triangle with its plane, prepared for questions about sides.
@@ -79,7 +79,7 @@ pub struct Facing {
 }
 
 impl Facing {
-    /// The plane through a triangle's corners.
+    /// Prepares a triangle.
     #[inline]
     pub fn of(triangle: &Triangle) -> Self {
         let [a, b, c] = triangle;
@@ -100,8 +100,8 @@ impl Facing {
         &self.triangle
     }
 
-    /// Sign of the turn of the corners as seen against the direction of an axis, where doubles
-    /// settle that there is one.
+    /// Sign of the turn of the corners as seen against the direction of an axis, where doubles settle it
+    /// and it is not zero.
     #[inline]
     pub fn clear_turn(&self, axis: usize) -> Filtered<Sign> {
         let (value, size) = (self.minors[axis], self.sizes[axis]);
@@ -109,8 +109,7 @@ impl Facing {
         Filtered::when(clear, Sign::of(value))
     }
 
-    /// The side on which a point lies: `Plus` is where the normal by the right-hand rule points;
-    /// exact.
+    /// The side on which a point lies, exactly; the normal by the right-hand rule points to `Plus`.
     #[inline]
     pub fn side(&self, d: &Point) -> Side {
         let [a, b, c] = &self.triangle;
@@ -128,7 +127,7 @@ impl Facing {
         self.clear_side_off(d)
     }
 
-    /// The side off the plane on which a point lies, where doubles settle it.
+    /// The side on which a point lies, where doubles show it off the plane.
     #[inline]
     pub fn clear_side_off(&self, d: &Point) -> Filtered<Side> {
         let (value, error) = self.height(d);
@@ -136,7 +135,7 @@ impl Facing {
         Filtered::when(value.abs() > error, side)
     }
 
-    /// Return whether doubles show that some points lie on one side off the plane, all on the same.
+    /// Return whether doubles show that all points lie off the plane on one side.
     #[inline]
     pub fn clearly_beside<'a>(&self, points: impl Iterator<Item = &'a Point>) -> bool {
         let (mut above, mut below) = (true, true);
@@ -150,7 +149,7 @@ impl Facing {
         true
     }
 
-    /// Six times the volume that a point spans with the triangle, and by how much that may be off.
+    /// Six times the volume that a point spans with the triangle, and a bound on its error.
     #[inline]
     fn height(&self, d: &Point) -> (f64, f64) {
         let (m, s) = (&self.minors, &self.sizes);
@@ -228,7 +227,7 @@ pub fn turn(points: [[f64; 2]; 3]) -> Sign {
         .or_exact(|| exact_turn(points))
 }
 
-/// Sign of the turn a → b → c in the plane, where doubles settle that there is one.
+/// Sign of the turn a → b → c in the plane, where doubles settle it and it is not zero.
 #[inline]
 pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let left = (b[0] - a[0]) * (c[1] - a[1]);
@@ -238,11 +237,11 @@ pub fn clear_turn([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     Filtered::when(clear, Sign::of(value))
 }
 
-/// The turn where the differences of coordinates are doubles, so that two products decide: points
-/// of one plane along the axes, most of all.
+/// The turn where differences of coordinates are exact in doubles, so that two products decide: mostly for
+/// points of one plane along the axes.
 fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     let [u, v] = [b, c].map(|p| [0, 1].map(|i| exact_difference(p[i], a[i])));
-    // Rounding keeps the order of products; equal ones differ by what was cut off.
+    // Rounding keeps the order of products; equal ones differ by their rounding errors.
     let order = || {
         let [left, right] = [exact_product(u[0]?, v[1]?)?, exact_product(u[1]?, v[0]?)?];
         left.partial_cmp(&right)
@@ -253,7 +252,7 @@ fn turn_by_parts([a, b, c]: [[f64; 2]; 3]) -> Filtered<Sign> {
     }
 }
 
-/// a − b, if a double holds it (Knuth's sum of two).
+/// a − b, if it is exact in doubles (Knuth's sum of two).
 fn exact_difference(a: f64, b: f64) -> Option<f64> {
     let difference = a - b;
     let of_b = a - difference;
@@ -261,7 +260,7 @@ fn exact_difference(a: f64, b: f64) -> Option<f64> {
     (lost == 0.0).then_some(difference)
 }
 
-/// A product as its rounded value and the rest, which is a double (Veltkamp and Dekker).
+/// A product as its rounded value and the exact rest (Veltkamp and Dekker).
 fn exact_product(a: f64, b: f64) -> Option<(f64, f64)> {
     let product = a * b;
     if product == 0.0 {
@@ -297,7 +296,7 @@ fn exact_turn(points: [[f64; 2]; 3]) -> Sign {
     }
 }
 
-/// The numbers as multiples of the least power of two among them, if they fit.
+/// The numbers as multiples of the smallest power of two among them, if they fit.
 fn on_common_grid(parts: &[(i64, i32)]) -> Option<[i128; 12]> {
     let exponents = || parts.iter().filter(|p| p.0 != 0).map(|p| p.1);
     let (least, most) = (
@@ -384,7 +383,7 @@ mod tests {
 
     #[test]
     fn integers_of_fixed_width_and_big_ones_agree() {
-        // Near-coplanar points, once within the span of the fixed width and once beyond.
+        // Near-coplanar points, within the span of the fixed width and beyond it.
         for seed in 0..2000u32 {
             let next = |k: u32| f64::from((seed * 12 + k).wrapping_mul(2_654_435_761)) / 4e9;
             let mut points = [0, 1, 2, 3].map(|p| [0, 1, 2].map(|i| next(3 * p + i) + 1.0));

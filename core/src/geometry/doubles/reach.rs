@@ -1,16 +1,16 @@
-//! Whether a point lies far from the convex hull of a few others, in doubles.
+//! Tests whether a point lies far from the convex hull of a few others, in doubles.
 
 use crate::geometry::doubles::vector::{cross, dot, less};
 use crate::geometry::doubles::{Point, Triangle};
 
-/// Steps towards the nearest point; each comes nearer, and a few lead there.
+/// The most steps towards the nearest point; a few usually suffice.
 const MOST_STEPS: usize = 64;
 
-/// Return whether a point outside of the convex hull of others lies farther from it than a distance.
+/// Return whether a point outside the convex hull of others lies farther from it than a distance; true
+/// where rounding leaves a doubt.
 ///
-/// Where rounding leaves a doubt, it does.
-/// The nearest point lies in a triangle of others. From one triangle to the next, the other that
-/// lies farthest against the way there takes the place of a corner.
+/// The nearest point lies in a triangle of others. In each step, the other that lies farthest towards
+/// `point` replaces a corner.
 ///
 /// # Source
 /// Gilbert, Johnson, Keerthi 1988, "A fast procedure for computing the distance between complex
@@ -36,7 +36,7 @@ pub fn is_beyond(point: &Point, others: &[Point], most: f64) -> bool {
             return false;
         }
         let (along, next) = farthest_against(&near, point, others);
-        // All others lie beyond the plane across the way, so far away.
+        // All others lie beyond a plane that is far enough away.
         if along > 0.0 && along * along > most * most * size {
             return true;
         }
@@ -59,7 +59,7 @@ pub fn is_beyond(point: &Point, others: &[Point], most: f64) -> bool {
     true
 }
 
-/// The way from a point to the middle of others.
+/// The vector from a point to the mean of others.
 fn middle(point: &Point, others: &[Point]) -> Option<Point> {
     let mut sum = [0.0; 3];
     let mut count = 0.0;
@@ -71,7 +71,7 @@ fn middle(point: &Point, others: &[Point]) -> Option<Point> {
     (count > 0.0).then(|| sum.map(|x| x / count))
 }
 
-/// The way from a point to the other that lies least along a direction, and how far that is.
+/// The least scalar product of a direction with a vector from the point to another, and that vector.
 fn farthest_against(direction: &Point, point: &Point, others: &[Point]) -> (f64, Point) {
     let mut least = (f64::INFINITY, *direction);
     for other in others {
@@ -112,7 +112,7 @@ fn nearest(triangle: &Triangle) -> Point {
     best
 }
 
-/// The point between two that is nearest to the origin.
+/// The point of a segment that is nearest to the origin.
 fn nearest_on(p: &Point, q: &Point) -> Point {
     let way = less(q, p);
     let size = square(&way);
@@ -131,7 +131,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// A mix of the others is in their hull, and a plane above them is not.
+        /// A convex combination of the others is in their hull; a plane above them is not.
         #[test]
         fn what_is_near_is_no_farther_than_a_mix(
             others in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 1..12),

@@ -1,7 +1,7 @@
-//! Half-planes of surfaces around a line, and crossings of the surfaces that they make, exactly.
+//! Exact crossings of surfaces at a line, from the half-planes of triangles around it.
 //!
-//! Where more than two triangles share an edge, nothing tells which of them are one surface.
-//! Surfaces cross there if they do however the triangles are paired.
+//! Where more than two triangles share an edge, their pairing into surfaces is unknown. Surfaces cross
+//! there if they do in every pairing.
 
 use std::cmp::Ordering;
 
@@ -31,7 +31,7 @@ impl Sheet {
     }
 }
 
-/// The sheets at an edge: two for nearly all.
+/// The sheets at an edge: nearly always two.
 pub type Sheets = SmallVec<[Sheet; 2]>;
 
 /// Return whether sheets lack opposites, so that a surface ends at the edge.
@@ -39,11 +39,10 @@ fn is_open(sheets: &[Sheet]) -> bool {
     sheets.iter().map(Sheet::way).sum::<i64>() != 0
 }
 
-/// Return whether a surface of the sheets at an edge passes through the plane of a triangle in which
-/// the edge lies, or ends there.
+/// Return whether a surface of the sheets at an edge passes through the plane of a triangle that contains
+/// the edge, or ends there.
 ///
-/// Sheets in the plane have an area in common with the triangle, which is found elsewhere; here they
-/// count as passing nowhere.
+/// Sheets in the plane overlap the triangle, which is found elsewhere; here they do not count as passing.
 pub fn pass(plane: &Triangle, sheets: &[Sheet]) -> bool {
     let facing = Facing::of(plane);
     let (mut below, mut above) = (0, 0);
@@ -57,14 +56,13 @@ pub fn pass(plane: &Triangle, sheets: &[Sheet]) -> bool {
     is_open(sheets) || below != 0 && above != 0
 }
 
-/// Return whether surfaces of the sheets at one edge pass through those of the sheets at another on
-/// the same line, or end there.
+/// Return whether surfaces of the sheets at one edge pass through those of the sheets at another on the
+/// same line, or end there.
 ///
-/// Around the line each sheet is a letter, and its opposite the inverse of that letter: sheets can be
-/// paired without a crossing exactly if their word cancels in the free group.
+/// Around the line each sheet is a letter, and its opposite the inverse letter: the sheets can be paired
+/// without a crossing exactly if their word cancels in the free group.
 ///
-/// Sheets that coincide have an area in common, which is found elsewhere; here they count as not
-/// crossing.
+/// Sheets that coincide overlap, which is found elsewhere; here they do not count as crossing.
 pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
     if is_open(first) || is_open(second) {
         return true;
@@ -84,7 +82,7 @@ pub fn entwine(axis: [&Point; 2], [first, second]: [&[Sheet]; 2]) -> bool {
     !word.windows(2).any(is_beside) && !cancels(&word)
 }
 
-/// Sheets around a line, each with true if it is at the first of two edges.
+/// Sheets around a line; true marks those of the first of two edges.
 type Letters = SmallVec<[(bool, Sheet); 4]>;
 
 /// Return whether a word cancels in the free group.
@@ -100,7 +98,7 @@ fn cancels(word: &[(bool, Sheet)]) -> bool {
     left.is_empty()
 }
 
-/// The order in which half-planes follow each other around a line, from one of them on.
+/// The order of half-planes around a line, starting at one of them.
 fn order_around([a, b]: [&Point; 2], start: &Point, [x, y]: [&Point; 2]) -> Ordering {
     let turn = |u: &Point, v: &Point| side(&[*a, *b, *u], v);
     let quarter = |x: &Point| match turn(start, x) {
@@ -117,7 +115,7 @@ fn order_around([a, b]: [&Point; 2], start: &Point, [x, y]: [&Point; 2]) -> Orde
     quarter(x).cmp(&quarter(y)).then_with(within)
 }
 
-/// Return whether two points of one plane with a line lie on the same side of it.
+/// Return whether two points in one plane with a line lie on the same side of it.
 fn is_same_half([a, b]: [&Point; 2], x: &Point, y: &Point) -> bool {
     let first = [*a, *b, *x];
     let second = [*a, *b, *y];
@@ -136,7 +134,7 @@ mod tests {
 
     const AXIS: [Point; 2] = [[0.0; 3], [0.0, 0.0, 1.0]];
 
-    /// Sheets around the axis at angles in twelfths of a turn, those against it negative; 12 is 0.
+    /// Sheets around the axis at angles in twelfths of a turn, negative if they run against it; 12 is 0.
     fn sheets(hours: &[i32]) -> Sheets {
         let sheet = |hour: &i32| {
             let (y, x) = (f64::from(hour.abs()) * std::f64::consts::TAU / 12.0).sin_cos();
@@ -182,15 +180,15 @@ mod tests {
 
     #[test]
     fn of_more_sheets_those_are_one_surface_that_need_not_cross() {
-        // Between two wedges, and out of each.
+        // Between two wedges, and from inside each to outside.
         assert!(!are_entwined(&[12, -2, 6, -8], &[4, -10]));
         assert!(are_entwined(&[12, -2, 6, -8], &[1, -10]));
     }
 
     #[test]
     fn words_cancel_if_sheets_can_be_paired() {
-        // Eight places around a line, each with a sheet of either edge, either way, or none: every
-        // seventh of all ways.
+        // Eight places around a line, each with a sheet of either edge in either direction or none: every
+        // seventh combination.
         let (mut entwined, mut apart) = (0, 0);
         for number in (0..5_u32.pow(8)).step_by(7) {
             let letter = |hour: u8| number / 5_u32.pow(u32::from(hour) - 1) % 5;
@@ -220,7 +218,7 @@ mod tests {
 
     #[test]
     fn surfaces_pass_where_a_side_is_left_with_a_sheet_too_many() {
-        // The plane of 12 and 6 hours.
+        // The plane through 12 and 6 hours.
         let plane = [[-9.0, 0.0, 0.0], [9.0, 0.0, -1.0], [9.0, 0.0, 2.0]];
         let there = |hours: &[i32]| pass(&plane, &sheets(hours));
         assert!(there(&[1, -8]) && there(&[1]) && there(&[1, -2, 3]));

@@ -1,7 +1,7 @@
-//! Slabs across diagonals of the axes: what lies askew overlaps in boxes where it does not in slabs.
+//! Slabs across diagonals of the axes: slanted triangles overlap in boxes more often than in slabs.
 //!
-//! Rounding keeps the order of numbers, and so do sums and differences that are rounded. So slabs that
-//! have a place in common still do so when rounded.
+//! Rounding keeps the order of numbers, and so do rounded sums and differences. So slabs that overlap still
+//! do so when rounded.
 //!
 //! # Source
 //! Klosowski, Held, Mitchell, Sowizral, Zikan 1998, "Efficient collision detection using bounding volume
@@ -9,7 +9,7 @@
 
 use super::{Point, Triangle};
 
-/// Directions, and two more that tell nothing: so many are compared at once.
+/// Slabs are compared in this many lanes: the directions and two of padding.
 const LANES: usize = 8;
 
 /// The ends of a triangle across six diagonals, in single precision.
@@ -20,8 +20,8 @@ pub struct Slabs {
 }
 
 impl Slabs {
-    /// The slabs of a triangle, measured from a place near it; those of two can be compared if measured
-    /// from one place.
+    /// The slabs of a triangle, relative to an origin near it; two triangles need the same origin to be
+    /// compared.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "rounding keeps the order of numbers"
@@ -37,7 +37,7 @@ impl Slabs {
         Self { low, high }
     }
 
-    /// Return whether these have no place in common with others along one of the diagonals.
+    /// Return whether these slabs are disjoint from others along one of the diagonals.
     #[inline]
     pub fn miss(&self, others: &Self) -> bool {
         let word = |b: bool| if b { !0u32 } else { 0 };
@@ -49,7 +49,7 @@ impl Slabs {
     }
 }
 
-/// Where a point lies along the diagonals.
+/// The coordinates of a point along the diagonals.
 fn across([x, y, z]: &Point) -> [f64; 6] {
     [x + y, x - y, y + z, y - z, z + x, z - x]
 }

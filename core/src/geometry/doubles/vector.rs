@@ -14,7 +14,7 @@ pub fn dot(u: &Point, v: &Point) -> f64 {
     u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 }
 
-/// The vector across two, as long as the parallelogram between them is large.
+/// The vector product: perpendicular to both, as long as the parallelogram between them is large.
 ///
 /// # Example
 /// ```

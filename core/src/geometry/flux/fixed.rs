@@ -1,7 +1,7 @@
 //! Points in fixed binary places, and the flux of (0, 0, z) through polygons of them.
 //!
-//! Exact polygons clipped to cells are dear where only a sum over all of them is asked for. Here
-//! corners are rounded to a small part of a step, and each answer comes with a bound on its error.
+//! Clipping exact polygons to cells is expensive where only a sum over all of them is needed. Here corners
+//! are rounded to a small part of a step, and each answer has an error bound.
 
 use smallvec::SmallVec;
 
@@ -30,7 +30,7 @@ pub type Ring = SmallVec<[Fixed; 12]>;
 pub struct Flux {
     /// The value.
     pub value: Int<6>,
-    /// A bound of its distance from the true one.
+    /// A bound on its distance from the true value.
     pub error: f64,
 }
 
@@ -44,7 +44,7 @@ impl Flux {
         error: 0.0,
     };
 
-    /// The least and the largest value that the error allows; `None` if it is beyond all bounds.
+    /// The least and the greatest value within the error; `None` if the error is not finite.
     pub fn ends(&self) -> Option<[Int<6>; 2]> {
         let in_limbs = |k: u8| self.error * 2f64.powi(-64 * i32::from(k));
         let limbs = (0..4).find(|k| in_limbs(*k) < 2f64.powi(100))?;
@@ -57,7 +57,7 @@ impl Flux {
         Some([self.value - error, self.value + error])
     }
 
-    /// Adds the flux through something in the same direction, or takes it away.
+    /// Adds or subtracts the flux through something, by its orientation.
     pub fn add(&mut self, other: &Self, orientation: Orientation) {
         match orientation {
             Orientation::Same => self.value += other.value,
@@ -72,7 +72,7 @@ pub fn of_lattice(p: &Lattice) -> Fixed {
     p.map(|c| i128::from(c) << PLACES)
 }
 
-/// An exact point, each coordinate to within `slack`.
+/// An exact point, each coordinate within `slack`.
 pub fn of_vertex(vertex: &Vertex) -> Fixed {
     if let Some(p) = vertex.as_lattice() {
         return of_lattice(p);
@@ -82,9 +82,9 @@ pub fn of_vertex(vertex: &Vertex) -> Fixed {
     each_axis(|i| place(&h.x[i], &h.w, near[i]))
 }
 
-/// x / w in units of 2^-`PLACES`, near a double that is off by a few units in its last place.
+/// x / w in units of 2^-`PLACES`, from a double that is off by a few units in its last place.
 ///
-/// Of w the leading 120 bits count, and as many less of x: an error of 2^-119 of the quotient.
+/// Uses the leading 120 bits of w, and drops as many bits of x as of w: an error of 2^-119 of the quotient.
 fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
     let shift = w.bit_length().saturating_sub(120).cast_signed();
     let divisor: Int<2> = window(w, shift);
@@ -94,7 +94,7 @@ fn place(x: &Int<6>, w: &Int<6>, near: f64) -> i128 {
     first + as_wide(rest.to_f64() / divisor.to_f64())
 }
 
-/// The floor of a number over 2^shift, in limbs that hold it.
+/// The floor of a number over 2^shift, in `N` limbs that fit it.
 fn window<const N: usize>(number: &Int<6>, shift: i32) -> Int<N> {
     let sign = if number.is_negative() { u64::MAX } else { 0 };
     let limb = |i: i32| match usize::try_from(i) {
@@ -119,7 +119,7 @@ fn fraction(n: i128, d: i128) -> i128 {
         return long_fraction(&Int::from_i128(n), d);
     }
     let first = as_wide(as_double(n) / as_double(d) * UNIT);
-    // The remainder fits, being 2^-50 of the numerator; what overflows cancels.
+    // The remainder is 2^-50 of the numerator and fits; overflow cancels.
     let rest = (n << PLACES).wrapping_sub(first.wrapping_mul(d));
     first.saturating_add(as_wide(as_double(rest) / as_double(d)))
 }
@@ -146,7 +146,7 @@ fn quotient<const N: usize, const M: usize>(
 
 /// Bound the error of a coordinate after a quotient, if none exceeds `size`.
 ///
-/// The first step leaves 2^-50 of the quotient, the second as much of that, and one for rounding.
+/// The first step leaves 2^-50 of the quotient, the second 2^-50 of that, and rounding 1.
 fn slack(size: f64) -> f64 {
     1.0 + size * 2f64.powi(-99)
 }
@@ -199,8 +199,8 @@ impl Walls {
         points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
     }
 
-    /// Return whether a point lies inside, of which each coordinate is off by some units in its
-    /// last place.
+    /// Return whether a point surely lies inside, given coordinates that are off by some units in the last
+    /// place.
     pub fn surely_hold(&self, near: &[f64; 3]) -> bool {
         (0..3).all(|i| {
             let [low, high] = [2 * i, 2 * i + 1].map(|wall| as_double(self.doubled[wall]) / 2.0);
@@ -209,7 +209,7 @@ impl Walls {
         })
     }
 
-    /// The part of a polygon inside; how many walls cut it.
+    /// Clips a polygon to the inside; returns how many walls cut it.
     pub fn clip(&self, ring: &mut Ring) -> u32 {
         let mut cuts = 0;
         for wall in 0..6 {
@@ -240,7 +240,7 @@ impl Walls {
 
 /// Return the point in which an edge with ends on both sides meets a wall.
 ///
-/// The ends are taken in one order, so that neighbours on the two sides of an edge agree.
+/// The order of the ends is fixed, so that neighbours on the two sides of an edge agree.
 fn crossing(p: &Fixed, q: &Fixed, axis: usize, wall: i128) -> Fixed {
     let (p, q) = if p[axis] < q[axis] { (p, q) } else { (q, p) };
     let run = Int::<2>::from_i128(q[axis] - p[axis]);
@@ -265,8 +265,8 @@ pub struct Triangle<'a> {
     normal: [i128; 3],
 }
 
-/// A corner of what is left of a triangle, and what the edge that leaves it lies on: an edge of the
-/// triangle by its first corner, or 3 and more a wall.
+/// A corner of a clipped triangle, and the carrier of the edge that leaves it: below 3 the triangle's edge
+/// by its first corner, from 3 on a wall.
 type Cut = (Fixed, usize);
 
 impl<'a> Triangle<'a> {
@@ -366,7 +366,7 @@ pub fn through(a: &Fixed, b: &Fixed, c: &Fixed) -> Int<6> {
     over_limb(&area.mul_i128(a[2] + b[2] + c[2]))
 }
 
-/// A number over 2^64, rounded down.
+/// A number divided by 2^64, rounded down.
 pub fn over_limb(number: &Int<6>) -> Int<6> {
     let mut limbs = [if number.is_negative() { u64::MAX } else { 0 }; 6];
     limbs[..5].copy_from_slice(&number.limbs()[1..]);
@@ -409,7 +409,7 @@ pub fn minor(corners: &[Lattice; 3], u: usize, v: usize) -> i128 {
     d(b, u) * d(c, v) - d(c, u) * d(b, v)
 }
 
-/// The lattice's units in those of a [`Flux`].
+/// A number of cubic steps in the units of a [`Flux`].
 pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
     let high: Int<4> = whole.mul_i64(1 << (FLUX_PLACES - 128));
     let mut limbs = [0; 6];
@@ -417,7 +417,7 @@ pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
     Int::from_limbs(limbs)
 }
 
-/// Distances of points from the origin, and from each other, in units.
+/// The largest coordinate of points, and their extent, in units.
 #[derive(Clone, Copy, Debug)]
 pub struct Reach {
     size: f64,
@@ -425,7 +425,7 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// Of these points.
+    /// The reach of these points.
     pub fn of(points: &[Fixed]) -> Self {
         let mut low = [i128::MAX; 3];
         let mut high = [i128::MIN; 3];
@@ -443,7 +443,7 @@ impl Reach {
         }
     }
 
-    /// Of the corners of a lattice triangle.
+    /// The reach of the corners of a lattice triangle.
     pub fn of_triangle(corners: &[Lattice; 3]) -> Self {
         let size = corners.iter().flatten().map(|c| c.unsigned_abs()).max();
         let spread = |i: usize| {
@@ -456,12 +456,12 @@ impl Reach {
         }
     }
 
-    /// A bound on the error of the flux through a polygon in such points whose corners were rounded
-    /// and cut `rounds` times in all; `slope` bounds |z| / |(x, y)| of its plane's normal.
+    /// A bound on the error of the flux through a polygon of such points whose corners were rounded and cut
+    /// `rounds` times in all; `slope` bounds |z| / |(x, y)| of its plane's normal.
     ///
-    /// With corners off by s, sizes Z and extents L, each of n triangles of a fan errs by at most
-    /// s (24 Z L + 6 L²). Where a wall z = c cuts the polygon, the edge is off by s (1 + slope), and
-    /// the strip beside it counts with 6 Z; in walls across x or y the field has no flux.
+    /// With corners off by s, sizes Z and extents L, each of n fan triangles errs by at most s (24 Z L + 6
+    /// L²). Where a wall z = c cuts the polygon, the edge is off by s (1 + slope), and the strip beside it
+    /// counts with 6 Z; the field has no flux through walls across x or y.
     pub fn error(&self, corners: usize, rounds: u32, slope: f64) -> f64 {
         let s = slack(self.size);
         let product = (self.extent + 8.0 * s) * (self.size + self.extent) * (1.0 + slope);

@@ -1,8 +1,8 @@
-//! The flux of (0, 0, z) through what the walls of a cell across one axis leave of a triangle.
+//! The flux of (0, 0, z) through a triangle trimmed by the walls of a cell across one axis.
 //!
-//! Most triangles at the border of a cell are cut by one of its walls, or by two that face each
-//! other. A wall cuts off the corner that lies alone on its side, or all but that corner: the
-//! corner's share follows from where the wall divides two edges, and no new corners are needed.
+//! Most triangles at the border of a cell are cut by one of its walls, or by two opposite ones. A wall cuts
+//! off the corner that is alone on its side, or all but that corner: the corner's share follows from where
+//! the wall divides two edges, without new corners.
 
 use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, PLACES};
 use crate::arith::convert::as_double;
@@ -16,7 +16,7 @@ use crate::geometry::side::Orientation;
 pub enum Rest {
     /// All of it.
     All,
-    /// Some of it, and six times the flux through that.
+    /// Some of it, with six times the flux through that part.
     Some(Flux),
     /// Nothing.
     Nothing,
@@ -24,7 +24,7 @@ pub enum Rest {
     Open,
 }
 
-/// Return what the walls of a cell leave of a lattice triangle; `area` is its normal's z.
+/// Trims a lattice triangle by the walls of a cell; `area` is its normal's z.
 pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> Rest {
     let mut cuts = [None; 6];
     for (wall, cut) in cuts.iter_mut().enumerate() {
@@ -43,7 +43,7 @@ pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> Rest {
     }
 }
 
-/// The flux through a triangle but for what lies beyond walls that do not meet.
+/// The flux through a triangle minus the parts beyond walls that do not meet.
 fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [i64; 3]>) -> Flux {
     let all = of_cubic_steps(&sixfold_flux(corners));
     let mut rest = Flux {
@@ -76,8 +76,8 @@ const SHARE: u32 = 104;
 
 /// Six times the flux through the corner of a triangle that a wall cuts off.
 ///
-/// With the corner a and the shares s and t of the edges to b and c it is the triangle's area times
-/// s t (3 a + s (b − a) + t (c − a)), where a, b, c stand for their z.
+/// With the corner a and the shares s and t of the edges to b and c, it is the area of the triangle times s
+/// t (3 a + s (b − a) + t (c − a)), where a, b, c are heights.
 ///
 /// # Error
 /// Let u be 2^-104, Z the largest |z|. Shares are off by u, their product by 2u + 2^-144, the sum
@@ -101,7 +101,7 @@ fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize)
     }
 }
 
-/// Return the part of an edge before a wall, from the distances of its ends; rounded down.
+/// Return the part of an edge before a wall, from the distances of both ends to it; rounded down.
 fn share(before: u64, behind: u64) -> Int<2> {
     let length = u128::from(before + behind);
     let dividend = u128::from(before) << (SHARE / 2);

@@ -1,4 +1,4 @@
-//! Cuts across the axes, and the border of the frame: what building in a frame needs beyond a tree.
+//! Cuts across the axes, and the border of the frame: what construction in a frame needs.
 
 use std::sync::Arc;
 
@@ -98,7 +98,7 @@ impl AxisSpace for Dim3 {
     }
 
     fn border() -> Vec<Polygon> {
-        // One half step inside the walls, where no mesh reaches: a wall has no span in its own cell.
+        // Half a step inside the walls, where no mesh reaches: a wall has no span in its own cell.
         let (low, high) = (Cell::UNIVERSE.low(), Cell::UNIVERSE.high());
         let wall = |i: usize| {
             let axis = i / 2;

@@ -1,4 +1,4 @@
-//! The line: hyperplanes are oriented points. The smallest space, and the exhaustive test bed.
+//! The line, whose hyperplanes are oriented points; small enough for exhaustive tests.
 
 use super::space::Space;
 use crate::geometry::side::{Orientation, Side, Split};

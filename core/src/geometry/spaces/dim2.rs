@@ -1,8 +1,8 @@
 //! The plane: hyperplanes are lines through lattice points, fragments are segments of them.
 //!
-//! Notation: a line is a·x + b·y + c = 0, a point (x/w, y/w) with w > 0. Every line comes from
-//! lattice points, from given coefficients or the frame, never from constructed points, so that
-//! widths do not grow (`arith::bounds`).
+//! Notation: a line is a·x + b·y + c = 0, a point (x/w, y/w) with w > 0. Every line comes from lattice
+//! points, given coefficients or the frame, never from constructed points, so that widths do not grow
+//! (`arith::bounds`).
 
 use std::cmp::Ordering;
 
@@ -23,7 +23,7 @@ pub struct Dim2;
 /// A lattice point of the plane.
 pub type Lattice2 = [i64; 2];
 
-/// The square |x|, |y| ≤ [`REACH`] + 1/2, whose walls no lattice point lies in.
+/// The square |x|, |y| ≤ [`REACH`] + 1/2; its walls contain no lattice point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Square;
 
@@ -35,14 +35,14 @@ pub struct Line2 {
     c: i128,
 }
 
-/// A line of which many sides are asked.
+/// A line with its coefficients in doubles, for many side tests.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundedLine {
     line: Line2,
     rounded: [f64; 3],
 }
 
-/// An exact point: a lattice point, or where two lines meet.
+/// An exact point: a lattice point, or the meet of two lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Point2 {
     x: [Int<LINE_MEET_LIMBS>; 2],
@@ -52,7 +52,7 @@ pub struct Point2 {
 
 /// A segment of a line, from its first to its last point along the line's direction.
 ///
-/// Each end is named by a line that crosses the segment's own there, the segment on its minus side.
+/// A line that crosses the segment's own defines each end, the segment on its minus side.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment2 {
     line: Line2,
@@ -84,8 +84,7 @@ impl Line2 {
 
     /// The line with these coefficients, divided by their greatest common divisor.
     ///
-    /// Returns `None` if the normal is zero or a coefficient is wider than those of lines that meet
-    /// the frame.
+    /// Returns `None` if the normal is zero or a coefficient is too wide for a line that meets the frame.
     pub fn new(a: i64, b: i64, c: i128) -> Option<Self> {
         let narrow = !is_wide(a) && !is_wide(b) && c.unsigned_abs() < 1 << LINE_OFFSET_BITS;
         if [a, b] == [0; 2] || !narrow {
@@ -99,8 +98,8 @@ impl Line2 {
         Some(Self { a, b, c })
     }
 
-    /// The line with the outward normal (a, b) whose points have this product with it, if it meets
-    /// the lattice.
+    /// The line of the points whose product with the outward normal (a, b) is this offset, if it meets the
+    /// lattice.
     ///
     /// Returns `None` if it does not, or if the normal is zero or too wide.
     pub fn across_lattice(normal: [i64; 2], offset: i128) -> Option<Self> {
@@ -151,7 +150,7 @@ impl Line2 {
         RoundedLine::of(*self).side_of(p)
     }
 
-    /// The side of a point that is too near for doubles.
+    /// The side of a point, where doubles do not decide it.
     fn exact_side_of(&self, p: &Point2) -> Side {
         if let Some([x, y]) = p.as_lattice() {
             let along = i128::from(self.a) * i128::from(x) + i128::from(self.b) * i128::from(y);
@@ -162,21 +161,21 @@ impl Line2 {
         Side::from_sign((along + last).sign())
     }
 
-    /// Order of two lines by the angle of their directions (−b, a), if these are less than a half
-    /// turn apart: counterclockwise is greater.
+    /// Order of two lines by the angle of their directions (−b, a), if it is less than a half turn:
+    /// counterclockwise is greater.
     #[inline]
     pub fn turn(&self, other: &Self) -> Ordering {
         let product = |m: i64, n: i64| i128::from(m) * i128::from(n);
         (product(self.b, other.a)).cmp(&product(self.a, other.b))
     }
 
-    /// Return whether two lines have one direction, or opposite ones.
+    /// Return whether two lines have the same direction, or opposite ones.
     pub fn is_parallel(&self, other: &Self) -> bool {
         self.turn(other) == Ordering::Equal
     }
 
-    /// The line across this one at a lattice point on it, parallel to the axis this line is less
-    /// parallel to, its minus side along this line's direction.
+    /// The line across this one at a lattice point on it, parallel to the axis that is less parallel to
+    /// this line; its minus side is along this line's direction.
     fn across(&self, point: Lattice2) -> Self {
         let direction = [-self.b, self.a];
         if direction[0].abs() >= direction[1].abs() {
@@ -223,7 +222,7 @@ impl Point2 {
         }
     }
 
-    /// The point where two lines meet, `None` if they are parallel.
+    /// The meet of two lines; `None` if they are parallel.
     pub fn meet(p: &Line2, q: &Line2) -> Option<Self> {
         let wide = |k: i64| i128::from(k);
         let w = wide(p.a) * wide(q.b) - wide(q.a) * wide(p.b);
@@ -243,7 +242,7 @@ impl Point2 {
         Self { x, w, approx }
     }
 
-    /// The lattice coordinates, if it was made of them.
+    /// The lattice coordinates, if it was made from them.
     #[inline]
     pub fn as_lattice(&self) -> Option<Lattice2> {
         if self.w != Int::ONE {
@@ -302,7 +301,7 @@ impl Segment2 {
 
     /// The segment of a line between two of its points, each with a line that crosses it there.
     pub fn limited(line: Line2, limits: [Line2; 2], points: [Point2; 2]) -> Self {
-        // The segment lies on the minus sides: it enters the first one's, and leaves the last one's.
+        // The segment lies on both minus sides: it enters the first limit's and leaves the last one's.
         let turned = |limit: Line2, enters: bool| {
             if (line.turn(&limit) == Ordering::Greater) == enters {
                 limit
@@ -319,7 +318,7 @@ impl Segment2 {
         &self.line
     }
 
-    /// The lines that name its first and its last point, the segment on their minus sides.
+    /// The lines that define its first and its last point, the segment on their minus sides.
     pub fn limits(&self) -> &[Line2; 2] {
         &self.ends
     }
@@ -339,7 +338,7 @@ impl Segment2 {
         }
     }
 
-    /// The segment that ends where a later one of its line ends.
+    /// The segment extended to the end of a later one on its line.
     #[must_use]
     pub fn joined(&self, last: &Self) -> Self {
         let mut longer = *self;
@@ -397,7 +396,7 @@ impl Space for Dim2 {
         match (first, last) {
             (Side::Minus | Side::On, Side::Minus | Side::On) => Split::Minus,
             (Side::Plus | Side::On, Side::Plus | Side::On) => Split::Plus,
-            // Points strictly on both sides of a line: it is not parallel to the segment.
+            // Points lie strictly on both sides of the line, so it is not parallel to the segment.
             _ => piece.parted(first, cut).unwrap_or(Split::Minus),
         }
     }
@@ -452,13 +451,13 @@ fn between_walls(line: &Line2, p: &Line2, q: &Line2) -> Option<Segment2> {
     })
 }
 
-/// The lines that bound the frame, opposite ones together, the frame on their minus sides.
+/// The lines that bound the frame, opposite ones in pairs, the frame on their minus sides.
 fn square_walls() -> [Line2; 4] {
     let c = -(2 * i128::from(REACH) + 1);
     [(2, 0), (-2, 0), (0, 2), (0, -2)].map(|(a, b)| Line2 { a, b, c })
 }
 
-/// The border of the frame, the frame on the minus sides.
+/// The border of the frame, with the frame on the minus sides.
 pub fn border() -> Vec<Segment2> {
     let walls = square_walls();
     let side = |i: usize| {
@@ -468,7 +467,7 @@ pub fn border() -> Vec<Segment2> {
     (0..4).filter_map(side).collect()
 }
 
-/// Return whether a line may not have this component of a normal.
+/// Return whether a component is too wide for a line's normal.
 fn is_wide(component: i64) -> bool {
     component.unsigned_abs() >= 1 << LINE_NORMAL_BITS
 }

@@ -1,8 +1,8 @@
 //! Space: hyperplanes are planes with canonical integer coefficients, fragments convex polygons.
 //!
 //! # Bits
-//! Every plane comes from lattice points or the frame, so that the side of a meet of three planes
-//! is the widest question ever asked (`arith::bounds`).
+//! Every plane comes from lattice points or the frame, so that the side of a meet of three planes is the
+//! widest predicate (`arith::bounds`).
 
 use std::sync::Arc;
 
@@ -33,12 +33,12 @@ impl Space for Dim3 {
     }
 
     fn split(piece: &Polygon, cut: &Arc<Plane>) -> Split<Polygon> {
-        // Comparing coefficients first spares the exact zeros of all corners.
+        // Comparing coefficients first avoids exact zeros for all corners.
         if let Some(orientation) = Self::coincide(piece.support(), cut) {
             return Split::Coplanar(orientation);
         }
         match piece.split(cut) {
-            // No polygon of positive area lies in a plane that is not its own.
+            // A polygon of positive area lies in no plane but its own.
             PolygonSplit::Minus | PolygonSplit::Coplanar => Split::Minus,
             PolygonSplit::Plus => Split::Plus,
             PolygonSplit::Both(minus, plus) => Split::Both { minus, plus },

@@ -1,4 +1,4 @@
-//! One to three dimensions behind one trait, and the motions that keep their lattices.
+//! One to three dimensions behind one trait, and motions of their lattices.
 
 pub mod affine;
 pub mod axis;

@@ -1,4 +1,4 @@
-//! Maps of the lattice into itself, in one to three dimensions: where points and hyperplanes go.
+//! Maps of the lattice into itself, in one to three dimensions, and images of points and hyperplanes.
 
 use super::dim1::{Direction, Point1};
 use super::dim2::Line2;
@@ -7,10 +7,10 @@ use crate::geometry::plane::{Lattice, Plane};
 
 /// A map of the lattice into itself: a signed permutation of the axes, a scale and a shift.
 ///
-/// On the line and in the plane the axes that are not there stay as they are.
+/// On the line and in the plane, missing axes are unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Motion {
-    /// For each new axis the old axis it takes and its sign.
+    /// For each new axis, the old axis it takes and its sign.
     pub axes: [(usize, i64); 3],
     /// Steps added after the permutation.
     pub shift: Lattice,
@@ -19,7 +19,7 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// The motion that leaves everything where it is.
+    /// The identity.
     pub const IDENTITY: Self = Self {
         axes: [(0, 1), (1, 1), (2, 1)],
         shift: [0; 3],
@@ -35,10 +35,10 @@ impl Motion {
         shifted
     }
 
-    /// The motion of a space of at most three dimensions: for each new axis the number of the old
-    /// one, counted from 1, with its sign.
+    /// The motion of a space of at most three dimensions: for each new axis, the number of the old one,
+    /// counted from 1, with its sign.
     ///
-    /// `None` if these are no signed permutation of the axes.
+    /// `None` if this is not a signed permutation of the axes.
     pub fn of_axes(axes: &[i64], shift: &[i64]) -> Option<Self> {
         let mut sorted: Vec<u64> = axes.iter().map(|a| a.unsigned_abs()).collect();
         sorted.sort_unstable();
@@ -55,7 +55,7 @@ impl Motion {
         Some(motion)
     }
 
-    /// Return whether the motion turns right hands into left ones.
+    /// Return whether the motion reverses orientation.
     pub fn mirrors(&self) -> bool {
         let order = self.axes.map(|a| a.0);
         let even = matches!(order, [0, 1, 2] | [1, 2, 0] | [2, 0, 1]);

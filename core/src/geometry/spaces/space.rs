@@ -1,8 +1,8 @@
-//! The few questions a partition tree asks of a dimension.
+//! The geometric predicates that a partition tree needs.
 //!
-//! Everything in `tree::partition` and `merge` is written against [`Space`] and nothing else, so
-//! that a law tested exhaustively on the line holds for the plane and for space as far as the tree
-//! goes. Invariant: a fragment never is empty and never is lower-dimensional than its hyperplane.
+//! `tree::partition` and `merge` use only [`Space`], so that a law tested exhaustively on the line holds
+//! for the plane and for space as far as the tree goes. Invariant: no fragment is empty or of lower
+//! dimension than its hyperplane.
 //!
 //! # Example
 //! ```
@@ -24,24 +24,24 @@ use std::hash::Hash;
 
 use crate::geometry::side::{Half, Orientation, Side, Split};
 
-/// A space of fixed dimension, as a partition tree sees it.
+/// A space of fixed dimension, as partition trees see it.
 ///
-/// Four exact questions (`side`, `coincide`, `split`, `span`) and three ways to take a fragment
-/// apart (`hyperplane`, `reversed`, `rims`). The minus side of a hyperplane is its inside.
+/// Four exact predicates (`side`, `coincide`, `split`, `span`) and three ways to take a fragment apart
+/// (`hyperplane`, `reversed`, `rims`). The minus side of a hyperplane is its inside.
 pub trait Space: Copy + Debug + Send + Sync + 'static {
     /// The dimension.
     const DIM: usize;
 
-    /// A point whose side can be asked for.
+    /// A point that can be tested against hyperplanes.
     type Point: Clone + Debug + Send + Sync;
 
-    /// An oriented flat of one dimension less.
+    /// An oriented flat of codimension one.
     type Hyperplane: Clone + Eq + Hash + Debug + Send + Sync;
 
     /// A convex piece of one hyperplane: a point (1D), a segment (2D), a convex polygon (3D).
     type Fragment: Clone + Debug + Send + Sync;
 
-    /// The convex body in which everything takes place; its border bounds no set.
+    /// The convex body that contains everything; its border bounds no set.
     type Frame: Clone + Debug + Send + Sync;
 
     /// The side of `cut` on which a point lies.
@@ -50,22 +50,21 @@ pub trait Space: Copy + Debug + Send + Sync + 'static {
     /// The orientation of `a` relative to `b` if they are the same set of points.
     fn coincide(a: &Self::Hyperplane, b: &Self::Hyperplane) -> Option<Orientation>;
 
-    /// Split `piece` by `cut`: return the side it lies on, or its two parts if it crosses.
+    /// Splits `piece` by `cut`: returns the side it lies on, or its two parts if it crosses.
     fn split(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<Self::Fragment>;
 
-    /// The part of `cut` inside `frame`, if that has a relative interior in the frame's interior.
+    /// The part of `cut` inside `frame`, if it has a relative interior in the frame's interior.
     fn span(cut: &Self::Hyperplane, frame: &Self::Frame) -> Option<Self::Fragment>;
 
-    /// The hyperplane in which a fragment lies, oriented as the fragment is.
+    /// The hyperplane of a fragment, oriented as the fragment is.
     fn hyperplane(piece: &Self::Fragment) -> &Self::Hyperplane;
 
-    /// The same piece in the hyperplane with its sides exchanged.
+    /// The same piece in the reversed hyperplane.
     fn reversed(piece: &Self::Fragment) -> Self::Fragment;
 
     /// Hyperplanes that bound a fragment within its own, the fragment on their minus sides.
     ///
-    /// Coplanar fragments can only be compared by these: `split` by the common hyperplane says
-    /// nothing about them.
+    /// Needed to compare coplanar fragments, which `split` by their common hyperplane cannot tell apart.
     fn rims(piece: &Self::Fragment) -> Vec<Self::Hyperplane>;
 }
 
@@ -82,7 +81,7 @@ pub fn clip<S: Space>(piece: S::Fragment, cut: &S::Hyperplane, half: Half) -> Op
 /// Splits `piece` by the outline of a coplanar `mask` into its part inside and the parts outside.
 ///
 /// # Order
-/// The outside parts come in the order of the mask's rims.
+/// The outside parts follow the order of the mask's rims.
 pub fn overlay<S: Space>(
     piece: S::Fragment,
     mask: &S::Fragment,
@@ -96,7 +95,7 @@ pub fn overlay<S: Space>(
                 outside.push(plus);
                 rest = minus;
             }
-            // A rim's hyperplane is never the mask's own, so nothing coplanar is left to keep.
+            // A rim's hyperplane is never the mask's own, so no coplanar piece is inside.
             Split::Plus | Split::Coplanar(_) => return (None, vec_with(outside, rest)),
         }
     }
@@ -108,7 +107,7 @@ fn vec_with<T>(mut list: Vec<T>, last: T) -> Vec<T> {
     list
 }
 
-/// The region of a node: a frame, and the half-spaces cut from it on the way from the root.
+/// The region of a node: a frame, and the half-spaces along the path from the root.
 #[derive(Clone, Debug)]
 pub struct Region<S: Space> {
     frame: S::Frame,
@@ -127,12 +126,12 @@ impl<S: Space> Region<S> {
         self.bounds.len()
     }
 
-    /// Steps down to one side of a cut.
+    /// Descends to one side of a cut.
     pub fn push(&mut self, cut: S::Hyperplane, half: Half) {
         self.bounds.push((cut, half));
     }
 
-    /// Steps back up to the region at `depth` half-spaces.
+    /// Returns to the region at `depth` half-spaces.
     pub fn truncate(&mut self, depth: usize) {
         self.bounds.truncate(depth);
     }
@@ -145,7 +144,7 @@ impl<S: Space> Region<S> {
         self.clip(S::span(cut, &self.frame)?)
     }
 
-    /// The faces of this region, itself on their minus sides; the frame's border is none.
+    /// The faces of this region, itself on their minus sides; without the frame's border.
     pub fn faces(&self) -> Vec<S::Fragment> {
         let face = |i: usize| {
             let (cut, half) = &self.bounds[i];

@@ -1,7 +1,7 @@
-//! Winding numbers of directed outlines in the plane: at most one, or more.
+//! Tests whether directed outlines in the plane wind around each point at most once.
 //!
-//! Triangles that all turn to the left cover a point as often as the edges that only one of them has
-//! wind around it. If that is at most once, no two of them overlap, at the cost of their outline
+//! Triangles that all turn left cover a point as often as their outline winds around it: the edges of only
+//! one of them. If that is at most once, no two triangles overlap. The test costs a sweep over the outline
 //! instead of all pairs.
 
 use std::cmp::Ordering;
@@ -10,27 +10,27 @@ use crate::arith::Sign;
 use crate::geometry::doubles::turn;
 use crate::interrupt::poll;
 
-/// A point of the plane in doubles; finite.
+/// A point of the plane in finite doubles.
 pub type Place = [f64; 2];
 
-/// An edge as a sweep to the right sees it, vertical ones as running upwards.
+/// An edge as a sweep to the right meets it; vertical edges run upwards.
 #[derive(Clone, Copy, Debug)]
 struct Running {
     left: Place,
     right: Place,
-    /// True if the edge runs this way, so that the points above it are wound around once more.
+    /// True if the edge runs this way: the winding number is one more above it.
     forward: bool,
 }
 
 /// Return whether closed outlines wind around each point of the plane once or not at all.
 ///
-/// Errs on no: where outlines touch each other elsewhere than in ends of their edges.
+/// May return false negatives, where outlines touch at other points than common ends of edges.
 ///
 /// # Source
 /// Shamos, Hoey 1976, "Geometric intersection problems": a sweep that ends at the first crossing.
 ///
 /// # Cost
-/// n log n comparisons for n edges, and as many moves as edges lie above each other.
+/// n log n comparisons for n edges, and a move for each edge above an inserted one.
 ///
 /// # Example
 /// ```
@@ -81,12 +81,12 @@ impl Running {
     }
 }
 
-/// A sweep on its way.
+/// The state of the sweep.
 struct Sweep<'a> {
     edges: &'a [Running],
-    /// The edges that are still to come, by their left ends.
+    /// The edges still to come, by their left ends.
     starts: &'a [u32],
-    /// The edges across the line of the sweep, upwards.
+    /// The edges that cross the sweep line, from bottom to top.
     above: Vec<u32>,
 }
 
@@ -95,7 +95,7 @@ impl Sweep<'_> {
         &self.edges[number as usize]
     }
 
-    /// Goes over the next stop; returns whether all is well there, and up to the next one.
+    /// Advances to the next stop; returns whether the outlines are fine there and up to the stop after it.
     fn passes(&mut self, stop: &Place) -> bool {
         poll();
         let first = self
@@ -121,7 +121,7 @@ impl Sweep<'_> {
         self.takes_turns(first, after, count) && self.stays_apart(first, after)
     }
 
-    /// Takes the edges that begin at a stop.
+    /// Removes and returns the edges that begin at a stop.
     fn beginning_at(&mut self, stop: &Place) -> &[u32] {
         let begins = |k: &u32| is_same(&self.edges[*k as usize].left, stop);
         let count = self.starts.iter().take_while(|k| begins(k)).count();
@@ -130,26 +130,26 @@ impl Sweep<'_> {
         beginning
     }
 
-    /// The order upwards of two edges with the same left end; equal if they overlap.
+    /// The upward order of two edges with the same left end; equal if they overlap.
     fn order(&self, a: u32, b: u32) -> Ordering {
         let turn = self.edge(a).turn_to(&self.edge(b).right);
         turn.order().reverse()
     }
 
-    /// Return whether edges in these places lie between points that are wound around once and not at
-    /// all in turns, as do those above: as many begin as end, but for an even number.
+    /// Return whether these edges enter and leave the inside in turns, and so do those above: an even
+    /// number begins and ends here.
     fn takes_turns(&self, first: usize, after: usize, ended: usize) -> bool {
         let in_turn = |at: usize| self.edge(self.above[at]).forward == at.is_multiple_of(2);
         (ended + after - first).is_multiple_of(2) && (first..after).all(in_turn)
     }
 
-    /// Return whether new neighbours do not meet further on, but in a common end.
+    /// Return whether new neighbours do not meet further on, except in a common end.
     fn stays_apart(&self, first: usize, after: usize) -> bool {
         let below = first.checked_sub(1).is_none_or(|k| self.is_below(k));
         below && (first == after || self.is_below(after - 1))
     }
 
-    /// Return whether the edge in a place stays below the next one.
+    /// Return whether the edge at an index stays below the next one.
     fn is_below(&self, at: usize) -> bool {
         let Some(pair) = self.above.get(at..at + 2) else {
             return true;
@@ -163,7 +163,7 @@ impl Sweep<'_> {
     }
 }
 
-/// The order in which a sweep to the right stops at points, of those above each other upwards.
+/// The order in which a sweep to the right stops at points; upwards at equal x.
 fn compare(a: &Place, b: &Place) -> Ordering {
     let order = |i: usize| a[i].partial_cmp(&b[i]).unwrap_or(Ordering::Equal);
     order(0).then_with(|| order(1))
@@ -206,7 +206,7 @@ mod tests {
         assert!(!winds_at_most_once(&[left, edge].concat()));
     }
 
-    /// The winding number of the edges around a point on no edge.
+    /// The winding number around a point that lies on no edge.
     fn winding(edges: &[[Place; 2]], p: Place) -> i32 {
         let crossed = |[a, b]: &[Place; 2]| {
             let up = a[1] <= p[1] && p[1] < b[1];
@@ -218,7 +218,7 @@ mod tests {
     }
 
     proptest! {
-        /// After a yes each point of a fine grid is wound around once or not at all.
+        /// If the test succeeds, the outlines wind around each point of a fine grid at most once.
         #[test]
         fn yes_is_right(corners in prop::collection::vec(prop::array::uniform2(0..6i32), 3..9)) {
             let edges = outline(&corners);
@@ -232,7 +232,7 @@ mod tests {
             }
         }
 
-        /// A star around a point winds once: the sweep says so whatever way its corners are given.
+        /// A star around a point winds once; the order of its corners must not matter.
         #[test]
         fn stars_wind_once(radii in prop::collection::vec(1..40i32, 3..40), turned in 0..9i32) {
             let count = f64::from(u32::try_from(radii.len()).unwrap());

@@ -1,7 +1,7 @@
 //! Changes of the winding number along an axis-parallel segment between cell corners.
 //!
-//! Corners are shifted by (ε, ε², ε³), one vector for everything, so that no sign is ever zero and
-//! each count is the crossing number of one generic path.
+//! Corners are shifted by one vector (ε, ε², ε³), so that no sign is ever zero and each count is the
+//! crossing number of one generic path.
 
 use crate::arith::convert::as_double;
 use crate::arith::{Int, Sign};
@@ -32,14 +32,14 @@ impl Segment {
     }
 }
 
-/// The change of the winding number across a plane, minus side inside.
+/// The change of the winding number across a plane with the inside on its minus side.
 pub fn plane_change(plane: &Plane, segment: &Segment) -> i32 {
     let before = plane.side_of_corner(&segment.from);
     let after = plane.side_of_corner(&segment.end());
     change_between(before, after)
 }
 
-/// The change of the winding number on the way from one half-space of a surface to another.
+/// The change of the winding number from one half-space of a surface to another.
 pub fn change_between(before: Half, after: Half) -> i32 {
     match (before, after) {
         (Half::Minus, Half::Plus) => -1,
@@ -75,7 +75,7 @@ pub fn triangle_change(corners: &[Lattice; 3], segment: &Segment) -> i32 {
     change_between(before, after)
 }
 
-/// The half-space by the sign of n·(q + δ − a), for a corner q in half steps.
+/// The half-space, by the sign of n·(q + δ − a) for a corner q in half steps.
 fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> Half {
     let term = |i: usize| -> Int<3> { Int::<2>::from_i128(n[i]).mul_i64(q[i] - 2 * a[i]) };
     Half::from_sign(match (term(0) + term(1) + term(2)).sign() {
@@ -84,8 +84,7 @@ fn side_of_corner(n: &[i128; 3], a: &Lattice, q: &Lattice) -> Half {
     })
 }
 
-/// Sign of the turn a → b → q + δ in the projection along the third axis; zero only if a and b
-/// coincide there.
+/// Sign of the turn a → b → q + δ projected along the third axis; zero only if a and b coincide there.
 fn turn_at_corner(a: &Lattice, b: &Lattice, q: &Lattice, u: usize, v: usize) -> Sign {
     let (du, dv) = (b[u] - a[u], b[v] - a[v]);
     let (eu, ev) = (q[u] - 2 * a[u], q[v] - 2 * a[v]);

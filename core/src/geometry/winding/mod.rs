@@ -1,4 +1,4 @@
-//! Winding numbers: how they change along segments and paths, and those of outlines.
+//! Winding numbers: changes along segments and paths, and numbers of outlines.
 
 pub mod covering;
 pub mod crossing;

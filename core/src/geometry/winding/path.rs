@@ -1,8 +1,8 @@
 //! Changes of the winding number along a straight path from a cell's corner to an exact point.
 //!
-//! The path ends at a point of one surface, to learn on which side of others it lies. Unlike the
-//! segments between corners it is not made generic: where it runs through an edge, or ends on the
-//! surface it is counted against, the answer is doubtful.
+//! The path ends at a point of one surface, to find its side of others. Unlike the segments between
+//! corners, it is not made generic: where it runs through an edge, or ends on the other surface, the answer
+//! is doubtful.
 
 use super::crossing::change_between;
 use crate::arith::convert::{as_double, as_whole};
@@ -14,30 +14,30 @@ use crate::geometry::vertex::Vertex;
 
 /// Relative error bound of a determinant of three rows of rounded differences of integers.
 ///
-/// A product of three has 3 roundings of factors and 2 of products, a sum of six at most 5: 10u,
-/// u = 2^-53, relative to the sum of magnitudes; 16u leaves room for the bound's own rounding.
+/// A product of three has 3 roundings of factors and 2 of products, a sum of six at most 5: 10u relative to
+/// the sum of magnitudes, u = 2^-53; 16u leaves room for the bound's own rounding.
 const DETERMINANT_FILTER: f64 = 16.0 / 9_007_199_254_740_992.0;
 
-/// The width that boxes gain, as a share of the largest coordinate.
+/// The padding of boxes, as a share of the largest coordinate.
 ///
-/// Ends and differences are rounded by a few units in the last place of a coordinate, quotients by
-/// as much of the extent: together below 2^-48 of the largest coordinate.
+/// Ends and differences are rounded by a few units in the last place of a coordinate, quotients by as much
+/// of the extent: together below 2^-48 of the largest coordinate.
 const WAY_SLACK: f64 = 1e-14;
 
-/// A straight path in doubles, to be compared with boxes.
+/// A straight path in doubles, to test against boxes.
 pub struct Way {
     from: [f64; 3],
     /// For each axis the inverse of the extent; infinite across the path.
     inverse: [f64; 3],
-    /// By how much boxes are widened.
+    /// The padding of boxes.
     slack: f64,
-    /// A box around the path, widened by as much.
+    /// A box around the path, padded too.
     low: Lattice,
     high: Lattice,
 }
 
 impl Way {
-    /// A path between points that are rounded by less than a step.
+    /// A path between points rounded by less than a step.
     pub fn new(from: [f64; 3], to: [f64; 3]) -> Self {
         let sizes = from.iter().chain(&to).map(|x| x.abs());
         let slack = 2.0 + sizes.fold(0.0, f64::max) * WAY_SLACK;
@@ -108,7 +108,7 @@ pub fn near_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Filtered<Sign>
     NearCross::of(b, c).sign_with(a)
 }
 
-/// A cross product in doubles, to be multiplied with many.
+/// A cross product in doubles, for many determinants.
 #[derive(Clone, Copy, Debug)]
 pub struct NearCross {
     value: [f64; 3],
@@ -117,7 +117,7 @@ pub struct NearCross {
 }
 
 impl NearCross {
-    /// Has no certain sign with anything.
+    /// Its sign with any row is doubtful.
     pub const UNKNOWN: Self = Self {
         value: [f64::NAN; 3],
         size: [f64::NAN; 3],
@@ -140,13 +140,13 @@ impl NearCross {
         }
     }
 
-    /// The sign of its product with a row, where doubles tell it.
+    /// The sign of its product with a row, where doubles decide it.
     #[inline]
     pub fn sign_with(&self, a: &Lattice) -> Filtered<Sign> {
         self.sign_with_rounded(&rounded(a))
     }
 
-    /// The sign of its product with a row of rounded differences, where doubles tell it.
+    /// The sign of its product with a row of rounded differences, where doubles decide it.
     #[inline]
     pub fn sign_with_rounded(&self, p: &[f64; 3]) -> Filtered<Sign> {
         let value = p[0] * self.value[0] + p[1] * self.value[1] + p[2] * self.value[2];
@@ -178,7 +178,7 @@ fn exact_determinant(a: &Lattice, b: &Lattice, c: &Lattice) -> Sign {
 /// The change of the winding number across a convex polygon, from a doubled corner to an exact
 /// point; doubtful if the path is not generic.
 ///
-/// The polygon is given by its plane and by the planes that bound it within that.
+/// The polygon is given by its plane and the planes that bound it within that.
 pub fn polygon_on_path<'a>(
     support: &Plane,
     rims: impl FnOnce() -> &'a [Plane],
@@ -204,7 +204,7 @@ pub fn polygon_on_path<'a>(
     Filtered::Certain(change_between(before, after))
 }
 
-/// Sign of b(c) e(x) − e(c) b(x): of `e` where the path from c to x meets the plane `b`, times the
+/// Sign of b(c) e(x) − e(c) b(x): the sign of `e` where the path from c to x meets the plane `b`, times the
 /// sign of b(c).
 fn cross(b: &Plane, e: &Plane, c: &Lattice, x: &Vertex) -> Sign {
     let (bc, ec) = (b.near_value_at_doubled(c), e.near_value_at_doubled(c));

@@ -1,4 +1,4 @@
-//! A mesh compared with itself: whether it overlaps itself, and what its winding numbers hold.
+//! A mesh compared with itself: whether it overlaps itself, and what its winding numbers enclose.
 
 use std::sync::Arc;
 
@@ -23,16 +23,16 @@ use crate::tree::solid::Solid;
 /// A mesh united with itself.
 #[derive(Debug)]
 pub enum United {
-    /// It is the reduced boundary of what it holds.
+    /// It is the reduced boundary of what it encloses.
     Same,
-    /// It is not: the root of the solid that is.
+    /// It is not: the root of the reduced solid.
     Other(Branch),
     /// It is the union of these shells, and some of them overlap.
     Shells(Vec<Branch>),
 }
 
-/// A mesh as it was given, united with itself: what a rule calls inside. `None` if the solid is no such
-/// mesh, if faces are crowded, or where they are too thin to count winding numbers.
+/// The union of an unchanged mesh with itself: the points that a rule calls inside. `None` if the solid is
+/// no such mesh, if faces are crowded, or if they are too thin to count winding numbers.
 ///
 /// # Example
 /// ```
@@ -77,8 +77,8 @@ pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
     }
 }
 
-/// Return whether a mesh as it was given is the reduced boundary of what it holds; looks no further than
-/// the first two faces that certainly overlap. `None` as for [`united`].
+/// Return whether an unchanged mesh is the reduced boundary of what it encloses; stops at the first two
+/// faces that certainly overlap. `None` as in [`united`].
 pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
     let operand = whole_mesh(solid)?;
     if is_star(&operand) {
@@ -92,7 +92,7 @@ pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
     }
 }
 
-/// The mesh that a solid is, as it was given.
+/// The mesh of a solid that is an unchanged mesh.
 fn whole_mesh(solid: &Solid) -> Option<Operand<'_>> {
     let root = solid.root();
     let is_plain = !root.complement && root.outside == 0;
@@ -103,7 +103,7 @@ fn is_star(operand: &Operand) -> bool {
     operand.source.open_vertices().is_empty() && is_star_shaped(operand.mesh)
 }
 
-/// A mesh that is compared with itself.
+/// A mesh to compare with itself.
 struct Alone<'a> {
     scene: Scene<'a>,
     view: View<'a>,
@@ -123,7 +123,7 @@ impl<'a> Alone<'a> {
         self.view.pairs(&self.scene.near[0])
     }
 
-    /// The mesh united with itself, by the pairs of faces that may overlap.
+    /// The mesh united with itself, given the pairs of faces that may overlap.
     fn united(&self, pairs: Pairs) -> Option<United> {
         let found = self.contacts(pairs)?.touching_at(self.irregular);
         let root = self.scene.root(&found).ok()?;
@@ -136,7 +136,7 @@ impl<'a> Alone<'a> {
         )
     }
 
-    /// Where faces meet; `None` if they are crowded.
+    /// The contacts of faces; `None` if they are crowded.
     fn contacts(&self, pairs: Pairs) -> Option<Contacts> {
         let Pairs::Few(pairs) = pairs else {
             return None;
@@ -147,7 +147,7 @@ impl<'a> Alone<'a> {
         Some(contacts_among(surfaces, &pairs, *worth))
     }
 
-    /// Return whether each shell is the reduced boundary of what it holds.
+    /// Return whether each shell is the reduced boundary of what it encloses.
     fn are_simple(&self, shells: &[Shell]) -> bool {
         let mesh = self.scene.surfaces.operands[0].mesh;
         let is_closed = !self.irregular.contains(&true);
@@ -162,7 +162,7 @@ impl<'a> Alone<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// A mesh that is compared with itself.
+    /// A mesh to compare with itself.
     fn alone(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
         let all: Vec<FaceId> = operand.mesh.face_ids().collect();
         Self {
@@ -175,7 +175,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// By vertex, whether surfaces may meet there that pairs of faces do not show.
+/// For each vertex, whether surfaces may meet there in ways that pairs of faces do not show.
 fn irregular(source: &Source) -> Vec<bool> {
     let count = source.mesh().map_or(0, |mesh| mesh.vertices.len());
     let mut irregular = vec![false; count];
@@ -189,7 +189,7 @@ fn irregular(source: &Source) -> Vec<bool> {
     irregular
 }
 
-/// Return whether a leaf lists all faces of a mesh as they are, and nothing else.
+/// Return whether a leaf lists all faces of a mesh unchanged, and nothing else.
 fn is_all_of(root: &Branch, source: &Arc<Source>) -> bool {
     let Node::Deferred(leaf) = &*root.node else {
         return false;

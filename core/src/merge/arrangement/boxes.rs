@@ -1,7 +1,7 @@
-//! A tree of boxes around triangles, and the pairs of two such trees that may meet.
+//! A tree of boxes around triangles, and the pairs of boxes of two such trees that may meet.
 //!
-//! Boxes are sorted along a space-filling curve and joined by fours, level by level. At the leaves six
-//! diagonal slabs tell apart what boxes along the axes do not.
+//! Boxes are sorted along a space-filling curve and grouped by four, level by level. At the leaves, six
+//! diagonal slabs separate triangles that boxes do not.
 //!
 //! # Source
 //! Morton 1966 (the curve).
@@ -19,10 +19,10 @@ const FAN: usize = 4;
 /// Steps of the curve along each axis, numbered by ten bits.
 const STEPS: u16 = 1 << 10;
 
-/// Pairs of nodes at which the search for pairs is parted into tasks.
+/// The number of pairs of nodes at which the search for pairs is split into tasks.
 const TASKS: usize = 64;
 
-/// Pairs that are looked at together.
+/// The size of a block of pairs.
 const BLOCK: usize = 1 << 9;
 
 /// A box in single precision, rounded outwards.
@@ -32,7 +32,7 @@ pub(super) struct Bounds {
     pub(super) high: [f32; 3],
 }
 
-/// Boxes in the order of the curve, and levels of boxes around each four of the level below.
+/// Boxes in the order of the curve, and levels of boxes around every four of the level below.
 #[derive(Debug)]
 pub(super) struct BoxTree {
     bounds: Vec<Bounds>,
@@ -41,14 +41,14 @@ pub(super) struct BoxTree {
     levels: Vec<Vec<Bounds>>,
 }
 
-/// A node: its level, and its place there.
+/// A node: its level and its index there.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     level: usize,
     place: usize,
 }
 
-/// A number in single precision that is not larger: rounding takes less than is taken off before.
+/// A number in single precision that is not larger: the margin exceeds the rounding.
 #[allow(clippy::cast_possible_truncation, reason = "rounded down on purpose")]
 fn down(x: f64) -> f32 {
     (x - x.abs() * f64::from(f32::EPSILON)) as f32
@@ -64,7 +64,7 @@ impl Bounds {
         high: [f32::NEG_INFINITY; 3],
     };
 
-    /// The box around two points, the first of which is the lower one.
+    /// The box around two points, the lower one first.
     pub(super) fn between(low: &Point, high: &Point) -> Self {
         Self {
             low: low.map(down),
@@ -100,7 +100,7 @@ impl Bounds {
     }
 }
 
-/// For each place in the order of the curve the number of the triangle there.
+/// For each index along the curve, the number of the triangle there.
 pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
     let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
     let all = Bounds::around_all(&bounds);
@@ -144,7 +144,7 @@ fn spread(x: u32) -> u32 {
 }
 
 impl BoxTree {
-    /// The tree of triangles that stand in the order of the curve.
+    /// The tree of triangles in the order of the curve.
     pub(super) fn new(triangles: &[Triangle]) -> Self {
         spend(triangles.len());
         let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
@@ -161,7 +161,7 @@ impl BoxTree {
         }
     }
 
-    /// The tree, to be asked for pairs with others that have the same origin.
+    /// The tree with slabs, to search for pairs with trees of the same origin.
     pub(super) fn with_slabs(self, triangles: &[Triangle], origin: &Point) -> Self {
         let slabs = triangles.iter().map(|t| Slabs::of(t, origin)).collect();
         Self { slabs, ..self }
@@ -182,12 +182,12 @@ impl BoxTree {
         (FAN * node.place..end).map(move |place| Node { level, place })
     }
 
-    /// The places of a lowest node's boxes.
+    /// The indices of a lowest node's boxes.
     fn leaves(&self, node: Node) -> std::ops::Range<usize> {
         FAN * node.place..(FAN * (node.place + 1)).min(self.bounds.len())
     }
 
-    /// Calls `visit` with the places of all boxes that meet another one.
+    /// Calls `visit` with the indices of all boxes that meet another one.
     pub(super) fn each_meeting(&self, bounds: &Bounds, mut visit: impl FnMut(usize)) {
         let mut open = if self.bounds.is_empty() {
             Vec::new()
@@ -206,8 +206,8 @@ impl BoxTree {
         }
     }
 
-    /// Calls `visit` with blocks of pairs of places at which boxes and slabs of two trees meet; returns what
-    /// it returns, in an order that depends on the trees only. The first error of a task ends it.
+    /// Calls `visit` with blocks of index pairs whose boxes and slabs meet in both trees; returns its
+    /// results, in an order that depends only on the trees. The first error ends a task.
     pub(super) fn each_block<T: Send, E: Send>(
         &self,
         other: &Self,
@@ -224,7 +224,7 @@ impl BoxTree {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// Pairs of nodes below which all pairs are: about as many as tasks are wanted.
+    /// Pairs of nodes with all pairs below them: about one for each task.
     fn starts(&self, other: &Self) -> Vec<[Node; 2]> {
         let mut open = vec![[self.root(), other.root()]];
         while open.len() < TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
@@ -240,7 +240,7 @@ impl BoxTree {
         open
     }
 
-    /// Adds the meeting pairs one level below a pair, of which the larger node is opened.
+    /// Adds the meeting pairs one level below a pair, opening the larger node.
     fn descend(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
         let (ours, theirs) = (self.at(a), other.at(b));
         if a.level == 0 && b.level == 0 {

@@ -1,4 +1,4 @@
-//! The faces of two meshes that may meet: those that reach into the box that both meshes fill.
+//! The faces of two meshes that may meet: those that reach into the intersection of both boxes.
 
 use std::sync::Arc;
 
@@ -23,14 +23,14 @@ pub(super) struct Operand<'a> {
     pub(super) bounds: [Lattice; 2],
 }
 
-/// Faces of an operand in the window, and the boxes around them.
+/// Faces of an operand in the window, with their boxes.
 #[derive(Debug, Default)]
 pub(super) struct Within {
     pub(super) faces: Vec<FaceId>,
     pub(super) boxes: Vec<Bounds>,
 }
 
-/// The faces of an operand that may meet the other one, in the order of their places in space.
+/// The faces of an operand that may meet the other one, in spatial order.
 #[derive(Debug)]
 pub(super) struct Candidates {
     pub(super) faces: Vec<FaceId>,
@@ -39,7 +39,7 @@ pub(super) struct Candidates {
 }
 
 impl<'a> Operand<'a> {
-    /// The operand of a source; `None` if that is no mesh, or has no vertices.
+    /// The operand of a source; `None` if it is not a mesh, or has no vertices.
     pub(super) fn new(slot: Slot, source: &'a Arc<Source>) -> Option<Self> {
         let mesh = source.mesh()?;
         let (low, high) = mesh.bounds()?;
@@ -56,7 +56,7 @@ impl<'a> Operand<'a> {
         self.mesh.corners(face).map(|corner| corner.map(as_double))
     }
 
-    /// The faces that reach into a window, ascending, with the boxes around them.
+    /// The faces that reach into a window, ascending, with their boxes.
     pub(super) fn within(&self, [low, high]: &[Point; 2]) -> Within {
         let found = each_chunk(&self.mesh.faces, |first, chunk| {
             let mut some = Within::default();
@@ -74,7 +74,7 @@ impl<'a> Operand<'a> {
         found.into_iter().reduce(Within::with).unwrap_or_default()
     }
 
-    /// Those of some faces that may meet others; slabs of both are measured from one origin.
+    /// The faces that may meet others; slabs of both operands use one origin.
     pub(super) fn candidates(
         &self,
         within: &Within,
@@ -89,7 +89,7 @@ impl<'a> Operand<'a> {
         made
     }
 
-    /// All faces, by their places.
+    /// All faces, in spatial order.
     pub(super) fn tree(&self) -> Candidates {
         Candidates::of(self, &self.mesh.face_ids().collect::<Vec<_>>())
     }

@@ -1,7 +1,7 @@
-//! The narrow phase: what two triangles have in common, by signs alone.
+//! The narrow phase: the intersection of two triangles, by signs alone.
 //!
-//! No coordinates of common points are computed or compared. Each is named by what of the triangles goes
-//! through it: a corner, an edge and a face, or two edges.
+//! No coordinates of common points are computed or compared. Each point is named by what contains it: a
+//! corner, an edge and a face, or two edges.
 //!
 //! # Source
 //! Guigue and Devillers 2003 (the signs and their order).
@@ -18,8 +18,8 @@ use crate::geometry::side::Side;
 pub(super) enum Contact {
     /// They have no point in common.
     Apart,
-    /// They cross in a segment that runs inside both. It is directed so that, seen from in front of
-    /// the first triangle, the points behind the second one are on its left.
+    /// They cross in a segment inside both. It is directed so that, seen from in front of the first
+    /// triangle, the points behind the second one are on its left.
     Crossing([End; 2]),
     /// They meet in any other way.
     Touching(Box<Touching>),
@@ -28,7 +28,7 @@ pub(super) enum Contact {
 /// The end of a segment: an edge of one triangle goes through the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct End {
-    /// The triangle that the edge is of: 0 for the first.
+    /// The triangle with the edge: 0 for the first.
     pub(super) of: usize,
     /// The corners at the ends of the edge.
     pub(super) edge: [usize; 2],
@@ -37,11 +37,11 @@ pub(super) struct End {
 /// A point that two triangles have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Spot {
-    /// A corner of one of them; where corners coincide that of the first.
+    /// A corner of one of them; of coincident corners, the first triangle's.
     Corner(usize, usize),
     /// An edge of one goes through the inside of the other.
     Through(End),
-    /// An edge of the first and one of the second cross, by the corners in which these start.
+    /// An edge of the first and one of the second cross; given by the corners where these start.
     Edges(usize, usize),
 }
 
@@ -50,19 +50,18 @@ pub(super) enum Spot {
 pub(super) struct Stretch {
     /// The ends.
     pub(super) ends: [Spot; 2],
-    /// The edge that it is part of where the triangles lie in one plane: of which triangle, and the
-    /// corner in which it starts.
+    /// For triangles in one plane, the edge that contains it: its triangle, and the corner where it starts.
     pub(super) along: Option<(usize, usize)>,
 }
 
-/// What two triangles have in common that touch, or cross in corners or edges.
+/// The intersection of two triangles that touch, or cross in corners or edges.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Touching {
-    /// For each triangle the sides of the other's plane on which its corners lie.
+    /// For each triangle, the sides of the other's plane on which its corners lie.
     pub(super) sides: [[Side; 3]; 2],
     /// The points at which an edge or a corner of one meets the other.
     pub(super) spots: SmallVec<[Spot; 6]>,
-    /// The segments: one at most, but for triangles in one plane.
+    /// The segments: one at most, except for triangles in one plane.
     pub(super) stretches: SmallVec<[Stretch; 6]>,
     /// True if the triangles have an area in common.
     pub(super) overlap: bool,
@@ -117,7 +116,7 @@ fn is_apart(sides: [Side; 3]) -> bool {
     sides[0] != Side::On && sides[1] == sides[0] && sides[2] == sides[0]
 }
 
-/// The edge at which a triangle's border leaves a side, from the corner on that side.
+/// The edge at which a triangle's border leaves a side; starts on that side.
 fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     let next = |i: usize| (i + 1) % 3;
     let leaves = |i: &usize| sides[*i] == side && sides[next(*i)] != side;
@@ -125,8 +124,8 @@ fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     [i, next(i)]
 }
 
-/// The contact of triangles of which each has corners strictly on both sides of the other's plane;
-/// `None` if an edge meets an edge.
+/// The contact of triangles that each have corners strictly on both sides of the other's plane; `None` if
+/// two edges meet.
 fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> Option<Contact> {
     let [end, start] = leaving(ours, Side::Plus);
     let (f_first, f_last) = (leaving(ours, Side::Minus), [start, end]);
@@ -151,7 +150,7 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> O
     Some(Contact::Crossing(ends))
 }
 
-/// What triangles in different planes have in common.
+/// The intersection of triangles in different planes.
 fn across(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
     let mut found = Touching::new(both);
     for (of, t, other) in [(0, f, g), (1, g, f)] {
@@ -183,7 +182,7 @@ fn add(spots: &mut SmallVec<[Spot; 6]>, spot: Spot) {
     }
 }
 
-/// A corner of a triangle; where it is one of the first triangle's corners, as that.
+/// A corner of a triangle; the first triangle's if they coincide.
 fn corner_spot<P: PartialEq>(of: usize, corner: usize, place: &P, others: &[P; 3]) -> Spot {
     match others.iter().position(|p| p == place).filter(|_| of == 1) {
         Some(twin) => Spot::Corner(0, twin),
@@ -191,8 +190,8 @@ fn corner_spot<P: PartialEq>(of: usize, corner: usize, place: &P, others: &[P; 3
     }
 }
 
-/// Where an edge that leads from one side of a triangle's plane to the other meets the triangle, but
-/// for its corners.
+/// The point where an edge from one side of a triangle's plane to the other meets the triangle, unless it
+/// is a corner.
 fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> Option<Spot> {
     let [p, q] = edge.map(|i| t[i]);
     let beside = |k: usize| side(&[p, q, other[k]], &other[(k + 1) % 3]);
@@ -209,7 +208,7 @@ fn spot_inside(of: usize, edge: [usize; 2], t: &Triangle, other: &Triangle) -> O
     }
 }
 
-/// Return whether a triangle holds a point of its plane.
+/// Return whether a triangle contains a point of its plane.
 fn holds(g: &Facing, p: &Point) -> bool {
     let axis = g.main_axis();
     let corners = seen_along(g.triangle(), axis);
@@ -218,7 +217,7 @@ fn holds(g: &Facing, p: &Point) -> bool {
     (0..3).all(|i| turn([corners[i], corners[(i + 1) % 3], at]) != -turned)
 }
 
-/// What triangles in one plane have in common.
+/// The intersection of triangles in one plane.
 fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     let axis = f.main_axis();
     let both = [f, g].map(|t| seen_along(t.triangle(), axis));
@@ -248,7 +247,7 @@ fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     found
 }
 
-/// The corners of a triangle in the plane beside the edges of another one.
+/// The turns from the edges of one triangle to the corners of another in its plane.
 struct Beside {
     /// By edge and corner: negative outside.
     turns: [[Sign; 3]; 3],
@@ -270,7 +269,7 @@ impl Beside {
         self.turns.contains(&[Sign::Negative; 3])
     }
 
-    /// Return whether nothing of one is strictly inside the other, as an edge shows.
+    /// Return whether an edge separates the triangles' interiors.
     fn is_outside(&self) -> bool {
         self.turns.iter().any(|t| !t.contains(&Sign::Positive))
     }
@@ -286,7 +285,7 @@ impl Beside {
     }
 }
 
-/// The ends of what an edge of one triangle has in common with the other one, in one plane.
+/// The ends of the intersection of an edge of one triangle with the other one, in one plane.
 fn spots_along(
     of: usize,
     edge: usize,
@@ -333,7 +332,7 @@ mod tests {
 
     #[test]
     fn triangles_that_cross_have_a_segment_with_the_back_on_its_left() {
-        // The normal points to smaller x, so that larger ones are behind: left of the way to -y.
+        // The normal points to smaller x, so larger x is behind: on the left of the direction -y.
         let wall = [[2, 1, -4], [2, 1, 4], [2, 3, 1]];
         let Contact::Crossing([from, to]) = contact(&of(FLOOR), &of(wall)) else {
             panic!("they cross");
@@ -383,7 +382,7 @@ mod tests {
         }
     }
 
-    /// A spot in words that do not depend on which triangle comes first.
+    /// A name for a spot that is independent of the order of the triangles.
     fn name(spot: Spot, pair: [&[[i32; 3]; 3]; 2]) -> Vec<[i32; 3]> {
         let edge = |of: usize, i: usize, j: usize| {
             let mut ends = [pair[of][i], pair[of][j]];
@@ -401,7 +400,7 @@ mod tests {
         }
     }
 
-    /// All triangles in a small cube, some of them: what they have in common does not depend on their order.
+    /// A sample of all triangles in a small cube: their intersection does not depend on their order.
     #[test]
     fn common_points_are_named_alike_from_both_sides() {
         let place = |k: i32| [k % 3, k / 3 % 3, k / 9 % 3];

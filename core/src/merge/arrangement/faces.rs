@@ -1,4 +1,4 @@
-//! The arrangement in one face: the cells into which the surfaces that meet it divide it.
+//! The arrangement in one face: the cells into which other faces divide it.
 
 use std::sync::Arc;
 
@@ -25,16 +25,16 @@ use crate::mesh::handle::VertexId;
 pub(super) struct Shared<'a> {
     pub(super) surfaces: &'a Surfaces<'a>,
     pub(super) points: &'a [Point],
-    /// The places of the points.
+    /// The exact points.
     pub(super) vertices: Vec<Arc<Vertex>>,
-    /// The planes of the faces that are divided.
+    /// The planes of the divided faces.
     pub(super) planes: Planes,
 }
 
 /// The planes of faces.
 pub(super) type Planes = HashMap<u32, Arc<Plane>>;
 
-/// A face that is divided, and what divides it.
+/// A face to divide, and what divides it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Face<'a> {
     pub(super) number: u32,
@@ -54,16 +54,16 @@ pub(super) struct Arrangement<'a> {
     pub(super) cells: Vec<CellNumbers>,
 }
 
-/// The winding numbers around a cell: of the other operand, or of the mesh that is compared with itself.
+/// The winding numbers around a cell: of the other operand, or of the mesh itself if compared with itself.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CellNumbers {
-    /// By how much the number in front exceeds that in front of the first cell.
+    /// The number in front, minus the number in front of the first cell.
     pub(super) in_front: i32,
-    /// By how much the number behind exceeds that in front, but for the face itself.
+    /// The number behind minus the number in front, without the face itself.
     pub(super) behind: i32,
-    /// The number of other faces in the same plane that have the cell, too.
+    /// How many other faces in the same plane cover the cell.
     pub(super) covers: u32,
-    /// True if one of these comes before the face.
+    /// Whether one of these comes before the face.
     pub(super) is_of_earlier: bool,
 }
 
@@ -71,7 +71,7 @@ impl<'a> Arrangement<'a> {
     /// The arrangement in a face.
     ///
     /// # Errors
-    /// `Defect` if a segment leaves the face: there is a defect.
+    /// `Defect` if a segment leaves the face.
     pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Declined> {
         let mut made = Self {
             division: divided(&face, shared)?,
@@ -83,12 +83,12 @@ impl<'a> Arrangement<'a> {
         Ok(made)
     }
 
-    /// At a corner of the face by how much the number in front exceeds that in front of the first cell.
+    /// The number in front at a corner of the face, minus the number in front of the first cell.
     pub(super) fn at_corner(&self, corner: u32) -> i32 {
         self.cells[self.division.cell_at_corner(corner as usize)].in_front
     }
 
-    /// A cell, and the number that is counted at a point inside it.
+    /// A cell, and the number counted at a point inside it.
     pub(super) fn counted(
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
@@ -108,8 +108,8 @@ impl<'a> Arrangement<'a> {
         numbers.into_iter().map(cell).collect()
     }
 
-    /// By how much the number in front of a cell exceeds that across an edge: what lies on the left of a
-    /// segment is behind the other face.
+    /// The number in front of a cell, minus the number across an edge: the left of a segment is behind the
+    /// other face.
     fn change(&self, cell: usize, edge: usize) -> i32 {
         let change = |(segment, is_along): (usize, bool)| match self.face.segments[segment].line {
             Line::Directed | Line::Touching { in_front: true, .. } => {
@@ -124,7 +124,7 @@ impl<'a> Arrangement<'a> {
         self.division.along_edge(cell, edge).map(change).sum()
     }
 
-    /// Notes which cells other faces have, too, that lie in the same plane.
+    /// Notes which cells are covered by other faces in the same plane.
     fn cover(&mut self, shared: &Shared) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
@@ -133,7 +133,7 @@ impl<'a> Arrangement<'a> {
             let outer =
                 [0, 1, 2].map(|i| Plane::beside_edge(&corners[i], &corners[(i + 1) % 3], axis));
             let turn = LatticeEdge::new(corners[0], corners[1]).sign_beside(&corners[2], axis);
-            // The third corner lies inside, and so does all on its side of the first edge.
+            // The third corner is inside, and so is its side of the first edge.
             let is_same = (turn == Sign::Negative) == is_up;
             let outside = Side::from_sign(-turn);
             for cell in 0..self.cells.len() {
@@ -174,7 +174,7 @@ fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
     Ok(division)
 }
 
-/// The number that is counted at a point inside a face; `None` if it is too thin.
+/// The number counted at a point inside a face; `None` if it is too thin.
 pub(super) fn counted_in_face(
     corners: &[Lattice; 3],
     plane: &Arc<Plane>,
@@ -185,8 +185,8 @@ pub(super) fn counted_in_face(
     counted(&mut face, plane, count).map(|(_, number)| number)
 }
 
-/// A cell and the number that is counted at a point inside it; the widest cells are tried first, and
-/// several points of each: another surface may touch the cell in one of them.
+/// A cell and the number counted at a point inside it. Tries the widest cells first, and several points of
+/// each: another surface may touch the cell in one of them.
 fn counted(
     cells: &mut Triangulation,
     plane: &Arc<Plane>,
@@ -224,7 +224,7 @@ fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
     }
 }
 
-/// The ends of a segment in the order in which what lies on its left is on the minus side of its cut.
+/// The ends of a segment, ordered so that its left is on the minus side of its cut.
 fn directed(
     cells: &mut Triangulation,
     [from, to]: [u32; 2],
@@ -249,7 +249,7 @@ fn directed(
     }
 }
 
-/// The places of a face's points in its triangulation, by their numbers.
+/// A face's points in its triangulation, by number.
 struct Places(SmallVec<[(u32, u32); 16]>);
 
 impl Places {
@@ -274,7 +274,7 @@ fn insert(division: &mut Division, face: &Face, shared: &Shared) -> Result<Place
 }
 
 impl Face<'_> {
-    /// Where a point lies on the face, as far as its name tells.
+    /// A point's spot on the face, as far as its name tells.
     fn spot(&self, point: &Point) -> Spot {
         let side = |(operand, ends): &(usize, [VertexId; 2])| {
             let is_it = |i: &usize| {

@@ -1,4 +1,4 @@
-//! What stays of faces, by the winding numbers in front of them and behind.
+//! Which faces stay, by the winding numbers in front of and behind them.
 
 use super::faces::CellNumbers;
 use crate::geometry::side::Orientation;
@@ -6,22 +6,22 @@ use crate::merge::expression::Expression;
 use crate::merge::profile::Declined;
 use crate::merge::rule::Rule;
 
-/// The orientation in which faces stay, by the numbers of the mesh that they are compared with.
+/// The orientation in which faces stay, by the numbers of the mesh they are compared with.
 #[derive(Debug)]
 pub(super) enum Kept {
-    /// Of two operands, by the other one's numbers.
+    /// For two operands, by the other one's numbers.
     Pair(Pair),
-    /// Of a mesh that is compared with itself, by its own numbers.
+    /// For a mesh compared with itself, by its own numbers.
     Alone(Rule),
 }
 
-/// What stays of two operands.
+/// Which faces of two operands stay.
 #[derive(Debug)]
 pub(super) struct Pair {
-    /// By operand, by whether the other one holds what is in front of a face, and what is behind. Of
-    /// faces in one plane it is the owner that stays.
+    /// By operand, and by whether the front and the back of a face are inside the other one. Of faces in
+    /// one plane, only the owner's stays.
     of: [[[Option<Orientation>; 2]; 2]; 2],
-    /// The value outside of both operands.
+    /// The value outside both operands.
     outside: bool,
 }
 
@@ -56,18 +56,18 @@ impl Pair {
     }
 }
 
-/// The orientation of a face between what is in front of it and what is behind.
+/// The orientation of a face, by whether its front and its back are inside.
 fn between(in_front: bool, behind: bool) -> Option<Orientation> {
     (behind != in_front).then(|| Orientation::turned_around(in_front))
 }
 
 impl Kept {
-    /// What stays in the value of an expression over two operands.
+    /// The rule for the value of an expression over two operands.
     pub(super) fn of(expression: &Expression) -> Self {
         Self::Pair(Pair::of(expression))
     }
 
-    /// The value far away.
+    /// The value far outside.
     pub(super) fn outside(&self) -> bool {
         match self {
             Self::Pair(pair) => pair.outside,
@@ -75,7 +75,7 @@ impl Kept {
         }
     }
 
-    /// Return whether it depends on numbers what stays of an operand's faces.
+    /// Return whether the fate of an operand's faces depends on winding numbers.
     pub(super) fn is_divided(&self, operand: usize) -> bool {
         match self {
             Self::Pair(Pair { of, .. }) => {
@@ -86,10 +86,10 @@ impl Kept {
         }
     }
 
-    /// The orientation in which a face stays that no other one covers, by the number in front of it.
+    /// The orientation in which an uncovered face stays, by the number in front of it.
     ///
     /// # Errors
-    /// `Overlap` where the other operand winds around the place neither once nor not at all.
+    /// `Overlap` where the other operand's winding number is neither 0 nor 1.
     pub(super) fn at(
         &self,
         operand: usize,
@@ -101,7 +101,7 @@ impl Kept {
         }
     }
 
-    /// The same for a cell of a face, by the number in front of the face's first cell.
+    /// The orientation for a cell of a face, given the number in front of the face's first cell.
     ///
     /// # Errors
     /// As for [`Self::at`], and where two faces of the other operand cover the cell.

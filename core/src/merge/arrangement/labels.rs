@@ -1,7 +1,7 @@
 //! The winding numbers of each operand around the vertices of the other.
 //!
-//! A number is the same at all corners of a face that nothing cuts, and known in its differences where
-//! something does. So one question settles all vertices that hang together.
+//! The number is the same at all corners of an undivided face; for divided faces the differences are known.
+//! So one count settles all connected vertices.
 
 use std::cmp::Ordering;
 
@@ -18,26 +18,25 @@ use crate::interrupt::poll;
 use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 
-/// The winding numbers around the vertices of one mesh, as far as they are known: classes of vertices
-/// with the differences between them.
+/// The winding numbers around the vertices of one mesh, as far as known: classes of vertices with
+/// differences in between.
 #[derive(Debug)]
 pub(super) struct Labels<'a> {
     of: Operand<'a>,
-    /// The number of the operand that winds around it.
+    /// The operand whose winding numbers these are.
     around: usize,
     windings: Windings<'a>,
     parents: Vec<u32>,
-    /// By how much the number at a vertex exceeds that at its parent.
+    /// The number at each vertex, minus the number at its parent.
     above: Vec<i32>,
     /// The number at the root of a class.
     known: Vec<Option<i32>>,
-    /// By vertex, whether it lies on the other operand; empty if none does.
+    /// For each vertex, whether it lies on the other operand; empty if none does.
     touching: &'a [bool],
 }
 
 impl<'a> Labels<'a> {
-    /// The numbers around the vertices of one operand of another one, given by its number: nothing is
-    /// known.
+    /// Numbers of another operand, given with its index, around the vertices of one; none is known yet.
     pub(super) fn new(
         of: Operand<'a>,
         (around, operand): (usize, Operand<'a>),
@@ -55,7 +54,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// The root of a vertex's class, and by how much the number at the vertex exceeds that there.
+    /// The root of a vertex's class, and the number at the vertex minus the root's.
     fn root(&mut self, vertex: VertexId) -> (usize, i32) {
         let (mut at, mut sum) = (vertex.place(), 0);
         loop {
@@ -63,7 +62,7 @@ impl<'a> Labels<'a> {
             if parent == at {
                 return (at, sum);
             }
-            // Each second vertex on the way becomes a child of its parent's parent; a root has nothing above.
+            // Path halving: each second vertex gets its parent's parent. At a root `above` is zero.
             self.above[at] += self.above[parent];
             self.parents[at] = self.parents[parent];
             sum += self.above[at];
@@ -71,16 +70,16 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// Notes by how much the number at one vertex exceeds that at another.
+    /// Notes the number at `a` minus the number at `b`.
     ///
     /// # Errors
-    /// `Overlap` if that contradicts what is known: the mesh that is wound around overlaps itself.
+    /// `Overlap` on a contradiction: the mesh that is wound around overlaps itself.
     pub(super) fn join(&mut self, a: VertexId, b: VertexId, more: i32) -> Result<(), Declined> {
         let (of_a, of_b) = (self.root(a), self.root(b));
         self.join_roots(of_a, of_b, more).map(|_| ())
     }
 
-    /// Notes that the number is the same at all corners of a face that do not lie on the other operand.
+    /// Notes that the number is equal at all corners of a face that do not lie on the other operand.
     ///
     /// # Errors
     /// As for [`Self::join`].
@@ -96,7 +95,7 @@ impl<'a> Labels<'a> {
         }
         let [a, b, c] = corners.map(|v| self.root(v));
         let joined = self.join_roots(a, b, 0)?;
-        // What was c's root may be the root that has just got a parent.
+        // The old root of c may be the one that just got a parent.
         let c = if c.0 == a.0 || c.0 == b.0 {
             self.root(corners[2])
         } else {
@@ -105,12 +104,12 @@ impl<'a> Labels<'a> {
         self.join_roots(joined, c, 0).map(|_| ())
     }
 
-    /// Return whether a vertex lies on the other operand: then no number is that around it.
+    /// Return whether a vertex lies on the other operand, where its number is undefined.
     pub(super) fn is_touching(&self, vertex: VertexId) -> bool {
         self.touching.get(vertex.place()).is_some_and(|t| *t)
     }
 
-    /// Notes the differences between the numbers at the corners of a face that was divided.
+    /// Notes the differences between the numbers at the corners of a divided face.
     ///
     /// # Errors
     /// As for [`Self::join`].
@@ -125,7 +124,7 @@ impl<'a> Labels<'a> {
     /// The number in front of the first cell of a face.
     ///
     /// # Errors
-    /// `Thin` if that is not known at a corner, and all cells are too thin to count it.
+    /// `Thin` if no corner has a known number, and all cells are too thin to count it.
     pub(super) fn in_front_of(&mut self, face: &mut Arrangement) -> Result<i32, Declined> {
         let mut corners = (0..).zip(face.face.vertices);
         match corners.find(|(_, v)| !self.is_touching(*v)) {
@@ -142,21 +141,20 @@ impl<'a> Labels<'a> {
         Ok(number - face.cells[cell].in_front)
     }
 
-    /// The number at the corners of a face that nothing divides; `None` if all lie on other faces.
+    /// The number at the corners of an undivided face; `None` if all lie on other faces.
     pub(super) fn at_corners(&mut self, corners: [VertexId; 3]) -> Option<i32> {
         let free = corners.into_iter().find(|v| !self.is_touching(*v));
         free.map(|vertex| self.at(vertex))
     }
 
-    /// Joins two classes, given as roots and what vertices have above them; returns that of the first
-    /// vertex.
+    /// Joins two classes, given as roots and differences to them; returns the first vertex's.
     fn join_roots(
         &mut self,
         (a, above_a): (usize, i32),
         (b, above_b): (usize, i32),
         more: i32,
     ) -> Result<(usize, i32), Declined> {
-        // The number at a's root is that at b's root and this.
+        // The number at a's root is the number at b's root plus this.
         let between = above_b + more - above_a;
         match a.cmp(&b) {
             Ordering::Equal if between != 0 => Err(Declined::Overlap(self.around)),
@@ -174,7 +172,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// Notes the vertices outside of the box around the other operand: their number is zero.
+    /// Notes the vertices outside the box around the other operand, where the number is zero.
     pub(super) fn note_beyond(&mut self) {
         for (vertex, place) in VertexId::all().zip(&self.of.mesh.vertices) {
             poll();
@@ -185,7 +183,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// The number at a vertex; for the first of its class it is counted.
+    /// The number at a vertex; counts it for the first of its class.
     pub(super) fn at(&mut self, vertex: VertexId) -> i32 {
         let (root, above) = self.root(vertex);
         if let Some(known) = self.known[root] {
@@ -199,7 +197,7 @@ impl<'a> Labels<'a> {
     /// Counts the number in front of the widest face of each class.
     ///
     /// # Errors
-    /// `Thin` if one is too thin for it.
+    /// `Thin` if a face is too thin for that.
     pub(super) fn note_widest<'b>(
         &mut self,
         arranged: &mut [Arrangement],
@@ -237,7 +235,7 @@ impl<'a> Labels<'a> {
         Ok(())
     }
 
-    /// The number in front of a face that nothing divides, counted along a ray.
+    /// The number in front of an undivided face, counted along a ray.
     fn in_front_of_whole(&mut self, face: FaceId) -> Result<i32, Declined> {
         let plane = self.of.source.plane(face);
         let count = |probe: &Probe| self.windings.in_front(&plane, probe);
@@ -252,7 +250,7 @@ enum Widest {
     Divided(usize),
 }
 
-/// The square of a triangle's area, about.
+/// Roughly the square of a triangle's area.
 fn width([a, b, c]: &Triangle) -> f64 {
     let (u, v) = (each_axis(|i| b[i] - a[i]), each_axis(|i| c[i] - a[i]));
     let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];

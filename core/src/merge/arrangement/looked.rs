@@ -1,4 +1,4 @@
-//! Quick looks at pairs of faces: most share a vertex or lie beyond each other's planes.
+//! Quick tests of pairs of faces: most share a vertex or lie beyond each other's planes.
 
 use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
@@ -11,7 +11,7 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
-/// A face prepared for quick looks at pairs.
+/// A face prepared for quick tests of pairs.
 pub(super) struct Looked {
     vertices: [VertexId; 3],
     low: Lattice,
@@ -24,9 +24,9 @@ pub(super) struct Looked {
     size: f64,
     /// True if the face has area.
     has_area: bool,
-    /// The corners, whose coordinates doubles hold.
+    /// The corners, whose coordinates are exact in doubles.
     doubles: Triangle,
-    /// The terrain to which the face belongs, or `NONE`.
+    /// The terrain of the face, or `NONE`.
     piece: u32,
 }
 
@@ -56,7 +56,7 @@ impl Looked {
         }
     }
 
-    /// Return whether two faces certainly have nothing in common but shared corners and edges.
+    /// Return whether two faces certainly share only corners and edges.
     pub(super) fn is_clear_of(&self, other: &Self) -> bool {
         if (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return true;
@@ -93,31 +93,29 @@ impl Looked {
         other.doubles.map(|p| p == *a || p == *b || p == *c)
     }
 
-    /// Return whether two faces certainly have nothing but points in common. Surfaces cross along
-    /// lines, so points make no overlap.
+    /// Return whether two faces certainly share only points. Surfaces cross along lines, so points are no
+    /// overlap.
     fn meets_in_points(&self, other: &Self) -> bool {
         let exact = || meeting(&self.doubles, &other.doubles) == Meeting::Clear;
         self.has_area && other.has_area && exact()
     }
 
-    /// Return whether two faces with a common edge have nothing else in common, for sure.
+    /// Return whether two faces with a common edge certainly share nothing else.
     fn meets_in_edges(&self, other: &Self) -> bool {
         let meets = || meeting(&self.doubles, &other.doubles);
         let are_clear = || matches!(meets(), Meeting::Clear | Meeting::Edges(..));
         self.has_area && other.has_area && are_clear()
     }
 
-    /// Return whether more than two faces may meet in the common edge: surfaces can cross there
-    /// although no two faces do. An edge whose ends are other vertices of the same places has two
-    /// faces of its own.
+    /// Return whether more than two faces may meet in the common edge: surfaces can cross there although no
+    /// two faces do. An edge between other vertices at the same places has two faces of its own.
     fn shares_irregular_edge(&self, other: &Self) -> bool {
         let common = || (0..3).filter(|i| other.doubles.contains(&self.doubles[*i]));
         let is_twin = |i: usize| !other.vertices.contains(&self.vertices[i]);
         common().any(is_twin) || common().all(|i| self.irregular[i])
     }
 
-    /// Return whether the other face's corners that are not shared lie strictly on one side of this
-    /// plane.
+    /// Return whether the other face's unshared corners lie strictly on one side of this plane.
     fn has_beyond(&self, other: &Self, shared: [bool; 3]) -> bool {
         let corners = other.doubles.iter().zip(shared);
         let mut sides = corners.filter(|c| !c.1).map(|(p, _)| self.side(p));
@@ -127,8 +125,7 @@ impl Looked {
         first.is_certain() && sides.all(|s| s == first)
     }
 
-    /// Return whether two faces with a common edge clearly lie in different planes, or flat beside
-    /// each other.
+    /// Return whether two faces with a common edge clearly lie in different planes, or side by side in one.
     fn folds_away(&self, other: &Self) -> bool {
         let apex = other.doubles.iter().find(|p| !self.doubles.contains(p));
         let cosine: f64 = (0..3).map(|i| self.normal[i] * other.normal[i]).sum();
@@ -137,7 +134,7 @@ impl Looked {
             || (cosine > bound && self.runs_against(other))
     }
 
-    /// Return whether some edge of one face is an edge of the other, run backwards.
+    /// Return whether an edge of one face is the reverse of an edge of the other.
     fn runs_against(&self, other: &Self) -> bool {
         let edge = |c: &Triangle, i: usize| (c[i], c[(i + 1) % 3]);
         (0..3).any(|i| {
@@ -146,7 +143,7 @@ impl Looked {
         })
     }
 
-    /// The side of the face's plane on which a point lies, where doubles tell it.
+    /// The side of the face's plane on which a point lies, where doubles decide it.
     fn side(&self, p: &Point) -> Filtered<Side> {
         let w = difference(p, &self.doubles[0]);
         let value: f64 = (0..3).map(|i| self.normal[i] * w[i]).sum();
@@ -156,7 +153,7 @@ impl Looked {
     }
 }
 
-/// a − b, rounded once at most: the difference may have 54 bits.
+/// a − b, rounded at most once: the difference may have 54 bits.
 fn difference(a: &Point, b: &Point) -> [f64; 3] {
     each_axis(|i| a[i] - b[i])
 }
@@ -165,7 +162,7 @@ fn difference(a: &Point, b: &Point) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Faces over these corners, which a shear draws out: volumes and planes in common stay.
+    /// Faces over these corners, elongated by a shear: volumes and common planes stay.
     fn sheared(corners: &[Lattice], faces: &[[u32; 3]]) -> Vec<Looked> {
         let shear = |[x, y, z]: Lattice| [x + (y << 22) + (z << 43), y + (z << 22), z];
         let mesh = TriangleMesh {

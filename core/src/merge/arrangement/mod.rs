@@ -1,9 +1,9 @@
-//! Arrangements: each face is cut once, by all that meets it.
+//! Arrangements: each face is cut once, by everything that meets it.
 //!
-//! The stages, each in a file of its own: faces that may meet (`pair` with `probe`, `occupancy` and
-//! `candidates`; `alone`), pairs of them whose boxes meet (`boxes`), what they have in common (`contact`,
-//! `segments`), the cells into which that divides a face (`faces`), winding numbers
-//! (`labels`), and the leaf that lists what stays (`kept`, `scene`).
+//! The stages, each in its own file: faces that may meet (`pair` with `probe`, `occupancy` and
+//! `candidates`; `alone`), pairs of faces whose boxes meet (`boxes`), their intersections (`contact`,
+//! `segments`), the cells into which these divide a face (`faces`), winding numbers (`labels`), and the
+//! leaf of the faces that stay (`kept`, `scene`).
 
 mod alone;
 mod boxes;
@@ -27,9 +27,9 @@ mod windings;
 pub use alone::{is_simple_mesh, united, United};
 pub use pair::{arranged, Arranged};
 
-/// Faces in one box that are worth waking a pool: they take some milliseconds.
+/// The number of faces in one box that is worth waking a pool: they take some milliseconds.
 pub const POOL: usize = 4096;
 
-/// Pairs for each face beyond which faces are crowded: boxes do not tell them apart, and the descent
-/// divides space instead.
+/// The number of pairs for each face beyond which faces are crowded: boxes do not separate them, and the
+/// descent divides space instead.
 const PAIRS_FOR_EACH: usize = 24;

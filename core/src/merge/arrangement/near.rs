@@ -1,5 +1,5 @@
-//! The pairs of faces of one mesh that may overlap: boxes find pairs that are near each other, and a
-//! quick look at each tells nearly all of them clear.
+//! The pairs of faces of one mesh that may overlap: boxes find near pairs, and a quick test clears most of
+//! them.
 
 use rustc_hash::FxHashMap as HashMap;
 
@@ -19,38 +19,38 @@ use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
-/// Pairs that are looked at together, by several threads where there are any.
+/// The number of pairs tested together, by several threads if there are any.
 const BATCH: usize = 8 * CHUNK;
 
-/// As many are looked at first where the search may end; then twice as many each time.
+/// The first batch of a search that may end early; the batch then doubles each time.
 const FIRST_BATCH: usize = 256;
 
-/// A mesh as quick looks at its faces need it.
+/// A mesh prepared for quick tests of its faces.
 pub(super) struct View<'a> {
     mesh: &'a TriangleMesh,
-    /// By vertex, whether surfaces may meet there that pairs of faces do not show.
+    /// For each vertex, whether surfaces may meet there in ways that pairs of faces do not show.
     irregular: &'a [bool],
-    /// By face, its terrain.
+    /// The terrain of each face.
     terrains: Vec<u32>,
-    /// The lowest corner of a box around all vertices.
+    /// The lowest corner of the box around all vertices.
     origin: Lattice,
-    /// By how many bits the steps are coarser in which boxes are compared.
+    /// The number of low bits dropped for comparing boxes.
     shift: u32,
 }
 
 /// The pairs of some faces.
 #[derive(Debug)]
 pub(super) enum Pairs {
-    /// Those that may have more in common than corners and edges, each once, ascending.
+    /// The pairs that may share more than corners and edges, each once, ascending.
     Few(Vec<[u32; 2]>),
-    /// They are many.
+    /// There are too many.
     Many,
-    /// Two faces certainly overlap; no others were looked for.
+    /// Two faces certainly overlap; the search stopped there.
     Overlap,
 }
 
 impl<'a> View<'a> {
-    /// `None` of what is no mesh, or has no vertices.
+    /// `None` if it is not a mesh, or has no vertices.
     pub(super) fn new(source: &'a Source, irregular: &'a [bool]) -> Option<Self> {
         let mesh = source.mesh()?;
         let (origin, high) = mesh.bounds()?;
@@ -64,12 +64,12 @@ impl<'a> View<'a> {
         })
     }
 
-    /// The pairs among some faces, unless they are many.
+    /// The pairs among some faces, unless there are too many.
     pub(super) fn pairs(&self, faces: &[FaceId]) -> Pairs {
         self.search(faces, false)
     }
 
-    /// The pairs among some faces, unless they are many or two certainly overlap.
+    /// The pairs among some faces, unless there are too many or two faces certainly overlap.
     pub(super) fn pairs_unless_overlapping(&self, faces: &[FaceId]) -> Pairs {
         self.search(faces, true)
     }
@@ -109,13 +109,13 @@ impl<'a> View<'a> {
 }
 
 impl View<'_> {
-    /// A face prepared for quick looks.
+    /// A face prepared for quick tests.
     fn of(&self, face: FaceId) -> Looked {
         let terrain = self.terrains[face.place()];
         Looked::at(self.mesh, face, self.irregular, terrain)
     }
 
-    /// The party of a face: faces of one terrain are not compared with each other.
+    /// The party of a face: faces of one terrain are not compared.
     fn party(&self, face: FaceId) -> usize {
         match self.terrains[face.place()] {
             NONE => self.mesh.faces.len() + face.place(),
@@ -123,7 +123,7 @@ impl View<'_> {
         }
     }
 
-    /// The box around a face, measured from the origin.
+    /// The box around a face, relative to the origin.
     fn box_of(&self, face: FaceId) -> [Lattice; 2] {
         let (low, high) = self.mesh.face_box(face);
         [low, high].map(|end| each_axis(|i| end[i] - self.origin[i]))
@@ -145,12 +145,12 @@ impl View<'_> {
 struct Search<'a> {
     view: &'a View<'a>,
     until_overlap: bool,
-    /// So many pairs are looked at together: first few, if the search may end.
+    /// The number of pairs to test together; small at first if the search may end early.
     batch: usize,
-    /// Pairs that are near each other and were not looked at yet.
+    /// Near pairs, not tested yet.
     waiting: Vec<[FaceId; 2]>,
     found: Vec<[u32; 2]>,
-    /// True if two faces certainly overlap, which ended the search.
+    /// Whether two faces certainly overlap, which ended the search.
     overlap: bool,
 }
 
@@ -165,7 +165,7 @@ impl Search<'_> {
         self.look()
     }
 
-    /// Looks at the pairs that wait; `None` if the search ends.
+    /// Tests the waiting pairs; `None` if the search ends.
     fn look(&mut self) -> Option<()> {
         let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
         self.waiting.clear();
@@ -181,8 +181,7 @@ impl Search<'_> {
     }
 }
 
-/// For each face the number of its terrain; `NONE` where there is none, and where the mesh is not closed by
-/// index.
+/// The terrain of each face; `NONE` if it has none, or if the mesh is not closed by index.
 fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
     let all: Vec<u32> = (0..as_number(mesh.faces.len())).collect();
     if !source.open_vertices().is_empty() {
@@ -196,7 +195,7 @@ fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
     terrains(&faces, &all)
 }
 
-/// Those of some pairs that a quick look does not tell clear.
+/// The pairs that a quick test does not clear.
 fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
     let mut looks = Looks {
         view,
@@ -211,7 +210,7 @@ fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
     pairs.iter().filter(is_unclear).copied().collect()
 }
 
-/// The faces that were looked at: pairs that are found one after the other are of few faces.
+/// The prepared faces: pairs found in succession have few faces.
 struct Looks<'a> {
     view: &'a View<'a>,
     places: HashMap<FaceId, usize>,
@@ -219,7 +218,7 @@ struct Looks<'a> {
 }
 
 impl Looks<'_> {
-    /// The place of a face.
+    /// The index of a face.
     fn at(&mut self, face: FaceId) -> usize {
         *self.places.entry(face).or_insert_with(|| {
             self.looked.push(self.view.of(face));
@@ -269,7 +268,7 @@ mod tests {
         assert!(pairs_of(&boxes).is_none());
     }
 
-    /// Twice as many boxes in a row, each across the next, are twice as many pairs.
+    /// Twice as many boxes in a row, each crossing the next, have twice as many pairs.
     #[test]
     fn pairs_follow_what_overlaps() {
         let row = |count: i64| {

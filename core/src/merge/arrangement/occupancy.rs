@@ -1,21 +1,21 @@
-//! The cells of a coarse grid that faces reach into: faces of two meshes meet only where both do.
+//! A coarse grid of the cells that faces reach into: faces of two meshes meet only where both do.
 
 use super::boxes::Bounds;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::poll;
 
-/// Cells along each axis, at most: a row of them is one word.
+/// The most cells along each axis: a row of them is one word.
 const MOST_CELLS: usize = 64;
 
-/// With fewer cells along each axis hardly a face is told apart from others.
+/// Fewer cells along each axis would hardly separate any faces.
 const FEWEST_CELLS: usize = 8;
 
-/// Rows that marking may take for each face of both meshes: a row costs up to two hundred instructions,
-/// and a face that is left out of the search for pairs saves a thousand.
+/// The most rows to mark for each face of both meshes: a row costs up to two hundred instructions, and a
+/// face excluded from the search for pairs saves a thousand.
 const ROWS: usize = 8;
 
-/// A face that reaches through more cells than this on all axes is clipped to its plane.
+/// A face that extends over more cells than this on all axes is clipped to its plane.
 const BLOCK: usize = 2;
 
 /// The cells of a window that faces may reach into.
@@ -24,9 +24,9 @@ pub(super) struct Occupancy {
     /// Cells along each axis.
     cells: usize,
     low: Point,
-    /// Cells for each step of the lattice.
+    /// Cells per step of the lattice.
     scale: Point,
-    /// For each row along the first axis the bits of its cells; empty if all count as occupied.
+    /// The bits of the cells in each row along the first axis; empty if all count as occupied.
     rows: Vec<u64>,
 }
 
@@ -37,12 +37,12 @@ type Cells = [[usize; 2]; 3];
 struct Plane {
     corner: Point,
     normal: Point,
-    /// By how much the value at a point of the window may be off.
+    /// A bound on the error of its value at a point of the window.
     error: f64,
 }
 
 impl Occupancy {
-    /// The cells that faces with these boxes around them reach into; `faces` are compared in all.
+    /// The cells that faces with these boxes reach into, for comparing `faces` in all.
     pub(super) fn of(
         window: &[Point; 2],
         boxes: &[Bounds],
@@ -67,7 +67,7 @@ impl Occupancy {
         made
     }
 
-    /// A grid as fine as so many faces pay for: a large face reaches into as many rows as there are.
+    /// A grid as fine as this many faces pay for: a large face may reach into all rows.
     fn new(window: &[Point; 2], faces: usize) -> Self {
         let mut cells = MOST_CELLS;
         while cells >= FEWEST_CELLS && 2 * cells * cells > faces {
@@ -88,7 +88,7 @@ impl Occupancy {
         }
     }
 
-    /// Marks the cells of a box, or those of them that a plane may meet.
+    /// Marks the cells of a box, or only those that a plane may meet.
     fn mark(&mut self, around: &Cells, plane: Option<&Plane>) {
         poll();
         let [x, y, z] = *around;
@@ -104,8 +104,8 @@ impl Occupancy {
         }
     }
 
-    /// The cells of a row that a plane may meet: a cell's middle is no farther from the plane than the
-    /// cell's corners are from the middle.
+    /// The cells of a row that a plane may meet: along its normal, a cell's centre is no farther from it
+    /// than from a corner.
     fn met(
         &self,
         plane: &Plane,
@@ -126,7 +126,7 @@ impl Occupancy {
         let at = |value: f64| (value / n[0] - middle(0, 0)) * self.scale[0];
         let ends = [at(-value - reach), at(-value + reach)];
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        // One cell more on each side: division may round across a cell's border.
+        // One more cell on each side: division may round across a cell's border.
         let (low, high) = (
             self.clamped(low - 1.0).max(first),
             self.clamped(high + 2.0).min(last),
@@ -150,13 +150,13 @@ impl Occupancy {
 
     /// The cells that a box reaches into.
     ///
-    /// The same rounding takes all numbers to cells, and keeps their order: boxes that meet share a cell.
+    /// The same rounding maps all numbers to cells and keeps their order: boxes that meet share a cell.
     fn cells(&self, bounds: &Bounds) -> Cells {
         let cell = |x: f32, i: usize| self.clamped((f64::from(x) - self.low[i]) * self.scale[i]);
         each_axis(|i| [cell(bounds.low[i], i), cell(bounds.high[i], i)])
     }
 
-    /// The cell at a coordinate, or the one at the grid's end.
+    /// The cell at a coordinate, clamped to the grid.
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -179,13 +179,13 @@ impl Plane {
         Self {
             corner: *a,
             normal: minors.map(|(p, q)| p - q),
-            // Some ten roundings, each below an epsilon of the sizes.
+            // About ten roundings, each below an epsilon of the sizes.
             error: 16.0 * f64::EPSILON * size * reach,
         }
     }
 }
 
-/// The bits of the cells from one to another.
+/// The bits of a range of cells.
 fn mask([first, last]: [usize; 2]) -> u64 {
     (u64::MAX >> (MOST_CELLS - 1 - (last - first))) << first
 }
@@ -201,7 +201,7 @@ mod tests {
         f64::from(k.wrapping_mul(2_654_435_761) >> 20) / 4096.0
     }
 
-    /// A triangle somewhere in the window, and a little out of it.
+    /// A triangle in the window or slightly outside.
     fn triangle(k: u32, size: f64) -> Triangle {
         let at = |c: u32, i: usize| next(12 * k + 3 * c + as_number(i));
         [1, 2, 3]

@@ -1,4 +1,4 @@
-//! Two meshes as they were given: which of their faces may meet.
+//! Two unchanged meshes: which of their faces may meet.
 
 use super::candidates::{Candidates, Operand, Within};
 use super::kept::Kept;
@@ -19,19 +19,19 @@ use crate::mesh::tasks::{both, Worth};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
-/// What two operands leave, and how many faces were compared.
+/// The result of two operands, and how many faces were compared.
 #[derive(Debug)]
 pub struct Arranged {
     /// The root of the result.
     pub root: Branch,
-    /// The faces in the box that the operands have in common.
+    /// The number of faces in the intersection of both boxes.
     pub compared: usize,
 }
 
-/// The value of an expression over two meshes as they were given; notes its stages.
+/// The value of an expression over two unchanged meshes; records its stages.
 ///
 /// # Errors
-/// The reason for which it is left to the descent.
+/// The reason why it leaves the work to the descent.
 pub fn arranged(
     expression: &Expression,
     solids: &[Solid],
@@ -65,7 +65,7 @@ pub fn arranged(
     Ok(Arranged { root, compared })
 }
 
-/// The number of elements that a leaf lists.
+/// The number of elements in a leaf.
 pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
     match root.as_ref().map(|branch| &*branch.node) {
         Ok(Node::Deferred(leaf)) => leaf.len(),
@@ -99,12 +99,12 @@ fn near(operands: &[Operand; 2], window: &[Point; 2], worth: Worth) -> Result<Ne
     Ok(Near { within, candidates })
 }
 
-/// A value for each operand, made at the same time where that pays.
+/// A value for each operand, computed in parallel where that pays.
 fn for_both<T: Send>(worth: Worth, value: impl Fn(usize) -> T + Sync) -> [T; 2] {
     both(worth, || value(0), || value(1)).into()
 }
 
-/// The operands, if they are two different meshes as they were given.
+/// The operands, if they are two different unchanged meshes.
 fn operands<'a>(
     expression: &Expression,
     solids: &'a [Solid],
@@ -122,7 +122,7 @@ fn operands<'a>(
     (are_in_order && expression.operands() == [0, 1]).then_some(operands)
 }
 
-/// The box that two boxes have in common.
+/// The intersection of two boxes.
 fn window([[low, high], [others_low, others_high]]: [[Lattice; 2]; 2]) -> Option<[Point; 2]> {
     let low = each_axis(|i| low[i].max(others_low[i]));
     let high = each_axis(|i| high[i].min(others_high[i]));
@@ -140,7 +140,7 @@ mod tests {
         Sources::new(solids.iter().flat_map(|s| s.sources().iter()).collect())
     }
 
-    /// The number of whole faces and of parts that an arrangement leaves.
+    /// The number of whole faces and of parts in the result of an arrangement.
     fn counts(solids: &[Solid; 2], term: fn(Vec<u32>) -> Term) -> Option<[usize; 2]> {
         let sources = sources(solids);
         let expression = expression_of_both(term);

@@ -1,7 +1,7 @@
-//! A look at a few faces: whether the two meshes touch or are crowded all over.
+//! A sample of faces, to detect meshes that touch or are crowded all over.
 //!
-//! Copies of a mesh, or its revisions, touch nearly everywhere, and bundles of needles meet nearly all
-//! others by their boxes. The arrangement would find that out only after most of its work.
+//! Copies of a mesh, or its revisions, touch nearly everywhere, and in bundles of needles nearly all boxes
+//! meet. The arrangement would find this out only after most of its work.
 
 use super::candidates::{Operand, Within};
 use super::contact::{contact, Contact};
@@ -9,19 +9,19 @@ use crate::geometry::doubles::Facing;
 use crate::interrupt::spend;
 use crate::merge::profile::Declined;
 
-/// Faces that are compared with all faces of the other mesh.
+/// The number of faces compared with all faces of the other mesh.
 const SAMPLE: usize = 16;
 
-/// With fewer faces than this all the work costs less than a look is worth.
+/// With fewer faces than this, all the work costs less than a sample is worth.
 const WORTH_A_LOOK: usize = 256;
 
-/// Faces of the other mesh that a box meets, on average, in a crowd; of real meshes it meets about twenty.
+/// In a crowd a box meets this many faces of the other mesh on average; in real meshes about twenty.
 const CROWD: usize = 128;
 
-/// Looks at some faces of the first mesh.
+/// Samples faces of the first mesh.
 ///
 /// # Errors
-/// `AllOver` if one of them touches another face, `Crowded` if boxes do not tell faces apart.
+/// `AllOver` if one of them touches another face, `Crowded` if boxes do not separate faces.
 pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
     let [first, second] = within;
     if first.faces.len().min(second.faces.len()) < WORTH_A_LOOK {

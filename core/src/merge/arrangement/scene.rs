@@ -1,4 +1,4 @@
-//! What stays of meshes, given where their faces meet.
+//! What stays of meshes, from the contacts of their faces.
 
 use std::sync::Arc;
 
@@ -20,14 +20,14 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 
-/// Work that is handed to other threads at once.
+/// The number of items in a task for other threads.
 const TASK: usize = 32;
 
-/// Two meshes, or one that is compared with itself.
+/// Two meshes, or one compared with itself.
 #[derive(Debug)]
 pub(super) struct Scene<'a> {
     pub(super) surfaces: Surfaces<'a>,
-    /// For each operand the faces that others may lie in front of.
+    /// For each operand, the faces that may have others in front of them.
     pub(super) near: Vec<Vec<FaceId>>,
     /// The cell of the result.
     pub(super) cell: Cell,
@@ -35,11 +35,11 @@ pub(super) struct Scene<'a> {
     pub(super) worth: Worth,
 }
 
-/// What becomes of a face.
+/// The fate of a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fate {
     Gone,
-    /// It stays as it is; true if it touches others.
+    /// It stays unchanged; true if it touches others.
     Whole(Orientation, bool),
     Cut,
 }
@@ -57,17 +57,17 @@ impl Fate {
     }
 }
 
-/// What stays of a face that was arranged: all of it one way, or a part each way.
+/// What stays of an arranged face: all of it in one orientation, or a part in each.
 enum Left {
     Whole(Option<Orientation>),
     Parts([Option<PartElement>; 2]),
 }
 
 impl<'a> Scene<'a> {
-    /// The leaf of all that stays, given where faces meet.
+    /// The leaf of everything that stays, from the contacts of faces.
     ///
     /// # Errors
-    /// The reason for which the faces do not show what stays.
+    /// The reason why the faces do not determine the result.
     pub(super) fn root(&self, found: &Contacts) -> Result<Branch, Declined> {
         let shared = self.shared(found);
         let mut leaf = Deferred {
@@ -92,7 +92,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The points and planes of all that meets.
+    /// The points and planes of all contacts.
     fn shared<'b>(&'b self, found: &'b Contacts) -> Shared<'b> {
         let planes = self.planes(found);
         let blocks = found.points.chunks(TASK).collect();
@@ -124,7 +124,7 @@ impl<'a> Scene<'a> {
         faces.into_iter().zip(planes.concat()).collect()
     }
 
-    /// The faces that others divide or cover, and those of which all corners lie on others; ascending.
+    /// The faces that others divide or cover, and faces whose corners all lie on others; ascending.
     fn arranged_faces(&self, found: &Contacts) -> Vec<u32> {
         let segments = found.segments.iter().map(|s| s.face);
         let covered = found.covers.iter().map(|c| c.face);
@@ -155,7 +155,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// The arrangements in all faces of an operand that meet the other one.
+    /// The arrangements in all faces of an operand that meet the other.
     fn arrangements<'b>(
         &self,
         operand: usize,
@@ -189,7 +189,7 @@ impl<'a> Scene<'a> {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// What stays of an operand: whole faces, and parts of those that are divided.
+    /// What stays of an operand: whole faces, and parts of divided ones.
     fn left(
         &self,
         operand: usize,
@@ -218,7 +218,7 @@ impl<'a> Scene<'a> {
         Ok((self.groups(operand, &fates), parts))
     }
 
-    /// Decides the faces of an operand that may have others around them, but for those that were arranged.
+    /// Decides the faces of an operand near others, except arranged ones.
     fn decide(
         &self,
         operand: usize,
@@ -298,7 +298,7 @@ impl<'a> Scene<'a> {
         groups
     }
 
-    /// The parts that stay of an operand's faces that were arranged, in the order of a leaf.
+    /// The parts that stay of an operand's arranged faces, in the order of a leaf.
     fn parts(
         &self,
         operand: usize,
@@ -338,7 +338,7 @@ impl<'a> Scene<'a> {
         Ok(parts.concat())
     }
 
-    /// What stays of a face, given the number in front of its first cell.
+    /// What stays of a face, from the number in front of its first cell.
     fn left_of(
         &self,
         operand: usize,
@@ -367,7 +367,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Those of some sorted rows that are of a face.
+/// The rows of a face, among sorted rows.
 fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     let first = rows.partition_point(|row| of(row) < face);
     let count = rows[first..]
@@ -377,7 +377,7 @@ fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     &rows[first..first + count]
 }
 
-/// The point in which two edges cross.
+/// The crossing of two edges.
 fn crossing(first: &LatticeEdge, second: &LatticeEdge) -> Vertex {
     let ((a, b), (c, d)) = (first.ends(), second.ends());
     let place = each_axis(|i| a[i] + d[i] - c[i]);

@@ -1,4 +1,4 @@
-//! The segments in which faces meet, and the points at their ends.
+//! The segments in which faces meet, and their end points.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -17,13 +17,13 @@ use crate::merge::profile::Declined;
 use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 
-/// Pairs of one operand that are looked at together.
+/// The number of pairs of one operand tested together.
 const BLOCK: usize = 1 << 9;
 
-/// An edge: the operand, and its ends there, the lower number first.
+/// An edge: the operand, and its end vertices there, the lower first.
 pub(super) type Edge = (usize, [VertexId; 2]);
 
-/// A point in which faces meet, by what goes through it.
+/// A point in which faces meet, by what contains it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Point {
     /// A corner of a face.
@@ -34,7 +34,7 @@ pub(super) enum Point {
     Edges([Edge; 2]),
 }
 
-/// A segment that a face has in common with another one.
+/// A segment shared by a face and another one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     /// The face.
@@ -50,19 +50,18 @@ pub(super) struct Segment {
 /// The line of a segment in a face.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Line {
-    /// That of both planes, directed so that in front of the face what is behind the other face lies on
-    /// its left.
+    /// The line of both planes, directed so that, in front of the face, its left is behind the other face.
     Directed,
-    /// That of both planes.
+    /// The line of both planes.
     Touching {
-        /// A corner of the face that does not lie on it.
+        /// A corner of the face off the line.
         corner: usize,
         /// The side of the other face's plane on which that corner lies.
         side: Side,
-        /// True if something of the other face lies in front of the face.
+        /// Whether some of the other face lies in front of the face.
         in_front: bool,
     },
-    /// An edge of the other face, which lies in the same plane, by the corner in which it starts.
+    /// An edge of the other face, which lies in the same plane; given by its first corner.
     Edge(usize),
 }
 
@@ -75,19 +74,19 @@ pub(super) struct Cover {
     pub(super) other: u32,
 }
 
-/// Where faces meet.
+/// The contacts of faces.
 #[derive(Debug, Default)]
 pub(super) struct Contacts {
-    /// The points, each once for what goes through it.
+    /// The points, each once per name.
     pub(super) points: Vec<Point>,
-    /// The segments, those of a face one after the other.
+    /// The segments, grouped by face.
     pub(super) segments: Vec<Segment>,
-    /// Faces in one plane, both ways, ascending.
+    /// Pairs of faces in one plane, both ways, ascending.
     pub(super) covers: Vec<Cover>,
-    /// Faces that touch others other than by crossing them; ascending.
+    /// Faces that touch others without crossing them; ascending.
     pub(super) touched: Vec<u32>,
-    /// For each operand, by vertex, whether other faces than those that have it as a corner may reach it;
-    /// empty if none do.
+    /// For each operand and vertex, whether faces without that corner may reach it; empty if there are
+    /// none.
     pub(super) touching: [Vec<bool>; 2],
     numbers: HashMap<Point, u32>,
 }
@@ -103,7 +102,7 @@ enum How {
     Touching(Box<Touching>),
 }
 
-/// Where the candidates of two operands meet.
+/// The contacts of the candidates of two operands.
 ///
 /// # Errors
 /// `Crowded` if they are crowded.
@@ -125,7 +124,7 @@ pub(super) fn contacts_of(
     Ok(Contacts::new(surfaces, met))
 }
 
-/// Where faces of one operand meet, of some pairs of them.
+/// The contacts of the given pairs of faces of one operand.
 pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Worth) -> Contacts {
     let blocks = pairs.chunks(BLOCK).collect();
     let operand = &surfaces.operands[0];
@@ -156,12 +155,12 @@ fn met([ours, theirs]: [&dyn Fn(u32) -> Triangle; 2], pairs: &[[u32; 2]], second
 }
 
 impl Contacts {
-    /// The number of segments in all faces.
+    /// The number of segments over all faces.
     pub(super) fn len(&self) -> usize {
         self.segments.len()
     }
 
-    /// Counts some vertices of the first operand as touching.
+    /// Marks some vertices of the first operand as touching.
     pub(super) fn touching_at(mut self, some: &[bool]) -> Self {
         self.touching[0].resize(some.len(), false);
         for (touches, more) in self.touching[0].iter_mut().zip(some) {
@@ -247,7 +246,7 @@ impl Contacts {
         }
     }
 
-    /// Notes the vertices at a point: other faces reach them.
+    /// Marks the vertices at a point: other faces reach them.
     fn note_corners(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) {
         let Spot::Corner(of, corner) = spot else {
             return;
@@ -263,7 +262,7 @@ impl Contacts {
         }
     }
 
-    /// The number of a point: all faces that meet there find it.
+    /// The number of a point, the same for all faces that meet there.
     fn point(&mut self, surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> u32 {
         let edge = |of: usize, ends: [usize; 2]| {
             let corners = surfaces.vertices(pair[of]);
@@ -295,8 +294,7 @@ impl Contacts {
     }
 }
 
-/// Return whether a point is a corner of two faces by the number of its vertex: faces of one operand hang
-/// together there.
+/// Return whether a point is one vertex of both faces by number: faces of one operand are connected there.
 fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> bool {
     let Spot::Corner(of, corner) = spot else {
         return false;
@@ -307,8 +305,8 @@ fn is_common_vertex(surfaces: &Surfaces, pair: [u32; 2], spot: Spot) -> bool {
     is_one && surfaces.vertices(others).contains(&vertex)
 }
 
-/// The line in which the planes of two faces meet, as one of them has it, by the sides of the other's
-/// plane on which corners lie.
+/// The common line of two faces' planes as one of them sees it, by the sides of the other's plane on which
+/// corners lie.
 fn line(ours: &[Side], theirs: &[Side]) -> Line {
     let corner = ours.iter().position(|s| *s != Side::On).unwrap_or(0);
     Line::Touching {

@@ -1,4 +1,4 @@
-//! The shells of a mesh: its faces by what hangs together.
+//! The shells of a mesh: its connected components.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
-/// Faces that hang together by vertices, ascending.
+/// Faces connected by vertices, ascending.
 #[derive(Debug, Default)]
 pub(super) struct Shell {
     pub(super) faces: Vec<FaceId>,
@@ -66,7 +66,7 @@ pub(super) fn shells(mesh: &TriangleMesh) -> Vec<Shell> {
     shells
 }
 
-/// The shells without those that repeat an earlier one: its faces, in their order.
+/// The shells except those that repeat an earlier one with the same faces in the same order.
 pub(super) fn distinct(mesh: &TriangleMesh, shells: Vec<Shell>) -> Vec<Shell> {
     let mut seen: HashSet<Vec<[Lattice; 3]>> = HashSet::default();
     let mut is_first = |shell: &Shell| {
@@ -76,7 +76,7 @@ pub(super) fn distinct(mesh: &TriangleMesh, shells: Vec<Shell>) -> Vec<Shell> {
     shells.into_iter().filter(|s| is_first(s)).collect()
 }
 
-/// The root of a class; each second one on the way becomes a child of its parent's parent.
+/// The root of a class; halves the path to it.
 fn root(parents: &mut [usize], mut at: usize) -> usize {
     while parents[at] != at {
         parents[at] = parents[parents[at]];
@@ -85,7 +85,7 @@ fn root(parents: &mut [usize], mut at: usize) -> usize {
     at
 }
 
-/// Return whether faces enclose more inside than outside.
+/// Return whether the volume that faces enclose is positive.
 pub(super) fn is_outward(mesh: &TriangleMesh, faces: &[FaceId]) -> bool {
     let mut volume = Int::<4>::ZERO;
     for face in faces {

@@ -1,18 +1,17 @@
-//! The test whether a closed mesh is star-shaped: a point sees all its faces from behind, each
-//! once.
+//! Tests whether a closed mesh is star-shaped: a point sees all its faces from behind, each once.
 //!
-//! Let a point lie strictly behind the planes of all faces. Seen from there, each face covers its
-//! part of the sphere of directions once, and all turn the same way. The surface has no border, so
-//! as many faces cover one side of an edge as the other. Hence a ray from the point meets the same
-//! number of faces in every direction, if it meets no edge. If one ray meets a single face, all do:
-//! no two faces overlap or cross, and the winding number is 1 up to them and 0 beyond.
+//! Let a point lie strictly behind the planes of all faces. Seen from there, each face covers its part of
+//! the sphere of directions once, and all turn the same way. The surface has no border, so both sides of an
+//! edge are covered by the same number of faces. Hence a ray from the point meets the same number of faces
+//! in every direction, if it meets no edge. If one ray meets a single face, all do: no two faces overlap or
+//! cross, and the winding number is 1 up to them and 0 beyond.
 //!
-//! All convex meshes are star-shaped about the mean of their vertices, but for slivers whose mean
-//! is rounded out of them, however their flat sides are divided.
+//! All convex meshes are star-shaped about the mean of their vertices, however their flat sides are
+//! divided, except slivers whose mean is rounded out of them.
 //!
 //! # Source
 //! Mehlhorn, Näher, Seel, Seidel, Schilz, Schirra, Uhrig: *Checking geometric programs or
-//! verification of geometric structures*, 1999. The ray tells one covering from several.
+//! verification of geometric structures*, 1999. The ray distinguishes one covering from several.
 
 use crate::arith::bounds::REACH;
 use crate::arith::Sign;
@@ -64,8 +63,8 @@ fn is_ahead([a, b, c]: &[Lattice; 3]) -> bool {
 
 /// Return whether all corners lie on one side of the origin along an axis.
 ///
-/// No line across the axis near the origin meets such a face. Signs follow one another in no order
-/// that a processor could guess, so their bits are combined without a branch.
+/// No line along the axis near the origin meets such a face. The signs are unpredictable, so their bits are
+/// combined without a branch.
 fn is_beside(corners: &[Lattice; 3], axis: usize) -> bool {
     let [a, b, c] = corners.map(|corner| corner[axis]);
     (a & b & c | -a & -b & -c) < 0
@@ -87,7 +86,7 @@ mod tests {
         }
     }
 
-    /// Double cones over a ring: an edge of the ring ends `step` corners on.
+    /// Double cones over a ring whose edges span `step` corners.
     fn cone(ring: u32, step: u32) -> TriangleMesh {
         let corner = |i: u32| {
             let turn = f64::from(i) * std::f64::consts::TAU / f64::from(ring);
@@ -147,7 +146,7 @@ mod tests {
         }
     }
 
-    /// Convex at every edge and around the eye, but wound twice or thrice around two vertices.
+    /// Convex at every edge and around the eye, but winding two or three times around two vertices.
     #[test]
     fn surfaces_that_wind_around_the_eye_more_than_once_are_not() {
         assert!(!is_star_shaped(&cone(7, 2)));

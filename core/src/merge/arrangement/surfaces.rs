@@ -1,12 +1,11 @@
-//! The faces of all operands that may meet others, in one numbering.
+//! The faces of all operands that may meet others, numbered together.
 
 use super::candidates::Operand;
 use crate::arith::convert::as_number;
 use crate::geometry::plane::Lattice;
 use crate::mesh::handle::{FaceId, VertexId};
 
-/// One operand or two, and the faces of them that may meet others: those of the first, then those of the
-/// second.
+/// One operand or two, and their faces that may meet others: the first operand's, then the second's.
 #[derive(Debug)]
 pub(super) struct Surfaces<'a> {
     pub(super) operands: Vec<Operand<'a>>,
@@ -31,12 +30,12 @@ impl<'a> Surfaces<'a> {
         first..first + as_number(self.faces[operand].len())
     }
 
-    /// The operand that a face is of.
+    /// The operand of a face.
     pub(super) fn operand_of(&self, face: u32) -> usize {
         usize::from(face >= self.second)
     }
 
-    /// The place of a face among its operand's candidates.
+    /// The index of a face among its operand's candidates.
     fn local(&self, face: u32) -> usize {
         (if face < self.second {
             face
@@ -45,27 +44,27 @@ impl<'a> Surfaces<'a> {
         }) as usize
     }
 
-    /// The mesh that a face is of.
+    /// The mesh of a face.
     pub(super) fn operand(&self, face: u32) -> &Operand<'a> {
         &self.operands[self.operand_of(face)]
     }
 
-    /// A face as its mesh numbers it.
+    /// The number of a face in its mesh.
     pub(super) fn id(&self, face: u32) -> FaceId {
         self.faces[self.operand_of(face)][self.local(face)]
     }
 
-    /// The vertices at a face's corners.
+    /// The vertices of a face.
     pub(super) fn vertices(&self, face: u32) -> [VertexId; 3] {
         self.operand(face).mesh.vertices_of(self.id(face))
     }
 
-    /// The places of a face's corners.
+    /// The lattice points of a face's corners.
     pub(super) fn corners(&self, face: u32) -> [Lattice; 3] {
         self.operand(face).mesh.corners(self.id(face))
     }
 
-    /// The place of a corner of a face.
+    /// The lattice point of a corner of a face.
     pub(super) fn place(&self, face: u32, corner: usize) -> Lattice {
         self.operand(face).mesh.vertices[self.vertices(face)[corner].place()]
     }

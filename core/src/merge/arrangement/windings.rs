@@ -12,7 +12,7 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::crossing::{triangle_change, Segment};
 
-/// A point of a face's plane, and the half steps that it lies above as seen along the plane's main axis.
+/// A point of a face's plane, and its projection along the plane's main axis in half steps.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     pub(super) point: Arc<Vertex>,
@@ -20,7 +20,8 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// The point of a plane above half steps; `None` if the plane is parallel to the main axis: never.
+    /// The point of a plane above half steps; `None` if the plane is parallel to its main axis, which never
+    /// happens.
     pub(super) fn above(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
         let axis = plane.main_axis();
         let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
@@ -29,7 +30,7 @@ impl Probe {
     }
 }
 
-/// How often a mesh winds around points: its faces by their places, once somebody asks.
+/// Winding numbers of a mesh around points; indexes its faces on first use.
 #[derive(Debug)]
 pub(super) struct Windings<'a> {
     operand: Operand<'a>,
@@ -75,7 +76,7 @@ impl<'a> Windings<'a> {
     }
 
     /// The winding number in front of a plane at a point of it; `None` if a face in another plane touches
-    /// the plane there.
+    /// this plane there.
     pub(super) fn in_front(&mut self, plane: &Plane, probe: &Probe) -> Option<i32> {
         let Probe { point, doubled } = probe;
         let Operand { mesh, bounds, .. } = self.operand;
@@ -102,7 +103,7 @@ impl<'a> Windings<'a> {
             let Some(other) = Plane::through(a, b, c) else {
                 return;
             };
-            // Upwards the number grows where the way leads from in front of the face to behind it.
+            // Upwards the number grows where the ray passes from in front of the face to behind it.
             let is_above = match point.side_of(&other) {
                 Side::On => {
                     touches |= other.coincides(plane).is_none();

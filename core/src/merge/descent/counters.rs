@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::merge::profile::Profile;
 
-/// Counts of what an evaluation did.
+/// Counts of the work of an evaluation.
 ///
 /// # Example
 /// ```
@@ -30,22 +30,22 @@ use crate::merge::profile::Profile;
 /// ```
 #[derive(Debug, Default)]
 pub struct Counters {
-    /// Cells visited.
+    /// Visited cells.
     pub cells: AtomicU64,
     /// Faces sorted into bins.
     pub binned: AtomicU64,
-    /// Elements of lists that were halved, once for each halving.
+    /// Elements of halved lists, once for each halving.
     pub halved: AtomicU64,
-    /// Cells worked on by the leaf kernel.
+    /// Cells solved by leaf kernels.
     pub leaves: AtomicU64,
-    /// Elements in these.
+    /// Elements in these cells.
     pub leaf_elements: AtomicU64,
     /// The stages of the evaluation, once it has ended.
     pub profile: Profile,
 }
 
 impl Counters {
-    /// Adds what another descent did.
+    /// Adds the counts of another descent.
     pub(super) fn add(&self, other: &Self) {
         let pairs = [
             (&self.cells, &other.cells),
@@ -59,25 +59,25 @@ impl Counters {
         }
     }
 
-    /// The same with the stages of the evaluation.
+    /// The same counts, with the stages of the evaluation.
     #[must_use]
     pub(in crate::merge) fn with(self, profile: Profile) -> Self {
         Self { profile, ..self }
     }
 
-    /// Counts a cell that a kernel took, and its elements.
+    /// Counts a cell solved by a kernel, and its elements.
     pub(in crate::merge) fn count_leaf(&self, elements: usize) {
         self.leaves.fetch_add(1, Ordering::Relaxed);
         self.leaf_elements
             .fetch_add(elements as u64, Ordering::Relaxed);
     }
 
-    /// The number of elements in cells that kernels took.
+    /// The number of elements in cells solved by kernels.
     pub fn taken(&self) -> u64 {
         self.leaf_elements.load(Ordering::Relaxed)
     }
 
-    /// The number of cells that were visited.
+    /// The number of visited cells.
     pub(in crate::merge) fn visited(&self) -> usize {
         usize::try_from(self.cells.load(Ordering::Relaxed)).unwrap_or(usize::MAX)
     }

@@ -1,8 +1,8 @@
-//! One descent for a whole expression: operands are folded away cell by cell.
+//! One descent for a whole expression: operands drop out cell by cell.
 //!
 //! # Source
-//! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended). The
-//! page `docs/design/descent.md` tells the whole way.
+//! Naylor, Amanatides, Thibault 1990 (merging: a leaf decides, a common cut is descended). The page
+//! `docs/design/descent.md` describes the algorithm.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::Arc;
@@ -29,11 +29,11 @@ use crate::merge::rule::Rule;
 use crate::mesh::tasks::{both, in_pool, Worth};
 use crate::tree::node::Branch;
 
-/// The end of a descent before all its cells are done.
+/// Why a descent ended before all its cells were done.
 pub(super) enum End {
     /// It failed.
     Failed(Error),
-    /// This operand overlaps itself, and is to be united with itself first.
+    /// This operand overlaps itself, and has to be united with itself first.
     Overlap(u32),
     /// Cancelled: an earlier sibling ended the descent.
     Cancelled,
@@ -45,10 +45,10 @@ impl From<Error> for End {
     }
 }
 
-/// The result in a cell, or the end of the descent.
+/// The result in a cell, or the reason for the end of the descent.
 pub(super) type Visited = std::result::Result<Branch, End>;
 
-/// Two results, made at the same time where that pays; nothing begins after an end before it.
+/// Two results, computed in parallel where that pays; the second is cancelled if the first ended before.
 pub(super) fn both_in_turn(
     worth: Worth,
     first: impl FnOnce() -> Visited + Send,
@@ -70,25 +70,24 @@ pub(super) fn both_in_turn(
     Ok((first?, second?))
 }
 
-/// The data that all cells of an evaluation share.
+/// The data shared by all cells of an evaluation.
 #[derive(Debug)]
 pub struct Descent<'a> {
     /// The sources of all operands.
     pub sources: &'a Sources,
-    /// The rule by which winding numbers of an operand are inside.
+    /// The rule for which winding numbers of an operand are inside.
     pub rule: Rule,
-    /// True if a single operand's boundary is taken as it is, false if it is made the reduced
-    /// boundary.
+    /// Whether to take a single operand's boundary unchanged instead of making it the reduced boundary.
     pub share: bool,
-    /// The counters of what was done.
+    /// Counts of the work.
     pub counters: Counters,
-    /// For each operand whether a visited cell showed that it overlaps itself, or that what it made
-    /// together with others does.
+    /// For each operand, whether a visited cell showed that it overlaps itself, or that the result of a
+    /// group with it does.
     pub overlaps: Vec<AtomicBool>,
-    /// The operands that are united with themselves, and all evaluated again, if they overlap
-    /// themselves.
+    /// The operands to unite with themselves if they overlap themselves, before everything is evaluated
+    /// again.
     pub doubted: Vec<usize>,
-    /// True if the first of these that is seen to overlap itself ends the descent.
+    /// Whether the first of these found to overlap itself ends the descent.
     impatient: bool,
 }
 
@@ -106,8 +105,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// The same, given the operands that are united with themselves if they overlap themselves, and
-    /// whether the first of these that is seen to do so, in the order of the cells, ends the descent.
+    /// The same, with the operands to unite with themselves if they overlap themselves; `impatient` says
+    /// whether the first found in the order of cells ends the descent.
     #[must_use]
     pub fn doubting(self, doubted: Vec<usize>, impatient: bool) -> Self {
         Self {
@@ -117,16 +116,15 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Return whether all that is doubted is known to overlap itself: nothing more can be learnt, and
+    /// Return whether all doubted operands are known to overlap themselves: nothing more can be learnt, and
     /// the result is not used.
     fn is_moot(&self) -> bool {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
-        // What other threads saw must not end a part in which a first one is still to be seen.
+        // An impatient descent needs the first in cell order, whatever other threads found.
         !self.impatient && !self.doubted.is_empty() && self.doubted.iter().all(seen)
     }
 
-    /// The operands that a visited cell showed to overlap themselves, and those that others may have
-    /// overlapped for.
+    /// The operands found to overlap themselves in a visited cell, or to be in a group whose result does.
     pub fn overlapping(&self) -> Vec<usize> {
         let seen = |k: &usize| self.overlaps[*k].load(Ordering::Relaxed);
         (0..self.overlaps.len()).filter(seen).collect()
@@ -166,7 +164,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// The result of a descent that an operand has ended: what other threads saw depends on time.
+    /// The result of a descent ended by an operand; clears what other threads saw, which depends on timing.
     fn ended_by(&self, operand: u32, cell: Cell) -> Branch {
         for (k, seen) in (0..).zip(&self.overlaps) {
             seen.store(k == operand, Ordering::Relaxed);
@@ -181,7 +179,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// A cell below one in which several operands mattered.
+    /// A cell below one in which several operands matter.
     pub(super) fn cell(
         &self,
         cell: Cell,
@@ -236,7 +234,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Operands that are the same in a cell, unless each has to be looked at.
+    /// Operands that are equal in a cell, unless each must be examined.
     fn twins(&self, found: impl FnOnce() -> Option<Firsts>) -> Option<Firsts> {
         self.share.then(found).flatten()
     }
@@ -276,7 +274,7 @@ impl<'a> Descent<'a> {
         {
             return self.grouped(cell, parted, states, 0);
         }
-        // No level of bins suited these faces, so halving will not separate them either.
+        // No level of bins separated these faces, so halving will not either.
         let long = listed && opening >= BINS_FROM;
         if long || listed && stuck || round.suits_general_position(&states, total) {
             if let Some(branch) =
@@ -294,7 +292,7 @@ impl<'a> Descent<'a> {
         self.halves(cell, cut, &expression, states, round, total)
     }
 
-    /// The result in a cell from that in a smaller one around all operands' boundaries.
+    /// The result in a cell, from a smaller cell around all operands' boundaries.
     fn jump(
         &self,
         cell: Cell,
@@ -318,7 +316,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// The value of an expression in the rest of the cell around a smaller one with all boundaries.
+    /// The value of an expression in a cell outside a smaller one with all boundaries.
     fn value_beside(
         &self,
         cell: &Cell,
@@ -334,7 +332,7 @@ impl<'a> Descent<'a> {
         expression.value(outside, &mut Vec::new())
     }
 
-    /// Remembers that operands overlap themselves; the first that is doubted may end the descent.
+    /// Records that operands overlap themselves; the first doubted one may end the descent.
     pub(super) fn note_overlaps(&self, operands: &[u32]) -> std::result::Result<(), End> {
         for k in operands {
             self.overlaps[*k as usize].store(true, Ordering::Relaxed);
@@ -346,7 +344,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Remembers operands that wind around the cell's corner neither once nor not at all.
+    /// Records operands whose winding number at the cell's corner is neither 0 nor 1.
     fn note_corners(&self, states: &States) -> std::result::Result<(), End> {
         let winds = |s: &&(u32, State)| match &s.1 {
             State::List(list) => !(0..=1).contains(&list.corner),
@@ -356,7 +354,7 @@ impl<'a> Descent<'a> {
         self.note_overlaps(&found)
     }
 
-    /// The states with the leaves of this cell, of so many elements, opened.
+    /// The states with the leaves of this cell opened; `opening` is their number of elements.
     fn opened(&self, cell: &Cell, states: States, opening: usize) -> States {
         let open =
             |(k, state): (u32, State)| (k, state.opened(cell, self.sources, &self.counters.binned));
@@ -406,7 +404,7 @@ impl<'a> Descent<'a> {
         Ok(join::branch(cell, cut, minus, plus, self.sources))
     }
 
-    /// All operands' elements as lists of the cell, if they can be.
+    /// All operands' elements as lists of the cell, if possible.
     fn listed<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<Listed<'s>>> {
         let listed = |(number, state): &'s (u32, State)| {
             let (number, list) = (*number, state.list_in(cell, self.sources)?);
@@ -415,8 +413,8 @@ impl<'a> Descent<'a> {
         states.iter().map(listed).collect()
     }
 
-    /// Return what the first of some kernels that takes the cell leaves there; `None` if none does,
-    /// or an operand's elements cannot be listed.
+    /// Return the result of the first kernel that takes the cell; `None` if none does, or an operand's
+    /// elements cannot be listed.
     fn solved(
         &self,
         cell: Cell,
@@ -445,7 +443,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Return what the first of some kernels that takes the cell leaves of listed operands.
+    /// Return the result for listed operands of the first kernel that takes the cell.
     fn solved_by(
         &self,
         kernels: &[&dyn Kernel],
@@ -494,7 +492,7 @@ mod tests {
 
     #[test]
     fn what_is_far_apart_is_shared_and_costs_no_kernel() {
-        // More faces than a kernel takes at once.
+        // More faces than a kernel takes.
         let row = |first: i64| cuboids((0..4).map(|i| [1, 3].map(|c| [first + c + 4 * i; 3])));
         let solids = [row(0), row(64)];
         let (common, _) = run(&solids, Term::And);
@@ -521,7 +519,7 @@ mod tests {
 
     #[test]
     fn around_a_shared_corner_halving_soon_ends() {
-        // Above the apex halving only cuts off what is empty.
+        // Above the apex, halving only cuts off empty space.
         let cone = |width: f64, depth: f64| {
             let corner = |k: u32| {
                 let (y, x) = (std::f64::consts::TAU * f64::from(k) / 24.0).sin_cos();
@@ -536,7 +534,7 @@ mod tests {
 
     #[test]
     fn a_descent_ends_where_all_that_is_doubted_overlaps_itself() {
-        // Rows of boxes, of which two by two cross each other.
+        // Rows of boxes that cross each other in pairs.
         let pair = |low: Lattice| [0, 2].map(|by| [0, 5].map(|size| low.map(|x| x + by + size)));
         let row = |first: i64| cuboids((0..64).flat_map(|i| pair([first + 9 * i, first, first])));
         let solids = [row(0), row(1)];
@@ -553,7 +551,7 @@ mod tests {
 
     #[test]
     fn the_first_that_overlaps_itself_ends_an_impatient_descent() {
-        // Boxes that hold each other: no faces meet, and a corner of a cell tells.
+        // Nested boxes: no faces meet, and a corner of a cell decides.
         let nested = |first: i64| {
             let shells = (0..8).map(move |i| [[first + i; 3], [first + 99 - i; 3]]);
             cuboids(shells)

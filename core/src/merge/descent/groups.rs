@@ -1,5 +1,5 @@
-//! Operands in one place, evaluated in groups: what is left of a group's boundaries is less than all
-//! of them, and all of them cross each other.
+//! Operands in one place, evaluated in groups: the boundary of a group's result is smaller than all its
+//! operands' boundaries, which all cross each other.
 
 use std::sync::atomic::Ordering;
 use std::sync::Arc;
@@ -12,16 +12,16 @@ use crate::interrupt::poll;
 use crate::merge::expression::{Expression, Parted};
 use crate::tree::node::Branch;
 
-/// Groups of groups, at most: 2³² operands in halves, and as many levels of alternating operations.
+/// The most levels of groups: 2³² operands in halves, and as many levels of alternating operations.
 const DEEPEST: u32 = 64;
 
 impl Descent<'_> {
-    /// The expression as one of two others, if results of operations need not be reduced.
+    /// The expression split in two, if results of operations need not be reduced.
     pub(super) fn parted(&self, expression: &Expression) -> Option<Parted> {
         expression.parted().filter(|_| self.share)
     }
 
-    /// The result in a cell from those of two groups of operands.
+    /// The result in a cell from two groups of operands.
     pub(super) fn grouped(
         &self,
         cell: Cell,
@@ -46,7 +46,7 @@ impl Descent<'_> {
         self.united(cell, parted.whole, results.into(), [ours, theirs])
     }
 
-    /// The result in a cell where one operand after the other is taken, in a loop: there may be many.
+    /// The result in a cell, one operand after another; a loop, since there may be many.
     fn folded(&self, cell: Cell, mut parted: Parted, states: States, depth: u32) -> Visited {
         let mut first = states;
         let mut steps = Vec::new();
@@ -73,7 +73,7 @@ impl Descent<'_> {
         Ok(result)
     }
 
-    /// The result in a cell from the results of two groups of operands.
+    /// The result in a cell from two groups' results.
     fn united(
         &self,
         cell: Cell,

@@ -1,4 +1,4 @@
-//! Putting the two halves of a cell together again.
+//! Joining the two halves of a cell.
 
 use std::sync::Arc;
 
@@ -14,15 +14,15 @@ use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
-/// Two deferred leaves that together list at most this many faces become one.
+/// The most faces of two deferred leaves that are joined into one.
 ///
-/// Half the size at which leaves are worked on, so that a joined leaf is not split at once again.
+/// Half the size of cells that kernels take, so that a joined leaf is not split again at once.
 pub const JOINED: usize = 16;
 
 /// The branch for a cell from the branches for its halves.
 ///
-/// A half that is uniform is left out where what the other half has around its own cell is the same
-/// (path compression). It need not be: a face may lie in a slab between two uniform ones.
+/// Omits a uniform half if the other half has the same value around its own cell (path compression). It may
+/// differ: a face may lie in a slab between two uniform ones.
 pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sources) -> Branch {
     let fits = |w: i32, other: &Branch, half: Half| {
         other.cell == cell.half(cut, half) || is_same(w, other.outside)
@@ -41,10 +41,10 @@ pub fn branch(cell: Cell, cut: Cut, minus: Branch, plus: Branch, sources: &Sourc
     }
 }
 
-/// The branch for a cell that has `outside` around it.
+/// The branch for a cell with `outside` around it.
 ///
-/// What the branch at hand has around its own cell is the same, unless something unbounded crosses
-/// the border of both cells.
+/// The branch has the same value around its own cell, unless something unbounded crosses the border of both
+/// cells.
 pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
     let cut = cell
         .cut()
@@ -66,7 +66,7 @@ pub fn around(cell: Cell, branch: Branch, outside: i32) -> Branch {
     }
 }
 
-/// Return whether two winding numbers are on the same side.
+/// Return whether two winding numbers are both inside or both outside.
 fn is_same(w: i32, v: i32) -> bool {
     (w > 0) == (v > 0)
 }
@@ -81,7 +81,7 @@ fn divided(cell: Cell, minus: Branch, plus: Branch, joined: Option<Node>) -> Bra
     }
 }
 
-/// One deferred leaf for both halves, if they are small and hold whole faces only.
+/// One deferred leaf for both halves, if they are small and list only whole faces.
 fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Sources) -> Option<Node> {
     let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
     if a.len() + b.len() > 2 * JOINED {
@@ -127,7 +127,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
     }))
 }
 
-/// The winding number at the low corner of the cell that a branch stands for.
+/// The winding number at the low corner of the cell of a branch.
 fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
     if branch.cell.low() == cell.low() {
         branch.oriented(leaf.corner)
@@ -138,8 +138,8 @@ fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
 
 /// The change of the winding number from the cell's low corner to the plus half's.
 ///
-/// An operand taken as it is may count more than one inside where the leaf kernel says one: leaves
-/// that do not agree across the cut must not become one.
+/// An operand taken unchanged may have numbers above one where the leaf kernel says one: leaves that
+/// disagree across the cut must not be joined.
 fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
     let segment = Segment {
         from: cell.corner(),
@@ -195,7 +195,7 @@ impl Listed {
         })
     }
 
-    /// Return how much of the face's part in the cell the two leaves hold.
+    /// Return how much of the face's part in the cell the two leaves list.
     fn extent_in(&self, cell: &Cell, halves: &[(&Branch, &Deferred, Cell); 2]) -> Extent {
         let (low, high) = self.source.face_box(self.face);
         let holders: Vec<_> = halves

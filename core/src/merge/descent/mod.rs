@@ -1,5 +1,5 @@
-//! The descent: one walk through space for a whole expression, which divides cells until a kernel
-//! takes them, and puts the results together.
+//! The descent: one walk through space for a whole expression, which divides cells until a kernel takes
+//! them, and joins the results.
 
 pub mod choice;
 pub mod counters;

@@ -13,15 +13,15 @@ use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::mesh::tasks::Worth;
 use crate::tree::node::{Branch, Node};
 
-/// Cells of at least so many elements are worth a task of their own: a kernel takes some 20 µs for
-/// half as many, and a task costs less than one.
+/// The least number of elements of a cell that is worth a task: a kernel takes some 20 µs for half as many,
+/// and a task costs less than one.
 const TASK: usize = 64;
 
-/// Cells of at least so many elements are worth waking a pool, which takes some 50 µs: kernels alone
-/// take ten times as long.
+/// The least number of elements of a cell that is worth waking a pool, which takes some 50 µs: kernels
+/// alone take ten times as long.
 const POOL: usize = 256;
 
-/// The worth of sharing the work in a cell of so many elements.
+/// The worth of sharing the work in a cell with this many elements.
 pub const fn worth(elements: usize) -> Worth {
     match elements {
         ..TASK => Worth::Nothing,
@@ -30,22 +30,22 @@ pub const fn worth(elements: usize) -> Worth {
     }
 }
 
-/// Faces from which a deferred leaf is sorted into bins instead of being halved.
+/// The number of faces from which a deferred leaf is sorted into bins instead of being halved.
 pub const BINS_FROM: usize = 1024;
 
-/// Entries in a cell at which the bins give way to a list, at most.
+/// The most entries in a cell for which a list replaces the bins.
 const MAX_ENTRIES_LISTED: usize = 64;
 
-/// The state of an operand in a cell: what is known of it there.
+/// The state of an operand in a cell.
 #[derive(Clone, Debug)]
 pub enum State {
     /// One winding number.
     Constant(i32),
-    /// A subtree whose cell lies in the cell.
+    /// A subtree whose cell is inside the cell.
     Tree(Branch),
     /// The elements that meet the cell.
     List(List),
-    /// Many faces, of which those of the cell are found by its place.
+    /// Many faces, indexed by place.
     Bins(Arc<Bins>),
 }
 
@@ -59,7 +59,7 @@ pub fn find(states: &States, operand: u32) -> Option<&State> {
 }
 
 /// The smallest cell around all operands' boundaries, if it is smaller than `cell` and known without
-/// opening what is closed; around lists only on demand, since it looks at all their elements.
+/// opening leaves. Considers lists only on demand, since it visits all their elements.
 pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
     let mut inner: Option<Cell> = None;
     for (_, state) in states {
@@ -88,13 +88,13 @@ pub fn has_constant(states: &States) -> bool {
     states.iter().any(|s| matches!(s.1, State::Constant(_)))
 }
 
-/// Return whether an operand has boundary in the cell, as far as its list or its tree tells.
+/// Return whether an operand has boundary in the cell, as far as its list or tree shows.
 pub fn has_surface(states: &States) -> bool {
     states.iter().any(|s| s.1.has_surface())
 }
 
 impl State {
-    /// Return whether it has boundary in the cell, as far as its list or its tree tells.
+    /// Return whether it has boundary in the cell, as far as its list or tree shows.
     pub fn has_surface(&self) -> bool {
         match self {
             Self::Constant(_) => false,
@@ -104,7 +104,7 @@ impl State {
         }
     }
 
-    /// About how many elements it has in the cell.
+    /// The approximate number of its elements in the cell.
     pub fn len_in(&self, cell: &Cell) -> usize {
         match self {
             Self::Constant(_) => 0,
@@ -127,7 +127,7 @@ impl State {
         }
     }
 
-    /// Return whether it lists an operand's boundary as that was given.
+    /// Return whether it lists an operand's boundary unchanged.
     pub fn is_given(&self) -> bool {
         match self {
             Self::Constant(_) => false,
@@ -140,7 +140,7 @@ impl State {
         }
     }
 
-    /// Return whether all its boundary in the cell stands in one list.
+    /// Return whether all its boundary in the cell is in one list.
     pub fn is_undivided(&self) -> bool {
         match self {
             Self::List(_) => true,
@@ -149,7 +149,7 @@ impl State {
         }
     }
 
-    /// The number of elements in a deferred leaf of this very cell.
+    /// The number of elements in a deferred leaf of exactly this cell.
     pub fn len_to_open(&self, cell: &Cell) -> usize {
         match self {
             Self::Tree(branch) if branch.cell == *cell => match &*branch.node {
@@ -168,7 +168,7 @@ impl State {
         }
     }
 
-    /// Return whether all elements are known, and perpendicular to axes.
+    /// Return whether all elements are known and perpendicular to axes.
     pub fn is_orthogonal(&self, sources: &Sources) -> bool {
         match self {
             Self::List(list) => {
@@ -185,7 +185,7 @@ impl State {
         }
     }
 
-    /// The elements as a list of the cell, if nothing reaches out of the part they are listed for.
+    /// The elements as a list of the cell, if none extends beyond the part they are listed for.
     pub fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
         match self {
             Self::List(list) => Some(Cow::Borrowed(list)),
@@ -212,7 +212,7 @@ impl State {
         }
     }
 
-    /// The state with deferred leaves of this cell opened; counts the faces sorted into bins.
+    /// The state with deferred leaves of this cell opened; adds the faces sorted into `binned`.
     pub fn opened(self, cell: &Cell, sources: &Sources, binned: &AtomicU64) -> Self {
         match self {
             Self::Tree(branch) if branch.cell == *cell => opened_leaf(branch, sources, binned),
@@ -236,14 +236,14 @@ impl State {
         }
     }
 
-    /// Becomes the state in a smaller cell, given that no boundary meets the rest of the cell.
+    /// Restricts the state to a smaller cell; no boundary may meet the rest of the cell.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if let Self::List(list) = self {
             list.shrink(inner, sources);
         }
     }
 
-    /// This operand, perhaps turned inside out, as the result in the cell.
+    /// This operand as the result in the cell, complemented if `negate` is set.
     pub fn shared(self, cell: Cell, negate: bool, sources: &Sources) -> Branch {
         match self {
             Self::Constant(w) => Branch::uniform(cell, if negate { 1 - w } else { w }),
@@ -255,7 +255,7 @@ impl State {
     }
 }
 
-/// A box around the boundary of a branch: that of a few faces, or its cell.
+/// A box around the boundary of a branch: of its faces if they are few, else its cell.
 fn bounds_below(branch: &Branch) -> [Lattice; 2] {
     let whole = [*branch.cell.low(), branch.cell.high()];
     let Node::Deferred(leaf) = &*branch.node else {
@@ -270,7 +270,7 @@ fn bounds_below(branch: &Branch) -> [Lattice; 2] {
     }
 }
 
-/// A branch of the cell at hand; a deferred leaf becomes bins or a list.
+/// A branch for this cell, opened: a deferred leaf becomes bins or a list.
 fn opened_leaf(branch: Branch, sources: &Sources, binned: &AtomicU64) -> State {
     let Node::Deferred(leaf) = &*branch.node else {
         return State::Tree(branch);

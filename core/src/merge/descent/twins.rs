@@ -1,6 +1,6 @@
-//! Operands that are the same in a cell: one of them can stand for all.
+//! Operands that are equal in a cell: one of them can stand for all.
 //!
-//! Two revisions of a part differ in a few places, and so do a solid and the steps that led to it.
+//! Two revisions of a part differ in few places, and so do a solid and the steps that led to it.
 
 use std::hash::BuildHasher;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::tree::node::Part;
 pub struct Firsts(Vec<(u32, Twin)>);
 
 impl Firsts {
-    /// The twin of an operand; an operand without another is its own.
+    /// The twin of an operand; its own if it has no other.
     pub fn of(&self, operand: u32) -> Twin {
         let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
         at.map_or(itself(operand), |at| self.0[at].1)
@@ -33,7 +33,7 @@ impl Firsts {
     }
 }
 
-/// Return the twin of an operand that is none of another.
+/// Return an operand as its own twin.
 fn itself(operand: u32) -> Twin {
     Twin {
         first: operand,
@@ -41,11 +41,11 @@ fn itself(operand: u32) -> Twin {
     }
 }
 
-/// Subtrees that are compared in a cell, at most: more are hardly steps of one chain, and each would be
-/// looked up in each cell.
+/// The most subtrees to compare in a cell: more are rarely steps of one chain, and each costs a look-up in
+/// each cell.
 const MAX_SUBTREES_COMPARED: usize = 16;
 
-/// The operands whose subtrees in a cell are the same node; `None` if all differ, or they are many.
+/// The operands whose subtrees in a cell are the same node; `None` if all differ, or there are too many.
 ///
 /// # Cost
 /// A look at each operand.
@@ -68,11 +68,11 @@ pub fn of_one_node(states: &States) -> Option<Firsts> {
     Firsts::found(states.iter().map(pair).collect())
 }
 
-/// The operands whose lists have the same elements and the same number at the cell's corner; `None` if
-/// all differ.
+/// The operands whose lists have the same elements and the same number at the cell's corner; `None` if all
+/// differ.
 ///
 /// # Cost
-/// A pass over lists of equal length, and a sort of those that are equal.
+/// A pass over lists of equal length, and a sort of equal ones.
 pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<Firsts> {
     let size = |listed: &Listed| (listed.list.len(), listed.list.corner);
     let mut sizes: SmallVec<[_; 8]> = operands.iter().map(size).collect();
@@ -104,8 +104,7 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
     Firsts::found(own.zip(operands).map(pair).collect())
 }
 
-/// A number that equal lists have in common, in whatever order their elements are; `None` if one is no
-/// triangle.
+/// A hash that equal lists share, whatever the order of their elements; `None` if a face is not a triangle.
 fn mark(list: &List, sources: &Sources) -> Option<u64> {
     spend(list.len());
     let mut sum = 0u64;
@@ -116,7 +115,7 @@ fn mark(list: &List, sources: &Sources) -> Option<u64> {
     Some(parts.fold(sum, u64::wrapping_add))
 }
 
-/// Return whether two lists have the same elements, of which faces are the same if they have one key.
+/// Return whether two lists have the same elements, comparing faces by a key.
 fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool {
     let faces = |list: &List| {
         let mut faces: Vec<K> = list.records.iter().map(&key_of).collect();
@@ -149,7 +148,7 @@ fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
     })
 }
 
-/// Steps of a chain share parts; equal ones of different solids are not looked for.
+/// Steps of a chain share parts; equal parts of different solids are not detected.
 fn key(part: &PartRecord) -> (*const Part, bool) {
     let element = &part.element;
     (
@@ -168,7 +167,7 @@ mod tests {
 
     const BOXES: [[Lattice; 2]; 3] = [[[1; 3], [3; 3]], [[5; 3], [7; 3]], [[9; 3], [11; 3]]];
 
-    /// For each solid the first that has its boundary in a cell around all.
+    /// For each solid, the first with the same boundary in a cell around all.
     fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
         let shared = Shared::of(solids);
         let firsts = of_one_boundary(&shared.operands(), &shared.sources)?;

@@ -1,4 +1,4 @@
-//! The cases of splitting a tree, by name.
+//! The cases of splitting a tree.
 //!
 //! # Source
 //! Naylor, Amanatides, Thibault 1990, section 4: the cases of their table.
@@ -7,21 +7,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::geometry::side::Half;
 
-/// The cases of the root of a tree and a splitting hyperplane, by how they lie to each other.
+/// How the root of a tree and a splitting hyperplane lie to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum SplitCase {
-    /// The tree is a leaf: both halves are.
+    /// The tree is a leaf: so are both halves.
     Leaf,
     /// The hyperplane is the root's own.
     Same,
     /// The hyperplane is the root's own with its sides exchanged.
     Opposite,
-    /// One-sided: the hyperplane's part lies on the side `deep` of the root's cut, the root's
+    /// One-sided: the hyperplane's part lies on the side `deep` of the root's cut, and the root's
     /// sub-hyperplane on the side `home` of the hyperplane.
     OneSided {
         /// The subtree that is split.
         deep: Half,
-        /// The half in which the root lives on.
+        /// The half that keeps the root.
         home: Half,
     },
     /// The two cross.

@@ -1,4 +1,4 @@
-//! Tree × tree → tree.
+//! Merging two trees into one.
 
 use std::sync::Arc;
 
@@ -14,9 +14,9 @@ use crate::tree::trace::Watcher;
 
 /// Combines two trees of one region by a set operation.
 ///
-/// The second tree is split by the first one's cuts, from the root down; where one of them is a
-/// leaf, the leaf table decides. Subtrees that the operation does not change are shared with the
-/// operands. Coplanar sets are joined, so that each part of the result's boundary keeps its source.
+/// The first tree's cuts split the second tree, from the root down; where one of them is a leaf, the leaf
+/// table decides. The result shares unchanged subtrees with the operands. Coplanar sets are joined, so that
+/// each part of the result's boundary keeps its source.
 ///
 /// # Order
 /// Nodes of `a` before those of `b`.
@@ -56,7 +56,7 @@ pub fn merge<S: Space>(
     merge_watched(a, b, op, &mut ())
 }
 
-/// Combines two trees as [`merge`] does, and tells of each pair and each split.
+/// Combines two trees as [`merge`] does, and reports each pair and each split.
 ///
 /// # Errors
 /// As for [`merge`].
@@ -93,14 +93,14 @@ pub fn merge_watched<S: Space, W: Watcher<Seen<S>>>(
 enum Step<S: Space> {
     /// Combine two trees of one region.
     Merge(PartitionTree<S>, PartitionTree<S>),
-    /// Put the two trees combined last under a node of the first operand.
+    /// Join the two trees combined last under a node of the first operand.
     Join {
         node: Cut<S>,
         coplanar: Vec<Facet<S>>,
     },
 }
 
-/// A pair that is decided, and what decided it.
+/// The outcome for a pair, and its reason.
 struct Decided<'a, S: Space> {
     outcome: Outcome,
     operand: &'a PartitionTree<S>,
@@ -125,7 +125,7 @@ impl<S: Space> Decided<'_, S> {
     }
 }
 
-/// The result where a leaf or equal references decide it, else the first operand's cut.
+/// The result if a leaf or equal references decide it, else the first operand's cut.
 fn decided<'a, S: Space>(
     a: &'a PartitionTree<S>,
     b: &'a PartitionTree<S>,
@@ -147,7 +147,7 @@ fn decided<'a, S: Space>(
     }
 }
 
-/// Splits the second operand by the first one's cut and leaves the two sides to be combined.
+/// Splits the second operand by the first one's cut and schedules the two sides.
 fn divide<S: Space>(
     cut: &Cut<S>,
     b: &PartitionTree<S>,

@@ -1,4 +1,4 @@
-//! A tree with a chosen hyperplane in its root.
+//! A tree with a chosen hyperplane at its root.
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use crate::tree::partition::{PartitionTree, Sheet};
 
 /// The same set as a tree whose root is cut by the hyperplane of `span`.
 ///
-/// `span` is H ∩ region(T), the part of the hyperplane inside the region of the tree's root. A tree
-/// whose halves are equal leaves needs no cut and gets none.
+/// `span` is H ∩ region(T), the part of the hyperplane inside the region of the tree's root. A tree whose
+/// halves are equal leaves gets no cut.
 ///
 /// # Errors
 /// `Internal` if `span` is not the part of its hyperplane inside the tree's region.

@@ -1,4 +1,4 @@
-//! One tree cut by a hyperplane into the trees of its two sides.
+//! Splitting a tree by a hyperplane into the trees of its two sides.
 //!
 //! `T` is the tree, `H` the hyperplane, `P` = H ∩ region(T). A piece lies on one side of a cut if no
 //! point of it lies *strictly* on the other; then, in exact arithmetic, P crosses the tree's cut if
@@ -25,12 +25,11 @@ pub struct Halves<S: Space> {
     pub minus: PartitionTree<S>,
     /// The set on the plus side.
     pub plus: PartitionTree<S>,
-    /// The tree's coplanar fragments that lie in the hyperplane.
+    /// The tree's coplanar fragments in the hyperplane.
     pub coplanar: Vec<Facet<S>>,
 }
 
-/// The cases of an inner node and the splitting hyperplane, by how they lie inside the node's
-/// region.
+/// How an inner node and the splitting hyperplane lie to each other inside the node's region.
 enum Case<S: Space> {
     /// H is the node's own cut.
     Same,
@@ -38,8 +37,8 @@ enum Case<S: Space> {
     Opposite,
     /// P lies on the side `deep` of the node's cut, the node's span on the side `home` of H.
     ///
-    /// The subtree `deep` is split; the node keeps its cut in H's half `home`, where the other
-    /// subtree lies whole.
+    /// The subtree `deep` is split; the node keeps its cut in the half `home` of H, which contains the
+    /// other subtree entirely.
     OneSided { deep: Half, home: Half },
     /// P and the span cross.
     Crossing {
@@ -50,7 +49,7 @@ enum Case<S: Space> {
     },
 }
 
-/// Return the case of the root of a tree and a splitting hyperplane.
+/// Return the case for the root of a tree and a splitting hyperplane.
 ///
 /// # Errors
 /// As for [`split_tree`].
@@ -84,14 +83,14 @@ impl<S: Space> Case<S> {
 
 /// Splits a tree by a hyperplane into its parts on the minus and plus sides.
 ///
-/// `span` is P = H ∩ region(T), the part of the hyperplane inside the region of the tree's root; H
-/// is the hyperplane in which it lies. What lies on one side is shared, not copied.
+/// `span` is P = H ∩ region(T), the part of the hyperplane inside the region of the tree's root; H is its
+/// hyperplane. Subtrees on one side are shared, not copied.
 ///
 /// # Order
 /// Nodes keep the relative order of their originals.
 ///
 /// # Cost
-/// Proportional to the nodes whose regions H crosses.
+/// Proportional to the number of nodes whose regions H crosses.
 ///
 /// # Errors
 /// `Internal` if `span` is not the part of its hyperplane inside the tree's region.
@@ -99,7 +98,7 @@ pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
     split_tree_watched(tree, span, &mut ())
 }
 
-/// Splits a tree as [`split_tree`] does, and tells of each node.
+/// Splits a tree as [`split_tree`] does, and reports each node.
 ///
 /// # Errors
 /// As for [`split_tree`].
@@ -204,7 +203,7 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
         self.push(minus, plus);
     }
 
-    /// The one-sided cases: the node lives on in the half `home`, the other half is clear of it.
+    /// The one-sided cases: the half `home` keeps the node, the other half does not have it.
     fn rebuild(&mut self, node: &Cut<S>, deep: Half, home: Half) -> Result<()> {
         let (minus, plus) = self.pop()?;
         match home {
@@ -214,7 +213,7 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
         Ok(())
     }
 
-    /// The crossing case: a node in each half.
+    /// The crossing case: each half has a node.
     fn join(&mut self, [inner, outer]: [Arc<Sheet<S>>; 2]) -> Result<()> {
         let (plus_minus, plus_plus) = self.pop()?;
         let (minus_minus, minus_plus) = self.pop()?;
@@ -237,7 +236,7 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
     }
 }
 
-/// The case of a node and a splitting hyperplane's part in the node's region.
+/// The case for a node and the splitting hyperplane's part in its region.
 fn case_of<S: Space>(node: &Cut<S>, span: &S::Fragment) -> Result<Case<S>> {
     let (own, cut) = (node.hyperplane(), S::hyperplane(span));
     let sheet = node.sheet();

@@ -1,8 +1,8 @@
 //! The steps of splitting and merging trees, node by node.
 //!
-//! The algorithms tell of shared nodes ([`Seen`]); a [`Journal`] numbers the nodes of both operands
-//! in preorder and keeps plain records ([`MergeStep`]). From the operands as lists of numbers and
-//! labels, the records lead to the same result without any geometry.
+//! The algorithms report shared nodes ([`Seen`]); a [`Journal`] numbers the nodes of both operands in
+//! preorder and keeps plain records ([`MergeStep`]). With the operands as lists of numbers and labels, the
+//! records reproduce the result without any geometry.
 
 use std::sync::Arc;
 
@@ -15,12 +15,12 @@ use crate::mesh::handle::NodeId;
 use crate::tree::partition::{Label, PartitionTree, Sheet};
 use crate::tree::trace::Watcher;
 
-/// A tree's root: a leaf, or what lies in its cut.
+/// A tree's root: a leaf, or the contents of its cut.
 #[derive(Clone, Debug)]
 pub enum Root<S: Space> {
     /// An undivided region.
     Leaf(Label),
-    /// A divided one; complements have the same sheets.
+    /// A divided region; complements have the same sheets.
     Cut(Arc<Sheet<S>>),
 }
 
@@ -33,7 +33,7 @@ impl<S: Space> Root<S> {
     }
 }
 
-/// An event, told by shared nodes.
+/// An event, in terms of shared nodes.
 #[derive(Clone, Debug)]
 pub enum Seen<S: Space> {
     /// A pair of trees of one region is to be combined.
@@ -42,16 +42,16 @@ pub enum Seen<S: Space> {
         a: Root<S>,
         /// The part of the second.
         b: Root<S>,
-        /// The decision about them.
+        /// The decision for them.
         decision: Decision,
     },
     /// A subtree is to be split.
     Split {
         /// Its root.
         root: Root<S>,
-        /// The case of it and the splitting hyperplane.
+        /// The case for it and the splitting hyperplane.
         case: SplitCase,
-        /// The parts in the cut on the minus and the plus side, where the two cross.
+        /// The parts of the cut's contents on the minus and the plus side, if the two cross.
         parts: Option<[Arc<Sheet<S>>; 2]>,
     },
     /// A subtree has been split.
@@ -63,29 +63,29 @@ pub enum Seen<S: Space> {
     Join {
         /// The node's own sheet.
         sheet: Arc<Sheet<S>>,
-        /// Its part in the result.
+        /// What became of it in the result.
         joined: Joined,
     },
 }
 
-/// The decision about a pair of trees of one region.
+/// The decision for a pair of trees of one region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Decision {
     /// The second tree is split by the first one's root; the halves are combined.
     Divide,
     /// A leaf, and why.
     Leaf(Label, Because),
-    /// The first tree as it is, shared.
+    /// The first tree unchanged, shared.
     First(Because),
     /// The complement of the first tree.
     FirstComplement(Because),
-    /// The second tree as it is, shared.
+    /// The second tree unchanged, shared.
     Second(Because),
     /// The complement of the second tree.
     SecondComplement(Because),
 }
 
-/// The reason that decides a pair of trees.
+/// The reason for a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Because {
     /// The first tree is a leaf.
@@ -98,23 +98,23 @@ pub enum Because {
     Complement,
 }
 
-/// The part in the result that a node of the first operand has become.
+/// What a node of the first operand became in the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Joined {
     /// Itself: nothing below it changed.
     Shared,
     /// A new node with the same cut.
     Rebuilt,
-    /// This leaf, because both its sides had become equal ones.
+    /// This leaf, because both its sides became equal leaves.
     Collapsed(Label),
 }
 
-/// A tree's root by number.
+/// A tree's root, by number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Name {
     /// An undivided region.
     Leaf(Label),
-    /// The inner node of the first operand with this place in preorder, minus before plus.
+    /// The inner node of the first operand at this index in preorder, minus before plus.
     First(NodeId),
     /// The inner node of the second operand, or a part of it.
     Second(NodeId),
@@ -129,14 +129,14 @@ pub enum MergeStep {
         a: Name,
         /// The part of the second.
         b: Name,
-        /// The decision about them.
+        /// The decision for them.
         decision: Decision,
     },
-    /// A subtree is split by the first tree's cut chosen last.
+    /// A subtree is split by the cut of the first tree chosen last.
     Split {
         /// The subtree's root.
         root: Name,
-        /// The case of it and the splitting hyperplane.
+        /// The case for it and the splitting hyperplane.
         case: SplitCase,
     },
     /// A subtree has been split.
@@ -150,14 +150,14 @@ pub enum MergeStep {
     Join {
         /// The node of the first operand.
         node: Name,
-        /// Its part in the result.
+        /// What became of it in the result.
         joined: Joined,
     },
 }
 
-/// A watcher that writes down the steps with the operands' nodes by number.
+/// A watcher that records the steps, with the operands' nodes by number.
 ///
-/// It holds what it has numbered, so that no address comes twice.
+/// It keeps the numbered nodes alive, so that no address is reused.
 #[derive(Debug)]
 pub struct Journal<S: Space> {
     first: Numbers<S>,
@@ -177,7 +177,7 @@ impl<S: Space> Journal<S> {
         }
     }
 
-    /// Return the steps that have been written down.
+    /// Return the recorded steps.
     pub fn into_steps(self) -> Vec<MergeStep> {
         self.steps
     }
@@ -232,7 +232,7 @@ impl<S: Space> Watcher<Seen<S>> for Journal<S> {
 fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(NodeId) -> Name) -> Name {
     match root {
         Root::Leaf(label) => Name::Leaf(*label),
-        // All sheets that can come up are numbered; a strange one would get a number of no node.
+        // All sheets that can occur are numbered; an unknown one would get a number without a node.
         Root::Cut(sheet) => make(
             numbers
                 .get(&Arc::as_ptr(sheet))
@@ -241,7 +241,7 @@ fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(NodeId) ->
     }
 }
 
-/// The inner nodes of a tree in preorder, minus before plus, by what lies in their cuts.
+/// The inner nodes of a tree in preorder, minus before plus, by the contents of their cuts.
 fn numbered<S: Space>(tree: &PartitionTree<S>) -> Numbers<S> {
     let mut numbers = Numbers::default();
     let mut pending = vec![tree.clone()];

@@ -1,4 +1,4 @@
-//! The faces that stay in a cell, joined again to the elements of a leaf.
+//! The faces that stay in a cell, joined into the elements of a leaf.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -32,10 +32,9 @@ enum What {
     Whole,
     /// All of a part inside the cell.
     Part(Arc<Part>),
-    /// Some convex pieces, and what some edges bound.
+    /// Convex pieces, and the region that some edges bound.
     Pieces(Vec<Polygon>, Vec<BareEdge>),
-    /// The part that an outline bounds that needs no joining, and is not all of the face in the
-    /// cell.
+    /// The region inside an outline that needs no joining and is not all of the face in the cell.
     Outline(Vec<BareEdge>),
 }
 
@@ -65,7 +64,7 @@ impl Kept {
         Self::joined(face, orientation, pieces, Vec::new())
     }
 
-    /// Convex pieces of a face, and what some edges on it bound.
+    /// Convex pieces of a face, and the region that some edges on it bound.
     pub fn joined(
         face: SourceFace,
         orientation: Orientation,
@@ -80,8 +79,8 @@ impl Kept {
         }
     }
 
-    /// Keep what an outline bounds: some, but not all of a face in the cell; no two of its edges
-    /// that follow each other lie on one line.
+    /// The region inside an outline: some, but not all of a face in the cell. No two consecutive edges lie
+    /// on one line.
     pub fn outlined(face: SourceFace, orientation: Orientation, edges: Vec<BareEdge>) -> Self {
         let what = What::Outline(edges);
         Self {
@@ -91,7 +90,7 @@ impl Kept {
         }
     }
 
-    /// Edges that bound some of it, beside the convex pieces.
+    /// Edges that bound some of it, besides the convex pieces.
     fn edges(&self) -> &[BareEdge] {
         match &self.what {
             What::Pieces(_, edges) | What::Outline(edges) => edges,
@@ -114,8 +113,8 @@ impl Kept {
     }
 }
 
-/// Joins the pieces of each face again and lists them, as the work of a kernel; `touching` says whether
-/// they may touch each other anywhere.
+/// Joins the pieces of each face and lists them as the work of a kernel; `touching` says whether they may
+/// touch each other anywhere.
 pub fn assemble(
     mut kept: Vec<Kept>,
     corner: i32,
@@ -173,13 +172,13 @@ pub fn assemble(
     Node::Deferred(leaf)
 }
 
-/// The outline of what stays of a face with one orientation; `None` if that is all of it.
+/// The outline of what stays of a face in one orientation; `None` if all of it stays.
 fn outline(run: &[Kept], source: &Source, face: FaceId, cell: &Cell) -> Option<Vec<BareEdge>> {
     let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
     let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();
     let mut edges: Vec<BareEdge> = run.iter().flat_map(Kept::edges).cloned().collect();
     if let ([single], []) = (&polygons[..], &edges[..]) {
-        // A convex piece has no edges that cancel.
+        // No edges of a convex piece cancel.
         if has_inner(single.edges(), source, face, cell) {
             return Some(BareEdge::all_of(single).collect());
         }
@@ -210,9 +209,9 @@ fn list_whole(
     }
 }
 
-/// Return whether an outline runs only on the face's own edges and the cell's border: then it is
-/// the border of the whole face inside the cell, for a part of a connected set with no border of
-/// its own is all of it.
+/// Return whether an outline runs only along the face's own edges and the cell's border. Then it is the
+/// border of the whole face inside the cell: a part of a connected set without a border of its own is all
+/// of it.
 pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cell) -> bool {
     let ends = edges.iter().map(|e| (&e.from, &e.to, &e.carrier));
     if has_inner(ends, source, face, cell) {
@@ -232,7 +231,7 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cel
     if others.is_empty() {
         return !edges.is_empty();
     }
-    // No wall is slanted.
+    // Walls are not slanted.
     let is_slanted = |carrier: &Carrier| match carrier {
         Carrier::Cut(plane, _) => plane.only_axis().is_none(),
         Carrier::Edge(_) => false,
@@ -244,7 +243,7 @@ pub fn is_whole(edges: &[OutlineEdge], source: &Source, face: FaceId, cell: &Cel
     others.iter().all(|e| border.contains(&e.line))
 }
 
-/// Return whether some edge of a face surely lies on none of the face's edges and in no wall of the
+/// Return whether some edge of a face certainly lies on none of the face's edges and in no wall of the
 /// cell; may return false negatives.
 fn has_inner<'a>(
     mut edges: impl Iterator<Item = (&'a Arc<Vertex>, &'a Arc<Vertex>, &'a Carrier)>,
@@ -263,7 +262,7 @@ fn has_inner<'a>(
     })
 }
 
-/// Return whether two points may lie in one wall of a cell that holds both; may return false positives.
+/// Return whether two points may lie in one wall of a cell that contains both; may return false positives.
 fn may_share_wall(a: &Vertex, b: &Vertex, cell: &Cell) -> bool {
     let (ends, low, high) = ([a, b].map(Vertex::bounds), cell.low(), cell.high());
     (0..3).any(|i| {

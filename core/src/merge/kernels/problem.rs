@@ -1,4 +1,4 @@
-//! The problem that a kernel is asked, and the order in which kernels are asked.
+//! The problem for a kernel, and the order in which kernels are tried.
 
 use std::borrow::Cow;
 
@@ -13,11 +13,11 @@ use crate::tree::node::Node;
 pub struct CellProblem<'a> {
     /// The cell.
     pub cell: &'a Cell,
-    /// The expression as far as it is left there.
+    /// What remains of the expression there.
     pub expression: &'a Expression,
-    /// The rule by which winding numbers of an operand are inside.
+    /// The rule for which winding numbers of an operand are inside.
     pub rule: Rule,
-    /// The operands, by ascending numbers.
+    /// The operands, in order of their numbers.
     pub operands: Vec<Listed<'a>>,
     /// The sources of all operands.
     pub sources: &'a Sources,
@@ -34,8 +34,8 @@ pub struct Listed<'a> {
 
 /// A way to evaluate an expression in a cell.
 ///
-/// All kernels leave the same set. Each has positions that it does not know; a cell that one
-/// refuses is for the next one, or is halved.
+/// All kernels compute the same set. Each refuses some positions; the cell then goes to the next kernel, or
+/// is halved.
 ///
 /// # Example
 /// ```
@@ -68,13 +68,13 @@ pub struct Listed<'a> {
 /// # Ok::<(), bspcsg::error::Error>(())
 /// ```
 pub trait Kernel {
-    /// Return what the expression leaves in the cell; `None` if the cell is not for this kernel.
-    /// In either case adds the operands that it saw to overlap themselves.
+    /// Return the result in the cell; `None` if the kernel refuses the cell. In both cases adds the
+    /// operands found to overlap themselves.
     fn solve(&self, problem: &CellProblem, overlapping: &mut Vec<u32>) -> Option<Node>;
 }
 
 impl CellProblem<'_> {
-    /// The answer of the first of some kernels that has one.
+    /// The result of the first kernel that takes the cell.
     pub fn solve_by(&self, kernels: &[&dyn Kernel], overlapping: &mut Vec<u32>) -> Option<Node> {
         let mut answers = kernels.iter().map(|kernel| kernel.solve(self, overlapping));
         answers.find_map(|answer| answer)
@@ -111,7 +111,7 @@ mod tests {
         let mut seen = Vec::new();
         let left = problem.solve_by(&[&Refuses, &Answers(1), &Answers(0)], &mut seen);
         assert!(matches!(left, Some(Node::Leaf(1))));
-        // What is seen is kept even where the cell is not solved.
+        // Overlaps are recorded even if the cell is not solved.
         assert!(problem.solve_by(&[&Refuses], &mut seen).is_none());
         assert_eq!(seen, [1, 1]);
     }

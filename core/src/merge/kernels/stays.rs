@@ -1,4 +1,4 @@
-//! The parts that stay of faces and of the pieces of parts, as a kernel's result.
+//! The parts that stay of faces and of pieces of parts, as a kernel's result.
 
 use std::sync::Arc;
 
@@ -14,29 +14,28 @@ use crate::tree::node::Part;
 pub enum Stays {
     /// Nothing.
     Nothing,
-    /// All of it that lies in the cell.
+    /// All of it in the cell.
     All,
     /// These pieces.
     Pieces(Vec<Polygon>),
-    /// The part that an outline bounds, of which no two edges that follow each other lie on one
-    /// line.
+    /// The region inside an outline; no two consecutive edges lie on one line.
     Outline(Vec<BareEdge>),
 }
 
-/// The face or the part that an element is of.
+/// The face or the part of an element.
 pub enum Owner {
-    /// All of a face.
+    /// A whole face.
     Face(SourceFace),
     /// A piece of the part with this number.
     Part(usize),
 }
 
-/// An element that meets the cell, by its number, whose it is, and what stays of it as the source
-/// has it and turned.
+/// An element that meets the cell: its number, its owner, and what stays of it in the source's orientation
+/// and in the opposite one.
 pub type Settled = (usize, Owner, [Stays; 2]);
 
 impl Stays {
-    /// Make one of what is left as pieces.
+    /// The result for these pieces.
     pub fn of(pieces: Vec<Polygon>) -> Self {
         if pieces.is_empty() {
             Self::Nothing
@@ -55,8 +54,7 @@ impl Stays {
     }
 }
 
-/// Return what stays of all elements, given the parts with their slots, and the polygon of an
-/// element.
+/// Return what stays of all elements, given the parts with their slots, and each element's polygon.
 pub fn kept(
     settled: impl Iterator<Item = Settled>,
     parts: &[(&Arc<Part>, Slot)],
@@ -91,7 +89,7 @@ pub fn kept(
     kept
 }
 
-/// A part as it is if all its pieces stay, else what stays of its pieces.
+/// A part unchanged if all its pieces stay, else the pieces that stay.
 fn kept_part(
     (part, slot): (&Arc<Part>, Slot),
     pieces: Vec<(usize, Stays)>,

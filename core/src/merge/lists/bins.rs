@@ -1,7 +1,7 @@
 //! A long list's faces sorted into the cells of one level, so that no halving moves them.
 //!
-//! Above that level a cell only looks up how many faces it has and what its winding number is; the
-//! faces themselves are gathered where the descent ends or goes on with short lists.
+//! Above that level a cell only looks up its number of faces and its winding number; the faces are gathered
+//! where the descent ends or continues with short lists.
 //!
 //! # Source
 //! Counting sort; integral images (Crow 1984) for the counts in boxes of cells.
@@ -22,30 +22,30 @@ use crate::mesh::handle::FaceId;
 use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
-/// Faces for each cell, at least, on average.
+/// The least average number of faces in a cell.
 const DENSITY: usize = 4;
 
-/// Entries of a face, at most, on average: above that a coarser level is better.
+/// The largest average number of entries of a face: above that a coarser level is better.
 const ROWS: usize = 2;
 
-/// Faces looked at to estimate the number of entries.
+/// The number of faces sampled to estimate the number of entries.
 const SAMPLE: usize = 1024;
 
-/// Fewer cells than this are not worth the sorting.
+/// The least number of cells worth sorting into.
 const LEAST: usize = 64;
 
-/// The faces of a deferred leaf by cells of a window.
+/// The faces of a deferred leaf, by cells of a window.
 #[derive(Debug)]
 pub struct Bins {
     home: Branch,
-    /// The number of each group's first element: elements are numbered through all groups.
+    /// The number of each group's first element: elements are numbered consecutively over all groups.
     firsts: Vec<u32>,
     window: Window,
-    /// The places where the entries of each cell start, and the end of the last.
+    /// The index of each cell's first entry, and the end of the last.
     starts: Vec<u32>,
-    /// The elements by cells.
+    /// The elements, sorted by cell.
     entries: Vec<u32>,
-    /// By corner of the window, the number of entries below it on all axes.
+    /// For each corner of the window, the number of entries below it on all axes.
     below: Vec<u32>,
     crossings: Crossings,
 }
@@ -58,7 +58,7 @@ struct Run<'a> {
     first: u32,
 }
 
-/// The cells of elements: one of each, or several in a list of their own.
+/// The cells of elements: one number each, or a span for those in several.
 struct Sorted {
     /// The cell of each element, or `SPANS`.
     cells: Vec<u32>,
@@ -70,8 +70,8 @@ const SPANS: u32 = u32::MAX;
 impl Bins {
     /// The bins of a branch whose node is a deferred leaf.
     ///
-    /// `None` if it does not hold faces of meshes only, or if most faces are so large beside the
-    /// region they fill that no level separates them.
+    /// `None` if it does not consist of faces of meshes only, or if most faces are so large within their
+    /// region that no level separates them.
     pub fn new(home: &Branch) -> Option<Self> {
         let Node::Deferred(leaf) = &*home.node else {
             return None;
@@ -106,7 +106,7 @@ impl Bins {
         })
     }
 
-    /// Return whether the halves of a cell are still made of whole cells of the window.
+    /// Return whether the halves of a cell still consist of whole cells of the window.
     pub fn divide(&self, cell: &Cell) -> bool {
         self.window.is_divided_in(cell)
     }
@@ -144,7 +144,7 @@ impl Bins {
         Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
-    /// Return whether a kernel left the home.
+    /// Return whether a kernel made the home.
     pub fn is_worked(&self) -> bool {
         self.leaf().worked
     }
@@ -214,7 +214,7 @@ fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     numbers
 }
 
-/// The faces by group; `None` if some are no triangles of a mesh.
+/// The faces by group; `None` if some are not triangles of a mesh.
 fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
     if !leaf.parts.is_empty() {
         return None;
@@ -240,7 +240,7 @@ fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, FaceId) {
 }
 
 impl Run<'_> {
-    /// Return whether it is worth while to look at all vertices of the mesh once.
+    /// Return whether one pass over all vertices of the mesh pays.
     fn is_most(&self) -> bool {
         self.faces.len() >= self.mesh.vertices.len()
     }
@@ -272,7 +272,7 @@ fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
     (0..3).all(|i| low[i] <= high[i]).then_some((low, high))
 }
 
-/// The finest window with enough faces for each cell and few enough entries for each face.
+/// The finest window with enough faces per cell and few enough entries per face.
 fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(SAMPLE);
@@ -289,7 +289,7 @@ fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
         .filter(|w| w.len() >= LEAST)
 }
 
-/// In how many cells a face with these bounds is entered.
+/// The number of cells in which a face with these bounds is entered.
 fn entry_count(window: &Window, (low, high): &(Lattice, Lattice)) -> usize {
     let [low, high] = [window.code(low), window.code(high)];
     cell_count(window, &Span::new(0, [low, high, high]))
@@ -341,7 +341,7 @@ impl Sorted {
     }
 }
 
-/// The entries of spanning faces as pairs of cell and element; `None` if they are too many.
+/// The entries of spanning faces as pairs of cell and element; `None` if there are too many.
 fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<Vec<(u32, u32)>> {
     let mut rows = Vec::with_capacity(2 * spans.len());
     let mut lines = 0;
@@ -407,7 +407,7 @@ fn spread(
     }
 }
 
-/// The entries sorted by cell, ascending within those of single cells, and where they start.
+/// The entries sorted by cell, ascending for elements of one cell, and where each cell's start.
 fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; window.len() + 2];
     for cell in cells.iter().filter(|c| **c != SPANS) {
@@ -436,7 +436,7 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
     (starts, entries)
 }
 
-/// For each corner of the window the number of entries in the cells below it on all axes.
+/// For each corner of the window, the number of entries in the cells below it on all axes.
 fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
     let [nx, ny, nz] = window.count().map(|c| c.cast_unsigned() as usize);
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));

@@ -1,7 +1,7 @@
 //! Changes of the winding number of a window's faces along the lines between its cells.
 //!
-//! From the low corner of the window the path to another corner runs along the first axis, then the
-//! second, then the third. Only faces that lie across lines of two axes can meet one of the third.
+//! The path from the low corner of the window to another corner runs along the first axis, then the second,
+//! then the third. Only faces across lines of two axes can meet a line of the third.
 // Lines, and places inside the window, are never negative.
 
 use super::window::{Span, Window};
@@ -14,7 +14,7 @@ use crate::interrupt::poll;
 /// A line along an axis and a place on it in one word, ordered by line.
 type Key = u64;
 
-/// The changes along the lines of one axis, each with the sum of all before it and its own.
+/// The changes along the lines of one axis, as running sums.
 #[derive(Debug, Default)]
 struct Along {
     keys: Vec<Key>,
@@ -57,7 +57,7 @@ impl Along {
 }
 
 impl Crossings {
-    /// The crossings of spanning faces; `corners` tells a face's corners and how it is turned.
+    /// The crossings of spanning faces; `corners` gives a face's corners and its orientation.
     pub fn new(
         window: Window,
         spans: &[Span],
@@ -106,7 +106,7 @@ fn crosses_two(span: &Span) -> bool {
     (0..3).filter(|i| !span.lines(*i).is_empty()).count() >= 2
 }
 
-/// Calls a function with each axis and line on which the span may be crossed.
+/// Calls a function with each axis and line on which a face with this span may cross it.
 fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
     let [x, y, z] = each_axis(|axis| span.lines(axis));
     let starts = |lines: &std::ops::Range<i32>| lines.contains(&0);
@@ -121,7 +121,7 @@ fn visit_lines(span: &Span, visit: &mut impl FnMut(usize, i32, i32)) {
     }
 }
 
-/// The number of a line along an axis: there is one along the first, a row along the second.
+/// The number of a line along an axis: the first axis has one line, the second a row of lines.
 fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
     match axis {
         0 => 0,
@@ -130,8 +130,8 @@ fn number(window: &Window, axis: usize, x: i32, y: i32) -> u32 {
     }
 }
 
-/// Return the place where a face crosses a line inside the window, and the change of the winding
-/// number there.
+/// Return the place where a face crosses a line inside the window, and the change of the winding number
+/// there.
 fn crossing(
     window: &Window,
     span: &Span,
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn the_way_to_a_corner_in_a_box_crosses_its_surface_once() {
-        // It reaches beyond the window at the top.
+        // It extends beyond the top of the window.
         let solid = cuboid([4; 3], [28, 28, 40]);
         let mesh = solid.sources().get(Slot(0)).mesh().expect("a mesh");
         let window = Window::around(&[0; 3], &[31; 3], 3).expect("few cells");

@@ -39,7 +39,7 @@ impl Frame {
         index.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32
     }
 
-    /// The first index whose coordinates are all `k` or more.
+    /// The first index whose coordinates are all at least `k`.
     fn index_beyond(&self, axis: usize, k: i64) -> i32 {
         self.index(axis, k + (1 << self.shift) - 1)
     }
@@ -68,12 +68,12 @@ pub struct Record {
     run: Run,
 }
 
-/// A slot, an orientation and a mark in one word: the things that the faces of a group have in common.
+/// A slot, an orientation and a mark in one word, shared by the faces of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Run(u32);
 
 impl Run {
-    /// The bit of the orientation: there are less than 2³⁰ sources.
+    /// The bit of the orientation: there are fewer than 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
 
     /// The bit of faces that may touch other elements anywhere.
@@ -104,13 +104,13 @@ impl Record {
         self.run.slot()
     }
 
-    /// Return the orientation of the face, seen from the source.
+    /// Return the orientation of the face relative to the source.
     pub fn orientation(&self) -> Orientation {
         self.run.orientation()
     }
 }
 
-/// A part with conservative bounds, and its convex pieces once somebody has asked.
+/// A part with conservative bounds, and its cached convex pieces.
 #[derive(Clone, Debug)]
 pub struct PartRecord {
     low: [i32; 3],
@@ -163,14 +163,14 @@ impl Sources {
     /// The slot of a source.
     ///
     /// # Panics
-    /// If it is none of these.
+    /// If the table does not have it.
     pub fn slot(&self, source: &Source) -> Slot {
         self.0.slot(source).expect("a source of the table")
     }
 }
 
 impl List {
-    /// A box around the elements, at most a little larger than needed.
+    /// A box around the elements, at most slightly larger than needed.
     pub fn bounds(&self) -> [Lattice; 2] {
         let records = self.records.iter().map(|r| (&r.low, &r.high));
         let parts = self.parts.iter().map(|p| (&p.low, &p.high));
@@ -209,8 +209,8 @@ impl List {
         list
     }
 
-    /// Opens a deferred leaf as a list of a larger cell; `None` if an element reaches out of the
-    /// leaf's own cell, where it may not be boundary.
+    /// Opens a deferred leaf as a list of a larger cell; `None` if an element extends beyond the leaf's own
+    /// cell, where it may not be boundary.
     pub fn lifted(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
         let Node::Deferred(leaf) = &*branch.node else {
             return None;
@@ -237,7 +237,7 @@ impl List {
         self.records.len() + self.parts.len()
     }
 
-    /// Return whether a kernel left the elements.
+    /// Return whether a kernel made the elements.
     pub fn is_worked(&self) -> bool {
         self.worked
     }
@@ -247,7 +247,7 @@ impl List {
         self.records.iter().any(|r| r.run.is_touching())
     }
 
-    /// Return whether no element is listed.
+    /// Return whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -271,8 +271,8 @@ impl List {
         (self, plus)
     }
 
-    /// Becomes the list of a smaller cell, given that nothing meets the rest of the cell: so the number
-    /// at the low corner is the same.
+    /// Restricts the list to a smaller cell; nothing may meet the rest of the cell, so that the number at
+    /// the low corner is the same.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if !self.frame.resolves(inner) {
             spend(self.len());
@@ -280,7 +280,7 @@ impl List {
         }
     }
 
-    /// The winding number in the rest of the cell around a smaller one, given that nothing meets it.
+    /// The winding number in the rest of the cell around a smaller one; nothing may meet the rest.
     pub fn beside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
         match cell.cut() {
             Some(cut) if inner.low() == cell.low() => {
@@ -290,7 +290,7 @@ impl List {
         }
     }
 
-    /// Keeps the records of the minus half, in the memory they are in, and returns the others.
+    /// Keeps the records of the minus half in place, and returns the others.
     fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
         let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
         let halves = Half::BOTH.map(|half| cell.half(cut, half));
@@ -309,7 +309,7 @@ impl List {
         plus
     }
 
-    /// Count the elements that reach across the cell's border: these no halving can separate soon.
+    /// Count the elements that extend beyond the cell: halving cannot separate them soon.
     pub fn reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
         let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
@@ -366,7 +366,7 @@ impl List {
         change
     }
 
-    /// The list as a deferred leaf, perhaps turned inside out.
+    /// The list as a deferred leaf, complemented if the flag is set.
     pub fn close(self, complement: bool, sources: &Sources) -> Node {
         let corner = if complement {
             1 - self.corner
@@ -440,7 +440,7 @@ impl Frame {
         }
     }
 
-    /// Return whether a record is so large that its plane may miss a cell its bounds meet.
+    /// Return whether a record is so large that its plane may miss a cell that its bounds meet.
     fn exceeds(&self, r: &Record, cell: &Cell) -> bool {
         let size = cell.size();
         (0..3).any(|i| {
@@ -465,14 +465,14 @@ mod tests {
             list = list.divide(&cell, cut, &scene.sources).1;
             cell = cell.half(cut, Half::Plus);
         }
-        // The cell from 16 up: its low corner lies in the box, as do no faces at zero.
+        // The cell from 16 up: its low corner is inside the box, and the faces at zero are not in it.
         assert_eq!((*cell.low(), list.corner), ([16; 3], 1));
         let mesh = scene.sources.get(Slot(0)).mesh().expect("a mesh");
         let meets = |f: FaceId| mesh.face_box(f).1.iter().all(|c| *c == 20);
         assert!(!list.is_empty() && list.records.iter().all(|r| meets(r.face)));
     }
 
-    /// Around the low corner of a large cell, which lies in the solid, and around boxes elsewhere.
+    /// Around the low corner of a large cell, inside the solid, and around boxes elsewhere.
     #[test]
     fn shrinking_counts_what_halving_counts() {
         let ends = [[-100, 20], [3, 20], [12 << 30, (12 << 30) + 9]];
@@ -492,7 +492,7 @@ mod tests {
         }
     }
 
-    /// Halve a list from a cell down to an inner one; the other halves come with it.
+    /// Halve a list from a cell down to an inner one; also returns the other halves.
     fn down(list: List, from: Cell, inner: &Cell, sources: &Sources) -> (List, Vec<List>) {
         let (mut list, mut cell, mut others) = (list, from, Vec::new());
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {

@@ -1,4 +1,4 @@
-//! The elements that meet a cell: lists of them, divided with the cells, and bins for long ones.
+//! The elements that meet a cell: lists, divided with the cells, and bins for long lists.
 
 pub(super) mod bins;
 pub(super) mod crossings;

@@ -1,4 +1,4 @@
-//! The test whether a face misses a box, by separating axes in doubles.
+//! Tests whether a face misses a box, by separating axes in doubles.
 
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -49,7 +49,7 @@ pub fn triangle_misses(corners: &[Lattice; 3], low: &Lattice, high: &Lattice) ->
     separated(&local, &half)
 }
 
-/// Center relative to `origin`, and half extents, of a closed box.
+/// Centre relative to `origin`, and half extents, of a closed box.
 fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3]) {
     let center = each_axis(|i| {
         f64::midpoint(
@@ -90,7 +90,7 @@ fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
 mod tests {
     use super::*;
 
-    /// A triangle across the corner of space, and boxes that its bounds meet.
+    /// A triangle across the corner of space, and boxes that overlap its bounds.
     #[test]
     fn boxes_on_one_side_of_the_plane_are_missed() {
         let corners = [[30, 0, 0], [0, 30, 0], [0, 0, 30]];

@@ -1,4 +1,4 @@
-//! A window on one level of the hierarchy of cells: a box of equal cells, and the places in it.
+//! A window on one level of the hierarchy of cells: a box of equal cells, and places in it.
 // Counts and the places of cells are never negative, and places beyond the window exceed -2.
 
 use std::ops::Range;
@@ -8,13 +8,13 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 
-/// Cells along one axis: a place and those next to the window's ends fit into ten bits.
+/// The most cells along one axis: places in the window and just outside it fit into ten bits.
 const PLACES: i64 = 1022;
 
-/// Equal cells of the hierarchy, counted from the lowest one.
+/// Equal cells of the hierarchy, numbered from the lowest one.
 ///
-/// A coordinate's *place* on an axis is the number of its cell there, −1 below the window and the
-/// count above it. The *lines* number the planes between the cells, from 0 to the count.
+/// A coordinate's *place* on an axis is the number of its cell there, −1 below the window and the count
+/// above it. The *lines* are the planes between the cells, numbered from 0 to the count.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
     /// The binary logarithm of the cells' extent, the same on all axes.
@@ -23,7 +23,7 @@ pub struct Window {
     count: [i32; 3],
 }
 
-/// The places that a face's bounds reach, with those beyond the window.
+/// The range of places of a face's bounds, including those outside the window.
 #[derive(Clone, Copy, Debug)]
 pub struct Span {
     /// The element.
@@ -35,7 +35,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// The places of a face's corners, packed as `Window::code` does.
+    /// The places of a face's corners, packed as by `Window::code`.
     pub fn new(element: u32, codes: [u32; 3]) -> Self {
         let field = |code: u32, i: usize| ((code >> (20 - 10 * i)) & 0x3ff) as i16 - 1;
         let ends = |pick: fn(i16, i16) -> i16| {
@@ -54,14 +54,14 @@ impl Span {
         }
     }
 
-    /// The lines on an axis that it lies across.
+    /// The lines on an axis that it crosses.
     pub fn lines(&self, axis: usize) -> Range<i32> {
         i32::from(self.low[axis]) + 1..i32::from(self.high[axis]) + 1
     }
 }
 
 impl Window {
-    /// The cells of extent 2^size that a lattice box meets; `None` if they are too many on an axis.
+    /// The cells of extent 2^size that a lattice box meets; `None` if there are too many on an axis.
     #[allow(clippy::cast_possible_truncation, reason = "not above PLACES")]
     pub fn around(low: &Lattice, high: &Lattice, size: u32) -> Option<Self> {
         let first = low.map(|k| k >> size);
@@ -100,21 +100,21 @@ impl Window {
         ((k >> self.size) - self.first[axis]).clamp(-1, i64::from(self.count[axis])) as i32
     }
 
-    /// The places of a lattice point in one word; those of a cell's points are equal.
+    /// The places of a lattice point in one word, equal for all points of a cell.
     #[inline]
     pub fn code(&self, p: &Lattice) -> u32 {
         let field = |i: usize| (self.place(i, p[i]) + 1).cast_unsigned();
         field(0) << 20 | field(1) << 10 | field(2)
     }
 
-    /// The number of a cell among all, the last axis first.
+    /// The number of a cell in the window; the last axis varies fastest.
     #[inline]
     pub fn index(&self, at: [i32; 3]) -> usize {
         let count = self.count;
         ((at[0] * count[1] + at[1]) * count[2] + at[2]).cast_unsigned() as usize
     }
 
-    /// The number of the cell with this code; `None` beyond the window.
+    /// The number of the cell with this code; `None` outside the window.
     #[inline]
     pub fn index_of(&self, code: u32) -> Option<u32> {
         let at = each_axis(|i| ((code >> (20 - 10 * i)) & 0x3ff).cast_signed() - 1);
@@ -156,7 +156,7 @@ impl Window {
         cell.size().iter().any(|s| u32::from(*s) > self.size)
     }
 
-    /// The cells of the window in a span: the lowest and the highest places; `None` without any.
+    /// The cells of the window in a span, as lowest and highest places; `None` if there are none.
     pub fn within(&self, span: &Span) -> Option<([i32; 3], [i32; 3])> {
         let low = span.low.map(|p| i32::from(p).max(0));
         let high = each_axis(|i| i32::from(span.high[i]).min(self.count[i] - 1));

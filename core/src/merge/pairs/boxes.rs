@@ -1,4 +1,4 @@
-//! Pairs of boxes that overlap, found by halving the space around them.
+//! Pairs of overlapping boxes, found by halving the space around them.
 
 use std::cmp::Reverse;
 
@@ -7,23 +7,22 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 
-/// Boxes that are compared all with all, at most: halving fewer costs about as much.
+/// The most boxes compared all with all: halving fewer costs about as much.
 const MAX_COMPARED: usize = 256;
 
-/// Boxes that are compared although halving does not separate them, at most: a sweep of fewer costs
-/// about as much.
+/// The most boxes compared where halving does not separate them: a sweep of fewer costs about as much.
 pub const MAX_COMPARED_UNSEPARATED: usize = 384;
 
-/// So many pairs of boxes are compared in the time of one unit of work.
+/// The number of pairs of boxes compared per unit of work.
 const PAIRS: usize = 16;
 
-/// So many boxes are compared with one at a time.
+/// The number of boxes compared with one at a time.
 const LANES: usize = 8;
 
-/// Coordinates as short integers.
+/// Coordinates as 32-bit integers.
 type Ends = [i32; 3];
 
-/// An element with its box in short integers.
+/// An element with its box in 32-bit integers.
 #[derive(Clone, Copy)]
 pub struct Boxed {
     low: [i32; 3],
@@ -35,7 +34,7 @@ pub struct Boxed {
 }
 
 impl Boxed {
-    /// An element of an operand, its number, and the ends of its box shortened by some bits.
+    /// An element of an operand: its number, and its box with `shift` low bits dropped.
     #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
     pub fn new(operand: usize, number: u32, [low, high]: [&Lattice; 2], shift: u32) -> Self {
         Self {
@@ -46,7 +45,7 @@ impl Boxed {
         }
     }
 
-    /// The same under another number.
+    /// The same with another number.
     #[must_use]
     pub const fn numbered(self, number: u32) -> Self {
         Self { number, ..self }
@@ -57,7 +56,7 @@ impl Boxed {
         (self.low, self.high)
     }
 
-    /// The same with the part of its box inside another one; `None` if there is none.
+    /// The same with its box clipped to another one; `None` if they do not overlap.
     pub fn within(&self, low: Ends, high: Ends) -> Option<Self> {
         let part = Self {
             low: each_axis(|i| self.low[i].max(low[i])),
@@ -68,48 +67,47 @@ impl Boxed {
         is_some.then_some(part)
     }
 
-    /// Return whether the box reaches up to a place on an axis, from below or at it.
+    /// Return whether the box begins at or below a place on an axis.
     pub const fn is_below(&self, axis: usize, at: i32) -> bool {
         self.low[axis] <= at
     }
 
-    /// Return whether the box reaches above a place on an axis.
+    /// Return whether the box extends above a place on an axis.
     pub const fn is_above(&self, axis: usize, at: i32) -> bool {
         self.high[axis] > at
     }
 }
 
-/// By how many bits coordinates up to this size are shortened to fit into 31 with their sign.
+/// How many low bits to drop so that coordinates up to this size fit into 31 bits with their sign.
 pub fn shift_of(size: u64) -> u32 {
     (u64::BITS - size.leading_zeros()).saturating_sub(30)
 }
 
-/// The ends of several boxes, axis by axis, so that all are compared with one box at once.
+/// The ends of several boxes, by axis, to compare all with one box at once.
 struct Lanes {
     low: [[i32; LANES]; 3],
     high: [[i32; LANES]; 3],
 }
 
-/// The elements that reach into a part of space. Those of one operand follow each other.
+/// The elements that reach into a part of space, grouped by operand.
 pub struct Part {
     elements: Vec<Boxed>,
     space: Space,
-    /// By how many bits their boxes were shortened.
+    /// The number of bits dropped from their boxes.
     shift: u32,
 }
 
 /// The places above `low`, up to `high`.
 ///
-/// A pair belongs to the space that holds the lowest corner of what the two have in common.
+/// A pair belongs to the space that contains the lowest corner of its boxes' intersection.
 #[derive(Clone, Copy)]
 pub struct Space {
     low: [i32; 3],
     high: [i32; 3],
 }
 
-/// Calls `meet` for all pairs of different operands whose boxes overlap, and `crowd` for elements
-/// that halving does not separate, with the space in which their pairs are still to be found;
-/// gives up where one of them does.
+/// Calls `meet` for all pairs of different operands whose boxes overlap, and `crowd` for elements that
+/// halving does not separate, with the space of their remaining pairs; stops if a call returns `None`.
 pub fn pairs(
     part: Part,
     mut meet: impl FnMut(u32, u32) -> Option<()>,
@@ -127,8 +125,8 @@ pub fn pairs(
     })
 }
 
-/// Calls `meet` for the pairs whose boxes overlap, comparing all elements in a space with all of other
-/// operands, the lower number first; gives up where it does.
+/// Calls `meet` for the pairs of different operands whose boxes overlap, the lower number first; compares
+/// all elements in a space, and stops if `meet` returns `None`.
 pub fn compare_all(
     elements: &[Boxed],
     space: &Space,
@@ -158,8 +156,8 @@ pub fn compare_all(
     Some(())
 }
 
-/// As [`compare_all`], along the axis on which the boxes overlap least: where most elements are alone
-/// in their operands, hardly any are left out for being of one.
+/// As [`compare_all`], sorted along the axis on which the boxes overlap least; for mostly single elements
+/// per operand, so that few comparisons are within one operand.
 fn compare_in_order(
     elements: &[Boxed],
     space: &Space,
@@ -189,7 +187,7 @@ fn compare_in_order(
     Some(())
 }
 
-/// The elements by where they begin on an axis.
+/// The elements sorted by their lower ends on an axis.
 fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
     let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
     let mut order: Vec<(i32, usize)> = begins.collect();
@@ -197,7 +195,7 @@ fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
     order.into_iter().map(|(_, at)| elements[at]).collect()
 }
 
-/// Calls `meet` for the pairs of two groups whose boxes overlap, comparing all with all.
+/// Calls `meet` for the overlapping pairs of two groups, comparing all with all.
 pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &Boxed)) {
     let lanes = Lanes::of(second);
     for one in first {
@@ -215,7 +213,7 @@ impl Lanes {
         high: [[i32::MIN; LANES]; 3],
     };
 
-    /// The boxes of some elements in their order, the last lanes filled with empty boxes.
+    /// The boxes of some elements in order; empty boxes fill the last lanes.
     fn of(elements: &[Boxed]) -> Vec<Self> {
         elements.chunks(LANES).map(Self::of_few).collect()
     }
@@ -231,7 +229,7 @@ impl Lanes {
         lanes
     }
 
-    /// Calls `found` with the numbers of the boxes that overlap one, from a number on.
+    /// Calls `found` with the numbers of the boxes that overlap `one`, starting at a number.
     fn each_overlapping(all: &[Self], from: usize, one: &Boxed, mut found: impl FnMut(usize)) {
         let first = from / LANES;
         for (block, lanes) in (first..).zip(&all[first.min(all.len())..]) {
@@ -247,8 +245,8 @@ impl Lanes {
         }
     }
 
-    /// For each box all bits if it does not overlap one, else none: words as wide as the numbers
-    /// that are compared stay in their lanes.
+    /// For each box, all bits if it misses `one`, else none: words as wide as the compared numbers stay in
+    /// their lanes.
     #[inline]
     fn missed_by(&self, one: &Boxed) -> [u32; LANES] {
         let word = |b: bool| if b { !0u32 } else { 0 };
@@ -274,7 +272,7 @@ impl Space {
         }
     }
 
-    /// The axis along which the boxes of elements are shortest, measured by the space.
+    /// The axis along which the boxes of elements are shortest, relative to the space.
     fn sparsest(&self, elements: &[Boxed]) -> usize {
         let share = |i: usize| {
             let length = |e: &Boxed| f64::from(e.high[i]) - f64::from(e.low[i]);
@@ -289,12 +287,12 @@ impl Space {
         }
     }
 
-    /// The place below the lowest, and the highest.
+    /// The places below the lowest one and at the highest one.
     pub const fn ends(&self) -> (Ends, Ends) {
         (self.low, self.high)
     }
 
-    /// The parts up to a place on an axis and above it.
+    /// The parts up to a place on an axis, and above it.
     pub const fn divided(&self, axis: usize, at: i32) -> [Self; 2] {
         let (mut below, mut above) = (*self, *self);
         below.high[axis] = at;
@@ -320,7 +318,7 @@ impl Space {
     }
 }
 
-/// Elements in the order of their numbers, each once.
+/// Elements sorted by number, without repetition.
 pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
@@ -328,8 +326,7 @@ pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
 }
 
 impl Part {
-    /// All elements, of which those of one operand follow each other; by how many bits their boxes were
-    /// shortened.
+    /// All elements, grouped by operand; `shift` is the number of bits dropped from their boxes.
     #[must_use]
     pub fn of(elements: Vec<Boxed>, shift: u32) -> Self {
         let space = Space::around(&elements);
@@ -340,13 +337,13 @@ impl Part {
         }
     }
 
-    /// By how many bits the boxes were shortened.
+    /// The number of bits dropped from the boxes.
     #[must_use]
     pub const fn shift(&self) -> u32 {
         self.shift
     }
 
-    /// Parts of up to so many elements, and one of all elements that halving does not separate. Each pair
+    /// Parts of at most `most` elements, and one of all elements that halving does not separate. Each pair
     /// belongs to one of the former, or is in the latter.
     #[must_use]
     pub fn divided(self, most: usize) -> Vec<Self> {
@@ -366,8 +363,8 @@ impl Part {
         parts
     }
 
-    /// Calls `visit` for parts of up to so many elements, or that halving does not separate; gives up
-    /// where it does.
+    /// Calls `visit` for parts that have at most `most` elements, or that halving does not separate; stops
+    /// if it returns `None`.
     fn halved(self, most: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
         let mut open = vec![self];
         while let Some(part) = open.pop() {
@@ -380,9 +377,9 @@ impl Part {
         Some(())
     }
 
-    /// Divides the elements among the halves of the space; false if no axis separates them.
+    /// Divides the elements between the halves of the space; false if no axis separates them.
     ///
-    /// The longest axis that does is as good as the best one, and not all have to be counted.
+    /// The longest axis that separates them is as good as the best one, and saves counting on all axes.
     fn halve(&self, open: &mut Vec<Self>) -> bool {
         let length = |i: usize| self.space.high[i] - self.space.low[i];
         let mut axes = [0, 1, 2];
@@ -404,7 +401,7 @@ impl Part {
         self.space.low[axis].midpoint(self.space.high[axis])
     }
 
-    /// Count the elements that the lower and the upper half would have.
+    /// Count the elements in the lower and the upper half.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
         let count = |[below, above]: [u32; 2], e: &Boxed| {

@@ -1,15 +1,15 @@
-//! Directions in doubles, and how far coordinates reach.
+//! Directions in doubles, and the largest coordinate.
 
 use super::Swept;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// Projections are widened by this share of the largest coordinate, far above their rounding.
+/// The padding of projections, as a share of the largest coordinate; far above their rounding.
 pub const SLACK: f64 = 1e-14;
 
-/// Lowest and highest place along a line.
+/// The lowest and highest place along a line.
 pub type Span = [f64; 2];
 
-/// A direction and two across it.
+/// A direction and two perpendicular to it.
 pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
     let thin = (0..3).min_by(|i, j| long[*i].abs().total_cmp(&long[*j].abs()));
     let mut axis = [0.0; 3];
@@ -18,7 +18,7 @@ pub fn frame(long: &[f64; 3]) -> [[f64; 3]; 3] {
     [*long, any, cross(long, &any)]
 }
 
-/// The direction of a vector; `None` if it has none.
+/// The unit vector of a vector; `None` for zero.
 pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
     let size = dot(v, v).sqrt();
     (size > 0.0 && size.is_finite()).then(|| v.map(|x| x / size))

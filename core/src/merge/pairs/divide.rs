@@ -1,4 +1,4 @@
-//! Crowds of many operands, divided between two groups that lie along different directions.
+//! Divides crowds of many operands between two groups with different directions.
 
 use super::boxes::Boxed;
 use super::line::direction_along;
@@ -8,23 +8,24 @@ use crate::geometry::doubles::vector::{cross, dot};
 
 /// Two groups of a crowd's operands.
 pub struct Groups {
-    /// The elements; those of one operand follow each other.
+    /// The elements, grouped by operand.
     pub elements: Vec<Boxed>,
-    /// The place at which the second group begins.
+    /// The index at which the second group begins.
     pub middle: usize,
 }
 
-/// An operand's elements, and the sine of the angle at which they lie to those of the largest one.
+/// An operand's elements, and the sine of the angle between their direction and that of the largest
+/// operand.
 struct Run<'a> {
     elements: &'a [Boxed],
     bend: f64,
 }
 
-/// Divides a crowd between groups of about equal size where the directions in which operands are
-/// long differ most; `None` if there is only one operand.
+/// Divides a crowd between groups of about equal size where the directions of long operands differ most;
+/// `None` if there is only one operand.
 ///
-/// Bundles of needles then come apart before they are divided in themselves: two bundles at an angle
-/// show few pairs as seen along the line across both, and one bundle as seen along itself.
+/// So bundles of needles are separated before they are divided themselves: two bundles at an angle have few
+/// pairs seen along the line across both, and one bundle seen along itself.
 pub fn divided(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Option<Groups> {
     let mut runs = runs(crowd, swept);
     runs.sort_by(|a, b| a.bend.total_cmp(&b.bend));
@@ -44,7 +45,7 @@ fn runs(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Vec<Run<'_>> {
     };
     let chunks = crowd.chunk_by(|a, b| a.operand == b.operand);
     let runs: Vec<_> = chunks.map(|run| (run, long(run))).collect();
-    // Of equal ones the first.
+    // The first of equal ones.
     let largest = runs.iter().rev().max_by_key(|(run, _)| run.len());
     let straight = largest.and_then(|(_, long)| *long);
     let bend = |long: Option<[f64; 3]>| {
@@ -58,7 +59,7 @@ fn runs(crowd: &[Boxed], swept: impl Fn(&Boxed) -> Swept) -> Vec<Run<'_>> {
     runs.into_iter().map(with_bend).collect()
 }
 
-/// The number of runs before the best division of some, and that of their elements.
+/// The number of runs before the best division, and the number of their elements.
 fn division(runs: &[Run], size: usize) -> Option<(usize, usize)> {
     let ends = runs.iter().scan(0, |end, run| {
         *end += run.elements.len();
@@ -67,7 +68,7 @@ fn division(runs: &[Run], size: usize) -> Option<(usize, usize)> {
     let score = |(count, end): (usize, usize)| {
         let smaller = end.min(size - end);
         let jump = runs[count].bend - runs[count - 1].bend;
-        // Groups of less than a quarter would take too many divisions to come down.
+        // Groups of less than a quarter would need too many divisions.
         let jump = if 4 * smaller < size { 0.0 } else { jump };
         (jump * as_double(smaller), smaller)
     };
@@ -91,7 +92,7 @@ mod tests {
 
     #[test]
     fn bundles_at_an_angle_come_apart() {
-        // Operands of the one bundle stand between those of the other.
+        // Operands of one bundle alternate with those of the other.
         let along = |at: u32| [[9000, 10, 0], [9000, -10, 0]][at as usize / 10 % 2];
         let swept = |at: u32| {
             let corners = needle(at, along(at));

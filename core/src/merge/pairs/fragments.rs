@@ -1,7 +1,7 @@
-//! Crowds of long triangles, told apart by their fragments in small cells.
+//! Separates crowds of long triangles by their fragments in small cells.
 //!
-//! The boxes of needles overlap whatever is near them, so halving space does not separate them. But a
-//! needle crosses few of the cells in which its box lies, and its fragment there has a small box.
+//! The boxes of needles overlap all their surroundings, so halving space does not separate them. But a
+//! needle crosses few of the cells in its box, and its fragment in a cell has a small box.
 
 use super::boxes::{Boxed, Space};
 use super::clip::part_within;
@@ -11,37 +11,37 @@ use crate::arith::convert::as_double;
 use crate::geometry::doubles::Triangle;
 use crate::interrupt::spend;
 
-/// Fragments that are compared all with all, at most: dividing fewer costs about as much.
+/// The most fragments compared all with all: dividing fewer costs about as much.
 const MAX_FRAGMENTS_COMPARED: usize = 64;
 
-/// Each axis is divided at one of so many places, less one.
+/// The candidate places divide each axis into this many intervals.
 const PLACES: usize = 16;
 
 /// A division separates elements if the parts of the cell have less than this share of its pairs.
 const FEWER: f64 = 7.0 / 8.0;
 
-/// So many divisions may separate nothing, one after the other, unless the part at hand has half of the
-/// pairs. Near the corner of a fan one axis leaves all needles on both sides, and another then parts them
-/// from walls.
+/// The number of consecutive divisions that may separate nothing, unless a part has at most half of the
+/// pairs. Near the corner of a fan, one axis leaves all needles on both sides, and another then separates
+/// them from walls.
 ///
-/// None leaves more pairs than there were, so there are never more fragments than pairs.
+/// No division increases the number of pairs, so there are never more fragments than pairs.
 const PATIENCE: u32 = 2;
 
-/// A crowd's elements, and the cells that are still to be divided.
+/// A crowd's elements, and the cells still to be divided.
 pub struct Crowd {
-    /// By number, where they are known; scaled as the boxes are.
+    /// By number, where known; scaled like the boxes.
     corners: Vec<Option<Triangle>>,
-    /// Above what clipping is off.
+    /// A bound above the error of clipping.
     slack: f64,
     open: Vec<Fragments>,
 }
 
-/// The fragments of elements in a cell, those of one operand after each other.
+/// The fragments of elements in a cell, grouped by operand.
 pub struct Fragments {
-    /// The boxes around them, numbered by the elements' places in the crowd.
+    /// Their boxes, numbered by the elements' indices in the crowd.
     pub elements: Vec<Boxed>,
     pub space: Space,
-    /// So many divisions more may leave many pairs.
+    /// The number of further divisions that may leave many pairs.
     patience: u32,
 }
 
@@ -61,7 +61,7 @@ impl Division {
 }
 
 impl Crowd {
-    /// Elements: their boxes, and what these were before they were shortened by some bits.
+    /// Elements, with their boxes before and after dropping `shift` low bits.
     pub fn of(boxed: &[Boxed], swept: &[Swept], shift: u32) -> Self {
         let scale = 1.0 / as_double(1u64 << shift);
         let scaled = |corners: Triangle| corners.map(|p| p.map(|x| x * scale));
@@ -81,13 +81,13 @@ impl Crowd {
         }
     }
 
-    /// The fragment in a cell of one in a larger cell; `None` if there is none.
+    /// The fragment of an element in a cell, clipped from a larger cell's; `None` if it is empty.
     fn fragment(&self, of: &Boxed, space: &Space) -> Option<Boxed> {
         let Some(corners) = &self.corners[of.number as usize] else {
             return Some(*of);
         };
         let (low, high) = space.ends();
-        // A cell holds the places above its low end, up to the next above its high one.
+        // A cell contains the places above its low end, up to the next above its high end.
         let low = low.map(|x| f64::from(x) + 1.0 - self.slack);
         let high = high.map(|x| f64::from(x) + 1.0 + self.slack);
         let [low, high] = part_within(corners, &[low, high])?;
@@ -97,8 +97,8 @@ impl Crowd {
         )
     }
 
-    /// The fragments on both sides of the place that leaves the fewest pairs; `None` if it is not worth
-    /// dividing them.
+    /// The fragments on both sides of the place that leaves the fewest pairs; `None` if dividing does not
+    /// pay.
     fn divide(&self, whole: &Fragments) -> Option<[Fragments; 2]> {
         let places = (0..3).flat_map(|axis| whole.divisions(axis));
         let best = places.min_by(|a, b| a.left().total_cmp(&b.left()))?;
@@ -131,8 +131,8 @@ impl Crowd {
 impl Iterator for Crowd {
     type Item = Fragments;
 
-    /// The fragments in a cell that is not worth dividing. In the end any two elements that meet had
-    /// fragments in one whose boxes overlap.
+    /// The fragments in a cell that is not worth dividing. Any two elements that meet have overlapping
+    /// boxes of fragments in one of these cells.
     fn next(&mut self) -> Option<Fragments> {
         while let Some(whole) = self.open.pop() {
             spend(whole.elements.len());
@@ -150,7 +150,7 @@ impl Iterator for Crowd {
 }
 
 impl Fragments {
-    /// The patience with the parts below and above a place; `None` if there is none for dividing there.
+    /// The patience for the parts below and above a place; `None` if none is left for dividing there.
     fn patience_after(&self, division: &Division) -> Option<[u32; 2]> {
         let before = self.pairs();
         if division.left() <= FEWER * before {
@@ -179,7 +179,7 @@ impl Fragments {
         self.elements.chunk_by(|a, b| a.operand == b.operand)
     }
 
-    /// The places at which an axis can be divided.
+    /// The candidate places for dividing an axis.
     fn divisions(&self, axis: usize) -> impl Iterator<Item = Division> + use<> {
         let (low, high) = self.space.ends();
         let (low, length) = (low[axis], high[axis] - low[axis]);
@@ -201,17 +201,17 @@ impl Fragments {
     }
 }
 
-/// The numbers of elements up to each of some places.
+/// The numbers of elements up to each candidate place.
 #[derive(Default)]
 struct Tally {
-    /// By so many more than up to the place before.
+    /// The increase over the previous place.
     more: [f64; PLACES + 1],
-    /// By so much more is the sum of the squares of the operands' numbers.
+    /// The increase of the sum of squares of the operands' numbers.
     more_squares: [f64; PLACES + 1],
 }
 
 impl Tally {
-    /// Adds an operand's elements, each from a place on.
+    /// Adds an operand's elements, given the place where each begins.
     fn add(&mut self, places: impl Iterator<Item = usize>) {
         let mut own = [0.0; PLACES + 1];
         places.for_each(|place| own[place] += 1.0);
@@ -242,7 +242,7 @@ fn as_coordinate(x: f64) -> i32 {
     x.floor() as i32
 }
 
-/// One of the places on an axis, or the nearest end.
+/// The candidate place on an axis, clamped to its ends.
 #[allow(
     clippy::cast_sign_loss,
     clippy::cast_possible_truncation,
@@ -258,7 +258,7 @@ mod tests {
     use crate::arith::convert::as_whole;
     use crate::geometry::axes::each_axis;
 
-    /// A disc of needles from one corner to an arc of short walls, each an operand of its own.
+    /// A disc of needles from one corner to an arc of short walls; each is an operand of its own.
     fn disc(sides: u32) -> Vec<Swept> {
         let corner = |k: u32| {
             let (y, x) = (f64::from(k) / f64::from(sides) * std::f64::consts::PI).sin_cos();
@@ -290,7 +290,7 @@ mod tests {
         Crowd::of(&boxes, swept, 0)
     }
 
-    /// Twice as many needles and walls are about twice as many pairs in cells.
+    /// Twice as many needles and walls have about twice as many pairs in cells.
     #[test]
     fn needles_come_apart_from_walls_at_their_ends() {
         let pairs = |sides: u32| crowd(&disc(sides)).map(|cell| cell.pairs()).sum::<f64>();

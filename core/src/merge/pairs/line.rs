@@ -1,4 +1,4 @@
-//! Lines to sweep along, and how elements lie along them.
+//! Lines to sweep along, and the extents of elements along them.
 
 use super::direction::{frame, unit, Span, SLACK};
 use super::view::{views, View, OFF};
@@ -7,10 +7,10 @@ use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::vector::{cross, dot};
 
-/// Elements from which other lines than the axes are worth finding.
+/// The number of elements from which lines other than the axes are worth finding.
 pub const SLANTED_LINES_FROM: usize = 512;
 
-/// Lines closer than this cosine are nearly one: their plane shows little.
+/// Lines with a larger cosine are nearly parallel: their plane shows little.
 const PARALLEL: f64 = 0.8;
 
 /// A line, and the elements along it.
@@ -20,17 +20,17 @@ pub struct Line {
     pub crowding: f64,
 }
 
-/// A measure that gives points their places along a line.
+/// A measure of the places of points along a line.
 #[derive(Clone, Copy)]
 pub enum Gauge {
     /// The distance in a direction.
     Along([f64; 3]),
-    /// The slope at which they are seen from a point.
+    /// The slope seen from a point.
     Seen(View),
 }
 
 impl Gauge {
-    /// Return whether the plane of two lines shows more than one of them.
+    /// Return whether the plane of two lines shows more than one of them does.
     pub fn is_across(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < PARALLEL,
@@ -38,7 +38,7 @@ impl Gauge {
         }
     }
 
-    /// Return whether what is straight in space is straight in the plane of two lines.
+    /// Return whether straight lines in space are straight in the plane of two gauges.
     pub fn keeps_straight(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(_), Self::Along(_)) => true,
@@ -47,8 +47,8 @@ impl Gauge {
         }
     }
 
-    /// The places of a triangle's corners, or of what has the same shadow; `None` if it has no
-    /// bounded one.
+    /// The places of a triangle's corners, or of a triangle with the same shadow; `None` if the shadow is
+    /// unbounded.
     pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         match self {
             Self::Along(direction) => Some(corners.map(|p| dot(&p, direction))),
@@ -56,7 +56,7 @@ impl Gauge {
         }
     }
 
-    /// A bound on how far places are off, for coordinates up to a size.
+    /// A bound on the error of places, for coordinates up to a size.
     pub fn slack(&self, size: f64) -> f64 {
         match self {
             Self::Along(_) => size * SLACK,
@@ -66,8 +66,8 @@ impl Gauge {
 }
 
 impl Line {
-    /// The axes and, among many elements, lines along and across the directions in which they are
-    /// long, and slopes as seen from the corner that most of an operand's have in common.
+    /// The axes and, for many elements, lines along and across the directions of long elements, and slopes
+    /// seen from the corner that most elements of an operand share.
     pub fn all(elements: &[&Swept]) -> Vec<Self> {
         let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
         if elements.len() > SLANTED_LINES_FROM {
@@ -95,7 +95,7 @@ impl Line {
         Some(Self::new(Gauge::Along(*direction), spans))
     }
 
-    /// `None` if no element is all ahead.
+    /// `None` if no element is completely ahead.
     fn seen(elements: &[&Swept], view: &View) -> Option<Self> {
         let spans = view.spans(elements)?;
         Some(Self::new(Gauge::Seen(*view), spans))
@@ -111,7 +111,7 @@ impl Line {
     }
 }
 
-/// The sum of extents relative to the whole: how many elements overlap at a point.
+/// The sum of extents relative to the whole: the average number of elements that overlap at a point.
 fn crowding(spans: &[Span]) -> f64 {
     let low = spans.iter().fold(f64::INFINITY, |m, s| m.min(s[0]));
     let high = spans.iter().fold(f64::NEG_INFINITY, |m, s| m.max(s[1]));
@@ -119,8 +119,8 @@ fn crowding(spans: &[Span]) -> f64 {
     sum / (high - low).max(f64::MIN_POSITIVE)
 }
 
-/// For the first operand and for the others the direction in which their elements are long and two
-/// across it, and the one across both.
+/// For the first operand and for the others: the direction of long elements, two perpendicular to it, and
+/// the one across both operands' directions.
 fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
     let own = elements.first().map_or(0, |e| e.operand);
     let (first, others): (Vec<&Swept>, Vec<&Swept>) =
@@ -133,7 +133,7 @@ fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
     found.iter().filter_map(unit).collect()
 }
 
-/// The direction in which elements are long.
+/// The direction of long elements.
 pub fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
@@ -153,7 +153,7 @@ pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
     (0..3).map(edge).max_by(longer)
 }
 
-/// The extents along a direction, widened by their rounding; `None` if an element has no corners.
+/// The extents along a direction, padded for rounding; `None` if an element has no corners.
 fn projections(elements: &[&Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
     elements
         .iter()

@@ -1,7 +1,7 @@
 //! Pairs of elements of different operands that may meet.
 //!
-//! Space is halved while that separates boxes. Crowds that it does not separate are told apart by what
-//! their elements have in smaller cells, and by sweeps along the lines on which these overlap least.
+//! Space is halved while that separates boxes. Elements in the remaining crowds are separated by their
+//! parts in smaller cells, and by sweeps along the lines on which they overlap least.
 
 mod boxes;
 mod clip;
@@ -22,7 +22,7 @@ use divide::{divided, Groups};
 use fragments::{Crowd, Fragments};
 use view::share_corner;
 
-/// An element as a sweep sees it: its operand, its box, and corners whose convex hull holds it.
+/// An element for a sweep: its operand, its box, and corners whose convex hull contains it.
 #[derive(Clone, Debug)]
 pub struct Swept {
     /// The operand.
@@ -31,15 +31,15 @@ pub struct Swept {
     pub low: Lattice,
     /// The highest coordinates inside the cell, relative to its low corner.
     pub high: Lattice,
-    /// Three corners of a triangle, relative to the same; nothing if only the box is known.
+    /// Three corners of a triangle, relative to the same corner; `None` if only the box is known.
     pub corners: Option<[[f64; 3]; 3]>,
 }
 
-/// Calls `meet` for all pairs of different operands that may meet, the lower number first; gives up
-/// where it does, where too many elements lie above each other along every line, or where a crowd's
-/// operands have a corner in common: all that have it would meet.
+/// Calls `meet` for all pairs of different operands that may meet, the lower number first. Gives up if
+/// `meet` does, if too many elements overlap along every line, or if a crowd's operands share a corner,
+/// where all would meet.
 ///
-/// Elements of one operand follow each other; `swept` gives the element with a number.
+/// Elements are grouped by operand; `swept` gives the element with a number.
 pub fn pairs(
     elements: Vec<Boxed>,
     swept: impl Fn(u32) -> Swept,
@@ -63,14 +63,14 @@ pub fn pairs(
     })
 }
 
-/// As [`pairs`], for any number of operands with few elements each; gives up only if `meet` does.
+/// As [`pairs`], for many operands with few elements each; gives up only if `meet` does.
 ///
 /// A pair may be found more than once.
 ///
 /// # Cost
-/// Crowds that halving does not separate are clipped to smaller cells as long as these separate them.
-/// What is left is divided between two groups of operands again and again, each swept against the
-/// other; where sweeps separate nothing either, all are compared.
+/// Crowds that halving does not separate are clipped to smaller cells as long as these separate them. The
+/// rest is divided between two groups of operands repeatedly, each swept against the other; where sweeps
+/// separate nothing either, all are compared.
 ///
 /// # Example
 /// ```
@@ -105,8 +105,8 @@ pub fn pairs_of_many(
         crowded.extend_from_slice(crowd);
         Some(())
     })?;
-    // Fragments of a pair may meet elsewhere than where its boxes have their low corner, so all crowds
-    // are one.
+    // Fragments of a pair may meet elsewhere than at the low corner of the boxes' intersection, so all
+    // crowds are searched together.
     let crowded = each_once(crowded);
     let all: Vec<Swept> = crowded.iter().map(|e| swept(e.number)).collect();
     let meet = |a: &Boxed, b: &Boxed| {
@@ -117,7 +117,7 @@ pub fn pairs_of_many(
     cells.try_for_each(|cell| compare(cell, |e| swept_as(e, &all, shift), meet))
 }
 
-/// A fragment as a sweep sees it.
+/// A fragment as an element for a sweep.
 fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
     let (low, high) = fragment.ends();
     Swept {
@@ -127,7 +127,7 @@ fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
     }
 }
 
-/// Calls `meet` for the pairs of fragments in a cell; gives up where it does.
+/// Calls `meet` for the pairs of fragments in a cell; stops if it returns `None`.
 fn compare(
     cell: Fragments,
     swept: impl Fn(&Boxed) -> Swept,
@@ -148,7 +148,7 @@ fn compare(
     Some(())
 }
 
-/// Calls `meet` for the pairs of an element of one group and one of another; gives up where it does.
+/// Calls `meet` for the pairs between two groups; stops if it returns `None`.
 fn sweep_groups(
     (first, second): (&[Boxed], &[Boxed]),
     swept: &impl Fn(&Boxed) -> Swept,
@@ -190,12 +190,12 @@ mod tests {
     use crate::geometry::apart::pierces;
     use crate::geometry::axes::each_axis;
 
-    /// More elements than this are swept along slanted lines, too.
+    /// More elements than this are also swept along slanted lines.
     const MANY: usize = 512;
 
     const REACH: i64 = 2000;
 
-    /// A triangle at a place, the far side within a few steps of where a direction leads.
+    /// A triangle from a place; its far side is within a few steps of the end of a direction.
     fn sector(apex: Lattice, along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
         let near = || [-300..=300i64, -300..=300i64, -300..=300i64];
         (near(), near()).prop_map(move |(a, b)| {
@@ -204,7 +204,7 @@ mod tests {
         })
     }
 
-    /// Two fans, whose apexes are near each other, or the same just before where what counts begins.
+    /// Two fans with apexes near each other, also just below the clipped range.
     fn fans() -> impl Strategy<Value = Scene> {
         let place = || [-9..=9i64, -9..=9i64, -9..=9i64];
         let direction = || [50..=200i64, -200..=200i64, -200..=200i64];
@@ -223,7 +223,7 @@ mod tests {
         })
     }
 
-    /// A triangle along a direction, within a few steps beside it.
+    /// A triangle along a direction, a few steps wide.
     fn needle(along: Lattice) -> impl Strategy<Value = [Lattice; 3]> {
         let near = || [-99..=99i64, -99..=99i64, -99..=99i64];
         (near(), near(), near(), 0..=9i64).prop_map(move |(a, b, c, length)| {
@@ -232,7 +232,7 @@ mod tests {
         })
     }
 
-    /// Triangles with their operands, and from which x on they count.
+    /// Triangles with their operands, and the least x that counts.
     #[derive(Clone, Debug)]
     struct Scene {
         triangles: Vec<(usize, [Lattice; 3])>,
@@ -271,7 +271,7 @@ mod tests {
             .prop_map(sorted)
     }
 
-    /// The pairs that are found, the lower number first; `None` where the search gives up.
+    /// The pairs found, the lower number first; `None` if the search gives up.
     fn found(scene: &Scene) -> Option<HashSet<(usize, usize)>> {
         let triangles = scene.triangles.iter();
         let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
@@ -286,7 +286,7 @@ mod tests {
         Some(found)
     }
 
-    /// Return whether triangles of several operands have a corner in common.
+    /// Return whether triangles of different operands share a corner.
     fn touch(scene: &Scene) -> bool {
         let mut owners = HashMap::new();
         let corners = scene.triangles.iter().flat_map(|(k, t)| t.map(|p| (*k, p)));
@@ -294,7 +294,7 @@ mod tests {
         counted.any(|(k, p)| *owners.entry(p).or_insert(k) != k)
     }
 
-    /// The pairs that the search for many operands finds.
+    /// The pairs found by the search for many operands.
     fn found_of_many(scene: &Scene) -> HashSet<(usize, usize)> {
         let triangles = scene.triangles.iter();
         let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
@@ -313,7 +313,7 @@ mod tests {
         found(scene).map_or_else(|| touch(scene), |found| holds_all(scene, &found))
     }
 
-    /// Return whether all pairs that meet are among some.
+    /// Return whether all pairs that meet were found.
     fn holds_all(scene: &Scene, found: &HashSet<(usize, usize)>) -> bool {
         let meet = |i: usize, j: usize| {
             let (a, b) = (&scene.triangles[i], &scene.triangles[j]);
@@ -324,7 +324,7 @@ mod tests {
         all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
     }
 
-    /// The sides of a cone over a polygon of so many corners.
+    /// The sides of a cone over a polygon with `sides` corners.
     fn cone(operand: usize, sides: u32, apex: Lattice) -> Vec<(usize, [Lattice; 3])> {
         let corner = |k: u32| {
             let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
@@ -339,7 +339,7 @@ mod tests {
         (0..sides).map(side).collect()
     }
 
-    /// Two cones, the apex of the second at a place beside that of the first.
+    /// Two cones; the apex of the second is offset from the first's.
     fn cones(sides: [u32; 2], by: Lattice) -> Scene {
         let triangles = [cone(0, sides[0], [0; 3]), cone(1, sides[1], by)].concat();
         Scene {

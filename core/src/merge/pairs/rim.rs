@@ -1,9 +1,9 @@
-//! The rims of triangles in the plane of two lines.
+//! The rims of triangles in the plane of two gauges.
 
 use super::direction::Span;
 use super::line::Gauge;
 
-/// The points of the plane for which normal · point is at most the limit.
+/// The points of the plane with normal · point at most the limit.
 #[derive(Clone, Copy)]
 pub struct HalfPlane {
     normal: [f64; 2],
@@ -11,17 +11,16 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// All of the plane.
+    /// The whole plane.
     const ALL: Self = Self {
         normal: [0.0; 2],
         limit: f64::INFINITY,
     };
 
-    /// Return the half-plane that holds the points `corners` and ends along the line through the
-    /// first two of them.
+    /// Return the half-plane that contains the points `corners`, bounded by the line through the first two.
     ///
-    /// Any normal will do, so that only products with it are rounded: by a few units in the last
-    /// place of the coordinates, well below what these are off.
+    /// Any normal is valid, so that only products with it are rounded: by a few units in the last place of
+    /// the coordinates, well below the coordinates' own error.
     fn beside(corners: [[f64; 2]; 3], slack: f64) -> Self {
         let [a, b, c] = corners;
         let across = [b[1] - a[1], a[0] - b[0]];
@@ -46,8 +45,8 @@ impl HalfPlane {
     }
 }
 
-/// The half-planes beside the edges of a triangle's shadow in the plane of two lines, for
-/// coordinates up to a size; all of the plane where edges would not be straight in it.
+/// The half-planes at the edges of a triangle's shadow in the plane of two lines, for coordinates up to a
+/// size; the whole plane where edges would not be straight.
 pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[Gauge; 2], size: f64) -> [HalfPlane; 3] {
     let seen = corners.filter(|_| plane[0].keeps_straight(&plane[1]));
     let shadow = seen.and_then(|c| Some([plane[0].places(c)?, plane[1].places(c)?]));

@@ -1,9 +1,9 @@
-//! Pairs of elements whose extents overlap, found by sweeps along lines.
+//! Pairs of elements with overlapping extents, found by sweeps along lines.
 //!
-//! A line is a coordinate axis, or one along or across the direction in which most elements are long:
-//! needles overlap in every box, but hardly in a projection across them. Triangles around a common corner
-//! overlap in every projection, but hardly as seen from that corner. In the plane of the two best lines
-//! also the edges of triangles tell them from boxes.
+//! A line is a coordinate axis, or one along or across the direction of most long elements: needles overlap
+//! in every box, but rarely in a projection across them. Triangles around a common corner overlap in every
+//! projection, but rarely as seen from that corner. In the plane of the two best lines, the edges of
+//! triangles also exclude boxes.
 
 use super::direction::{largest_coordinate, Span};
 use super::line::{longest_edge, Line, SLANTED_LINES_FROM};
@@ -17,11 +17,11 @@ use crate::mesh::tasks::{each, Worth};
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
 const CROWDED: f64 = 3e8;
 
-/// So many pairs of spans are compared in the time of one unit of work.
+/// The number of pairs of spans compared per unit of work.
 const PAIRS: usize = 16;
 
-/// Calls `meet` for all pairs of different operands whose extents overlap along every line, the
-/// lower index first; gives up with `None` where too many elements lie above each other on each.
+/// Calls `meet` for all pairs of different operands whose extents overlap along every line, the lower index
+/// first; returns `None` if too many elements overlap along each line.
 pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
     let parties = parties(elements);
     let sweeps = each(Worth::Task, parties.iter().collect(), |numbers| {
@@ -35,8 +35,8 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
     Some(())
 }
 
-/// The elements, all together or, if two operands have many, as pairs of groups that suit different
-/// lines: each operand's long elements and its short ones against the other's.
+/// The elements in one group or, if two operands have many, in pairs of groups that suit different lines:
+/// each operand's long and short elements against the other's.
 fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
     let own = elements[0].operand;
     let (ours, others): (Vec<usize>, Vec<usize>) =
@@ -52,7 +52,7 @@ fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// Those at least half as long as the longest, and the others.
+/// The elements at least half as long as the longest, and the others.
 fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
     let length = |i: &usize| {
         let edge = elements[*i].corners.as_ref().and_then(longest_edge);
@@ -75,13 +75,13 @@ struct Sweep {
     crowding: f64,
 }
 
-/// An operand's elements in their order along the line on which all overlap least.
+/// An operand's elements, sorted along the line on which all overlap least.
 struct Swath {
-    /// Along that line.
+    /// Extents along that line.
     first: Vec<Span>,
-    /// Along the next best line.
+    /// Extents along the next best line.
     second: Vec<Span>,
-    /// Along the others.
+    /// Extents along the other lines.
     others: Vec<Vec<Span>>,
     /// The half-planes that bound each element in the plane of the two best lines.
     rims: Vec<[HalfPlane; 3]>,
@@ -123,7 +123,7 @@ impl Sweep {
         }
     }
 
-    /// About how many pairs are compared.
+    /// The approximate number of pairs compared.
     fn cost(&self) -> f64 {
         self.crowding * as_double(self.size)
     }
@@ -143,7 +143,7 @@ impl Sweep {
 }
 
 impl Swath {
-    /// Finds for each element those of another operand that begin after it; with it, too, where
+    /// Finds for each element those of another operand that begin after it, or also at the same place if
     /// `level` is set.
     fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
         let mut start = 0;

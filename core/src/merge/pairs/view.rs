@@ -1,7 +1,7 @@
-//! Slopes at which elements are seen from a corner that many of them share.
+//! Slopes of elements seen from a corner that many of them share.
 //!
-//! A fan of triangles overlaps in every box and in every projection. Seen from its apex each triangle
-//! is a stroke, and the strokes follow each other around it.
+//! A fan of triangles overlaps in every box and in every projection. Seen from its apex, each triangle is a
+//! line, and the lines follow each other around it.
 
 use rustc_hash::FxHashMap;
 
@@ -10,20 +10,20 @@ use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::{dot, less};
 
-/// An operand's elements are a fan if one in so many has the apex.
+/// An operand's elements are a fan if at least one in this many has the apex.
 const FAN: usize = 4;
 
-/// A point is ahead if it is farther than this share of the largest coordinate.
+/// A point is ahead if its depth is more than this share of the largest coordinate.
 const AHEAD: f64 = 1e-6;
 
-/// A point is ahead if its slope is at most this.
+/// A point is ahead if its slope is less than this.
 const STEEP: f64 = 16.0;
 
-/// The error of slopes of points ahead: coordinates and depths are off by less than `SLACK` of the
+/// The error of slopes of points ahead: coordinates and depths are off by less than `SLACK` times the
 /// largest coordinate.
 pub const OFF: f64 = (1.0 + STEEP) * SLACK / AHEAD;
 
-/// A point to look from, a direction to look in, and one in which slopes are measured.
+/// An eye point, a viewing direction, and a direction to measure slopes in.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     eye: [f64; 3],
@@ -35,8 +35,7 @@ pub struct View {
 
 /// The views from the apexes of the first operand's elements and of the others'.
 ///
-/// From an apex that elements of two operands share inside the cell no slope tells these apart: there
-/// is none.
+/// None from an apex that elements of two operands share inside the cell: no slope separates these.
 pub fn views(elements: &[&Swept]) -> Vec<View> {
     let own = elements.first().map_or(0, |e| e.operand);
     let (first, others): (Vec<&Swept>, Vec<&Swept>) =
@@ -60,7 +59,7 @@ pub fn views(elements: &[&Swept]) -> Vec<View> {
     alone.filter_map(from).flatten().collect()
 }
 
-/// The corner that most elements have, if these are a fan.
+/// The corner that most elements share, if they are a fan.
 fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
     let mut counts: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     for corner in elements.iter().filter_map(|e| e.corners.as_ref()).flatten() {
@@ -72,13 +71,12 @@ fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
     (count * FAN >= elements.len()).then(|| most.map(f64::from_bits))
 }
 
-/// Return bits that are the same for equal places: coordinates were whole numbers, so that zero has
-/// one sign.
+/// Return bits that are equal for equal places: coordinates are whole numbers, so that zero has one sign.
 fn bits(place: &[f64; 3]) -> [u64; 3] {
     place.map(f64::to_bits)
 }
 
-/// Return whether elements of several operands have a corner in common inside the cell.
+/// Return whether elements of different operands share a corner inside the cell.
 pub fn share_corner(elements: &[Swept]) -> bool {
     let mut owners: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     elements.iter().any(|e| {
@@ -87,7 +85,7 @@ pub fn share_corner(elements: &[Swept]) -> bool {
     })
 }
 
-/// Return whether elements of several operands have this corner in common inside the cell.
+/// Return whether elements of different operands share this corner inside the cell.
 fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
     let touches = |e: &&&Swept| e.is_at(place) && e.has(place);
     let mut operands = elements.iter().filter(touches).map(|e| e.operand);
@@ -109,7 +107,7 @@ impl Swept {
     }
 }
 
-/// The middle of the directions in which an apex's triangles lie.
+/// The mean direction of an apex's triangles.
 fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
     let mut sum = [0.0f64; 3];
     let around = elements.iter().filter(|e| e.has(eye));
@@ -122,13 +120,13 @@ fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
 }
 
 impl View {
-    /// Return whether two views show slopes from one point.
+    /// Return whether two views have the same eye point.
     pub fn shares_eye(&self, other: &Self) -> bool {
         bits(&self.eye) == bits(&other.eye)
     }
 
-    /// The slopes of a triangle's corners; those of one at the eye are another corner's. `None` if
-    /// not all others are ahead.
+    /// The slopes of a triangle's corners; a corner at the eye gets the slope of another one. `None` if any
+    /// other corner is not ahead.
     pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         let at_eye = |p: &[f64; 3]| bits(p) == bits(&self.eye);
         let seen = corners.iter().find(|p| !at_eye(p))?;
@@ -139,7 +137,7 @@ impl View {
         Some(places)
     }
 
-    /// The slope of a point that is ahead.
+    /// The slope of a point, if it is ahead.
     fn slope(&self, p: &[f64; 3]) -> Option<f64> {
         let toward = less(p, &self.eye);
         let depth = dot(&toward, &self.ahead);
@@ -147,11 +145,11 @@ impl View {
         (depth > AHEAD * self.size && slope.abs() < STEEP).then_some(slope)
     }
 
-    /// From the least to the greatest slope of each element, widened by what these are off; all
-    /// slopes for those that are not ahead. `None` if none is.
+    /// The least and greatest slope of each element, padded by their error; all slopes for elements that
+    /// are not ahead. `None` if no element is ahead.
     ///
-    /// A slope is a quotient of linear functions. So on a triangle ahead it is greatest in a corner;
-    /// on one with the eye as a corner it is the same along each line from there.
+    /// A slope is a quotient of linear functions. So on a triangle ahead its extremes are at corners; on a
+    /// triangle with a corner at the eye it is constant along each line from there.
     pub fn spans(&self, elements: &[&Swept]) -> Option<Vec<Span>> {
         let span = |e: &&Swept| {
             let places = self.places(e.corners.as_ref()?)?;

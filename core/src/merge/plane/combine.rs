@@ -1,8 +1,8 @@
 //! Set operations on sets of the plane: by a sweep over both boundaries, or by merging trees.
 //!
-//! A sweep costs what both boundaries have, merging what the smaller one has, once the larger one
-//! has a tree. So a sweep is right for operands of like sizes, and for a large one that meets few
-//! small ones; merging is right for one that meets many.
+//! A sweep costs as much as both boundaries have, a merge as much as the smaller one has, once the larger
+//! one has a tree. So a sweep suits operands of similar sizes, and a large one combined with few small
+//! ones; merging suits a large one combined with many.
 
 use super::input::Outlines;
 use super::sweep::bounded;
@@ -12,16 +12,16 @@ use crate::merge::op::SetOp;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, PlaneSet, TREE};
 
-/// Operands whose sizes differ by more than this factor are unlike.
+/// Operands are unlike if their sizes differ by more than this factor.
 const UNLIKE: usize = 8;
 
-/// A tree that has grown to more than this many times its size at first is built anew.
+/// A tree that grows to more than this many times its first size is rebuilt.
 const GROWTH: usize = 4;
 
-/// Nodes of a tree that is let grow, at most.
+/// The most nodes of a tree that is never rebuilt.
 const MAX_UNSHRUNK: usize = 64;
 
-/// Return the set that a set operation makes of two sets.
+/// Return the result of a set operation on two sets.
 ///
 /// # Errors
 /// `Internal` for a defect.
@@ -48,7 +48,7 @@ fn swept(a: &Boundary, b: &Boundary, op: SetOp) -> Result<Boundary> {
     let mut outlines = Outlines::default();
     outlines.extend(a, 1);
     outlines.extend(b, 2);
-    // Inside the first the number is odd, inside the second it is 2 or 3.
+    // Inside the first set the number is odd, inside the second it is 2 or 3.
     let label = |bit: i32| Label::from_inside(bit != 0);
     bounded(&outlines, |number| {
         op.labels(label(number & 1), label(number & 2)) == Label::In
@@ -70,7 +70,7 @@ fn merged(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
     Ok(set)
 }
 
-/// Return whether two sets are the same.
+/// Return whether two sets are equal.
 ///
 /// # Errors
 /// `Internal` for a defect.

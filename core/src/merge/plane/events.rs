@@ -1,4 +1,4 @@
-//! The stops of a sweep: the corners in order, and the crossings that it finds on its way.
+//! The stops of a sweep: the corners in order, and the crossings found on the way.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -7,7 +7,7 @@ use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 use crate::tree::plane::Corner;
 
-/// The distinct corners by x, then y, and the place of each given corner among them.
+/// The distinct corners by x, then y, and the index of each given corner among them.
 #[derive(Debug)]
 pub(super) struct Stops {
     /// The number of a given corner for each stop.
@@ -21,7 +21,7 @@ impl Stops {
         let mut keys: Vec<Key> = (0..).zip(corners).map(Key::of).collect();
         keys.sort_unstable();
         if !keys.iter().all(|key| key.is_lattice) {
-            // Doubles leave hardly any out of order, which a stable sort makes use of.
+            // The order in doubles is almost exact, which suits a stable sort.
             keys.sort_by(|a, b| a.order(b, corners).then(a.number.cmp(&b.number)));
         }
         let mut stops = Self {
@@ -34,7 +34,7 @@ impl Stops {
             for key in group {
                 stops.places[key.number as usize] = as_number(stops.corners.len());
             }
-            // Questions about lattice points are the cheapest.
+            // Lattice points are the cheapest to test.
             let lattice = group.iter().find(|key| key.is_lattice);
             stops.corners.push(lattice.unwrap_or(&group[0]).number);
         }
@@ -42,11 +42,10 @@ impl Stops {
     }
 }
 
-/// A corner, in the order of its place in doubles, which is that of its place if it is a lattice
-/// point.
+/// A corner, ordered by its place in doubles; for a lattice point this is exact.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Key {
-    /// A number that grows with x, then y.
+    /// A number that increases with x, then y.
     rank: u128,
     number: u32,
     is_lattice: bool,
@@ -72,7 +71,7 @@ impl Key {
     }
 }
 
-/// A number that grows with a double; both zeros have the same.
+/// A number that increases with a double; equal for both zeros.
 fn rank(x: f64) -> u64 {
     let bits = (x + 0.0).to_bits();
     if bits >> 63 == 0 {
@@ -94,7 +93,7 @@ impl Crossings {
         self.0.extend(corner.map(Crossing));
     }
 
-    /// The next crossing, if it does not lie beyond a corner; equal ones count as one.
+    /// The next crossing, if it is not beyond a corner; merges equal ones.
     pub(super) fn before(&mut self, corner: Option<&Corner>) -> Option<Corner> {
         let order = |known: &Crossing| {
             corner.map_or(Ordering::Less, |corner| known.0.point.order(&corner.point))

@@ -9,11 +9,11 @@ use crate::tree::plane::{Boundary, Corner};
 /// Directed segments, each of which adds its weight to the winding numbers on its left.
 #[derive(Clone, Debug, Default)]
 pub struct Outlines {
-    /// The points between which they run, in any order; some may be equal.
+    /// The end points of the segments, in any order; some may be equal.
     pub corners: Vec<Corner>,
     /// The segments.
     pub strands: Vec<Strand>,
-    /// The winding number far away.
+    /// The winding number far outside.
     pub base: i32,
 }
 
@@ -24,12 +24,12 @@ pub struct Strand {
     pub line: Line2,
     /// The numbers of its first and its last corner.
     pub ends: [u32; 2],
-    /// The number that it adds to the winding number on the minus side.
+    /// Its contribution to the winding number on the minus side.
     pub weight: i32,
 }
 
 impl Outlines {
-    /// Adds a segment between lattice points; nothing if they are equal.
+    /// Adds a segment between lattice points, unless they are equal.
     ///
     /// # Errors
     /// `TooLarge` beyond the lattice.
@@ -52,7 +52,7 @@ impl Outlines {
         Ok(())
     }
 
-    /// The number of a corner, which may be the one that was added last.
+    /// The number of a corner; reuses the last corner if it is the same point.
     fn corner(&mut self, at: Lattice2) -> u32 {
         let known = self.corners.last().and_then(|c| c.point.as_lattice());
         if known != Some(at) {
@@ -61,7 +61,7 @@ impl Outlines {
         as_number(self.corners.len()) - 1
     }
 
-    /// Adds the boundary of a set; inside it winding numbers are greater by the weight.
+    /// Adds the boundary of a set; `weight` adds to the winding numbers inside it.
     pub fn extend(&mut self, boundary: &Boundary, weight: i32) {
         let shift = as_number(self.corners.len());
         self.corners.extend_from_slice(&boundary.corners);

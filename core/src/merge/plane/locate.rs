@@ -1,4 +1,4 @@
-//! The locations of many points: a sweep passes them with the corners of a boundary.
+//! The locations of many points, by a sweep over them and the corners of a boundary.
 
 use std::cmp::Ordering;
 
@@ -26,8 +26,8 @@ pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
     Ok(points.iter().map(place).collect())
 }
 
-/// Steps around a corner in doubles: two units in the last place are two steps at most below 2⁵³, and
-/// taking the fraction away is less than one.
+/// Steps around a corner in doubles: two units in the last place are at most two steps below 2⁵³, and
+/// truncation is less than one.
 const SLACK: f64 = 4.0;
 
 /// The box around a boundary's corners, rounded outwards; `None` without corners.

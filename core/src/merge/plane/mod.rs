@@ -1,14 +1,14 @@
-//! Sets of the plane by a sweep: what outlines bound, and what set operations make of boundaries.
+//! Sets of the plane by a sweep: the regions that outlines bound, and set operations on boundaries.
 //!
-//! A line sweeps over the plane from left to right. It keeps the segments that it meets in their
-//! order from below, and stops where one begins, ends or crosses its neighbour. Between two stops it
-//! knows the winding number of each gap, so it can tell which pieces of segments have the set on one
-//! side only: the boundary. All questions are exact.
+//! A line sweeps over the plane from left to right. It keeps the segments that it meets in order from
+//! below, and stops where one begins, ends or crosses its neighbour. Between two stops it knows the winding
+//! number of each gap, and so which pieces of segments have the set on one side only: the boundary. All
+//! predicates are exact.
 //!
 //! # Source
 //! Bentley, Ottmann: *Algorithms for reporting and counting geometric intersections*. IEEE
-//! Transactions on Computers 28, 1979. Mehlhorn, Näher: *LEDA*, 1999, section 10.7: segments that
-//! overlap or meet many at a time.
+//! Transactions on Computers 28, 1979. Mehlhorn, Näher: *LEDA*, 1999, section 10.7: segments that overlap,
+//! or meet many at a time.
 
 mod combine;
 mod events;

@@ -1,4 +1,4 @@
-//! The output of a sweep: the boundary as far as it has come.
+//! The output of a sweep: the boundary so far.
 
 use crate::arith::convert::as_number;
 use crate::geometry::spaces::dim2::Line2;
@@ -6,7 +6,7 @@ use crate::mesh::disjoint::DisjointSets;
 use crate::tree::partition::Label;
 use crate::tree::plane::{Boundary, Corner, Edge};
 
-/// The boundary to the left of the sweep's line.
+/// The boundary to the left of the sweep line.
 #[derive(Debug)]
 pub(super) struct Output {
     corners: Vec<Corner>,
@@ -15,7 +15,7 @@ pub(super) struct Output {
 }
 
 impl Output {
-    /// Nothing yet; the face with number 0 is what lies far away.
+    /// An empty boundary; face 0 is the unbounded one.
     pub(super) fn new() -> Self {
         Self {
             corners: Vec::new(),
@@ -30,17 +30,17 @@ impl Output {
         as_number(self.corners.len()) - 1
     }
 
-    /// A face that is not known to be any other.
+    /// A new face, not yet joined to any other.
     pub(super) fn face(&mut self) -> u32 {
         self.faces.push()
     }
 
-    /// Makes two faces one.
+    /// Merges two faces.
     pub(super) fn join(&mut self, a: u32, b: u32) {
         self.faces.join(a, b);
     }
 
-    /// Adds an edge along a line that runs to the right, given the faces below and above it.
+    /// Adds an edge along a line to the right, between the faces below and above it.
     pub(super) fn edge(&mut self, line: Line2, ends: [u32; 2], faces: [u32; 2], above: Label) {
         let ([first, last], [below, upper]) = (ends, faces);
         self.edges.push(match above {
@@ -59,7 +59,7 @@ impl Output {
         });
     }
 
-    /// The boundary, at the end of the sweep.
+    /// The finished boundary.
     pub(super) fn into_boundary(mut self, outer: Label) -> Boundary {
         for edge in &mut self.edges {
             edge.inside = self.faces.least(edge.inside);

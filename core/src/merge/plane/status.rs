@@ -1,20 +1,20 @@
-//! The status of a sweep: the stretches of lines that its line meets, in their order from below.
+//! The status of a sweep: the stretches of lines that the sweep line meets, in order from below.
 
 use smallvec::SmallVec;
 
 use crate::geometry::side::Side;
 use crate::geometry::spaces::dim2::{Point2, RoundedLine};
 
-/// A stretch of a line in which one or more strands lie, from the last stop on it to the next.
+/// A stretch of a line with one or more strands, from the last stop on it to the next.
 #[derive(Clone, Debug)]
 pub(super) struct Stretch {
-    /// The line, running to the right; its minus side lies above.
+    /// The line, directed to the right; its minus side is above.
     pub line: RoundedLine,
-    /// The stop where the first of the strands ends.
+    /// The stop where the first strand ends.
     pub right: u32,
     /// The strands.
     pub strands: SmallVec<[u32; 2]>,
-    /// The rise of winding numbers from below to above.
+    /// The increase of the winding number from below to above.
     pub rise: i32,
     /// The winding number below.
     pub below: i32,
@@ -31,7 +31,7 @@ impl Stretch {
     }
 }
 
-/// The place of a point among the stretches that the sweep's line meets.
+/// The place of a point among the stretches on the sweep line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// The number of stretches below it.
@@ -40,7 +40,7 @@ pub(super) struct Place {
     pub last: usize,
 }
 
-/// The stretches from below.
+/// The stretches, in order from below.
 #[derive(Debug, Default)]
 pub(super) struct Status {
     order: Vec<u32>,
@@ -49,7 +49,7 @@ pub(super) struct Status {
 }
 
 impl Status {
-    /// The stretch in a place from below.
+    /// The stretch at an index from below.
     pub(super) fn at(&self, place: usize) -> &Stretch {
         &self.stretches[self.order[place] as usize]
     }
@@ -59,7 +59,7 @@ impl Status {
         self.order.len()
     }
 
-    /// Return the place of a point of the sweep's line; `stop` is its number, if it is a corner.
+    /// Return the place of a point on the sweep line; `stop` is its number, if it is a corner.
     pub(super) fn place(&self, point: &Point2, stop: Option<u32>) -> Place {
         let side = |number: &u32| {
             let stretch = &self.stretches[*number as usize];
@@ -69,7 +69,7 @@ impl Status {
                 stretch.line.side_of(point)
             }
         };
-        // What lies above a line running to the right lies on its minus side.
+        // Above a line to the right is its minus side.
         let first = self.order.partition_point(|n| side(n) == Side::Minus);
         let through = self.order[first..]
             .iter()
@@ -78,10 +78,10 @@ impl Status {
         Place { first, last }
     }
 
-    /// Puts other stretches in place of those through a point.
+    /// Replaces the stretches through a point.
     ///
     /// # Cost
-    /// Where their number changes, the stretches above are moved by four bytes each.
+    /// If their number changes, four bytes are moved for each stretch above.
     pub(super) fn exchange(&mut self, place: Place, others: SmallVec<[Stretch; 2]>) {
         let through = &self.order[place.first..place.last];
         if through.len() == others.len() {

@@ -18,11 +18,10 @@ use crate::tree::plane::{Boundary, Corner};
 /// Strands may cross, overlap and repeat.
 ///
 /// # Cost
-/// O((n + k) log n) for n strands that cross in k points, if the sweep's line meets few of them at
-/// once.
+/// O((n + k) log n) for n strands that cross in k points, if the sweep line meets few of them at once.
 ///
 /// # Errors
-/// `NotClosed` if the strands do not give every place one number.
+/// `NotClosed` if the strands do not define one number for every place.
 ///
 /// # Example
 /// ```
@@ -48,7 +47,7 @@ pub fn bounded(outlines: &Outlines, inside: impl Fn(i32) -> bool) -> Result<Boun
     Ok(sweep.into_boundary())
 }
 
-/// A strand as the sweep sees it: it runs to the right.
+/// A strand directed to the right.
 #[derive(Clone, Copy, Debug)]
 struct Running {
     line: Line2,
@@ -65,12 +64,12 @@ pub(super) struct Event {
     pub stop: Option<u32>,
 }
 
-/// A sweep on its way.
+/// The state of the sweep.
 pub(super) struct Sweep<'a, R> {
     outlines: &'a Outlines,
     inside: R,
     stops: Stops,
-    /// The strands from left to right, and where those that begin in each stop lie in that list.
+    /// The strands from left to right, and the index of the first that begins in each stop.
     strands: Vec<Running>,
     starts: Vec<u32>,
     passed: u32,
@@ -96,7 +95,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// The stop that comes next.
+    /// The next stop.
     pub(super) fn next(&mut self) -> Option<Event> {
         let stop = self.passed;
         let corner = self.corner(stop).copied();
@@ -110,7 +109,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         })
     }
 
-    /// The corner that is a stop.
+    /// The corner of a stop.
     fn corner(&self, stop: u32) -> Option<&Corner> {
         let number = self.stops.corners.get(stop as usize)?;
         self.outlines.corners.get(*number as usize)
@@ -121,12 +120,12 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         self.output.into_boundary(outer)
     }
 
-    /// Return whether the result lies on one side of a stretch only.
+    /// Return whether only one side of a stretch is inside.
     fn separates(&self, stretch: &Stretch) -> bool {
         (self.inside)(stretch.below) != (self.inside)(stretch.above())
     }
 
-    /// Passes a stop: ends the stretches through it and begins those that leave it to the right.
+    /// Processes a stop: ends the stretches through it and begins those that leave it to the right.
     pub(super) fn pass(&mut self, event: &Event) -> Result<()> {
         let place = self.status.place(&event.corner.point, event.stop);
         let (winding, face) = self.below(place.first);
@@ -161,7 +160,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Locate a point that lies before the next stop.
+    /// Locate a point before the next stop.
     pub(super) fn location(&self, point: &Point2) -> Location {
         let place = self.status.place(point, None);
         if place.first < place.last {
@@ -174,7 +173,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// The stretches that leave a stop to the right, from below.
+    /// The stretches that leave a stop to the right, in order from below.
     fn leaving(&self, place: Place, stop: Option<u32>, winding: i32) -> SmallVec<[Stretch; 2]> {
         let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
         for passing in place.first..place.last {
@@ -199,7 +198,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
             .collect()
     }
 
-    /// The stretch of strands on one line.
+    /// The stretch for strands on one line.
     fn stretch(&self, strands: &[u32], below: i32) -> Stretch {
         let running = strands.iter().map(|n| &self.strands[*n as usize]);
         Stretch {
@@ -213,7 +212,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Gives the stretches that leave a stop their faces and their corner, and ends those before it.
+    /// Sets the faces and the corner of the stretches that leave a stop, and ends those before it.
     fn settled(
         &mut self,
         mut leaving: SmallVec<[Stretch; 2]>,
@@ -244,7 +243,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         leaving
     }
 
-    /// Lets the boundary go straight on, if nothing else of it meets this stop.
+    /// Continues the boundary straight on, if nothing else of it meets this stop.
     fn goes_on(&self, arriving: &[usize], leaving: &mut [Stretch], walls: usize) -> bool {
         let ([before], 1) = (arriving, walls) else {
             return false;
@@ -261,7 +260,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         straight
     }
 
-    /// Makes a corner of the boundary, if any of it meets this stop.
+    /// Adds a corner to the boundary, if any of it meets this stop.
     fn turn(&mut self, arriving: &[usize], leaving: &mut [Stretch], walls: usize, corner: &Corner) {
         if arriving.is_empty() && walls == 0 {
             return;
@@ -282,7 +281,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
     }
 
-    /// Notes where two neighbours cross, the upper one in this place.
+    /// Records the crossing of two neighbours; the upper one is at this index.
     fn look(&mut self, place: usize) {
         if place == 0 || place >= self.status.len() {
             return;
@@ -304,7 +303,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     }
 }
 
-/// The strands from left to right by where they begin, and the first of each stop.
+/// The strands sorted by left end, and the first of each stop.
 fn running(outlines: &Outlines, stops: &Stops) -> (Vec<Running>, Vec<u32>) {
     let mut strands = Vec::with_capacity(outlines.strands.len());
     for strand in &outlines.strands {

@@ -1,8 +1,8 @@
 //! Axis-parallel cuts for the top of a tree.
 //!
 //! # Source
-//! The notes' general partition. A convex body, which autopartition makes a chain, becomes a tree
-//! of logarithmic depth; surface meshes are cut a constant number of times per facet in practice.
+//! The notes' general partition. A convex body, a chain under autopartition, becomes a tree of logarithmic
+//! depth; in practice surface meshes are cut a constant number of times per facet.
 
 use super::node::{NodeCut, Piece};
 use super::policy::Tally;
@@ -10,11 +10,11 @@ use crate::geometry::spaces::affine::Affine;
 
 /// The cut at the median of the ends of the pieces' boxes, across the axis of the widest spread.
 ///
-/// Ends are corners, which cuts pass through: facets that meet there are not cut, and those that
-/// lie in the cut are done with.
+/// Ends are corners, which cuts pass through: facets that meet there are not cut, and facets in the cut
+/// need no further division.
 ///
-/// `None` if no axis divides them well: each side must have at most three quarters of the pieces.
-/// This bounds the depth by log(n)/log(4/3), and with it the number of fragments.
+/// `None` if no axis divides them well: each side must have at most three quarters of the pieces. This
+/// bounds the depth by log(n)/log(4/3), and with it the number of fragments.
 pub fn median_cut<S: Affine>(pieces: &[Piece<S>]) -> Option<(NodeCut, S::Hyperplane)> {
     let boxes: Vec<_> = pieces.iter().map(|p| S::bounds(&p.fragment)).collect();
     axes_by_spread::<S>(&boxes).into_iter().find_map(|axis| {
@@ -47,6 +47,6 @@ fn median(values: impl Iterator<Item = f64>) -> Option<i64> {
     }
     let middle = values.len() / 2;
     let (_, median, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    // Within the lattice, hence far below 2^63.
+    // On the lattice, hence far below 2^63.
     Some(median.round() as i64)
 }

@@ -1,4 +1,4 @@
-//! Pieces → tree, one node at a time from the root down.
+//! From pieces to a tree, one node at a time from the root down.
 
 use super::choosing::Chooser;
 use super::node::{Crossing, Fragment, FragmentTree, Node, Piece};
@@ -15,10 +15,10 @@ use crate::tree::trace::Watcher;
 /// Builds a tree.
 ///
 /// # Order
-/// The tree is a function of the list of pieces and the plan.
+/// The list of pieces and the plan determine the tree.
 ///
 /// # Cost
-/// Worst case quadratic for autopartition: a convex body becomes a chain.
+/// Quadratic in the worst case for autopartition: a convex body becomes a chain.
 ///
 /// # Errors
 /// `BadSnapshot` if given cuts do not suit the pieces.
@@ -26,7 +26,7 @@ pub fn build<S: Affine>(pieces: Vec<Piece<S>>, plan: Plan<S>) -> Result<Fragment
     build_watched(pieces, plan, &mut ())
 }
 
-/// Builds a tree and tells of each division; the tree is that of [`build`].
+/// Builds a tree and reports each division; the tree is that of [`build`].
 ///
 /// # Errors
 /// As for [`build`].
@@ -159,7 +159,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         }
     }
 
-    /// Sends pieces to the two sides of a cut and into its coplanar set, their order kept.
+    /// Distributes pieces to the two sides of a cut and its coplanar set, in their order.
     fn distribute(
         &mut self,
         pieces: Vec<Piece<S>>,

@@ -1,5 +1,4 @@
-//! The choice of the hyperplane that divides a region: by a policy, by given cuts, or by whoever is
-//! asked.
+//! The choice of the hyperplane that divides a region: by a policy, by given cuts, or by a callback.
 
 use super::axis::median_cut;
 use super::node::{FragmentTree, NodeCut, Piece};
@@ -30,7 +29,7 @@ pub(super) enum Chooser<S: Affine> {
 }
 
 impl<S: Affine> Chooser<S> {
-    /// Return the chooser of a plan, and the hyperplanes that the tree has of its own.
+    /// Return the chooser of a plan, and the tree's own hyperplanes.
     pub fn of(plan: Plan<S>) -> (Self, Vec<S::Hyperplane>) {
         match plan {
             Plan::Policy { policy, top, .. } => (Self::Policy { policy, top }, Vec::new()),
@@ -53,7 +52,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// The root of the tree that is grown.
+    /// The root of the tree that is extended.
     pub fn root(&self) -> Option<NodeId> {
         match self {
             Self::Grown(tree, _) if !tree.nodes().is_empty() => Some(NodeId::ROOT),
@@ -62,7 +61,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// The child of a node of the tree that is grown.
+    /// The child of a node of the tree that is extended.
     pub fn below(&self, old: Option<NodeId>, half: Half) -> Option<NodeId> {
         match self {
             Self::Grown(tree, _) => tree.child(old?, half),
@@ -94,7 +93,7 @@ impl<S: Affine> Chooser<S> {
         }
     }
 
-    /// Make sure that all that was given was used.
+    /// Make sure that everything given was used.
     pub fn finish(self) -> Result<()> {
         match self {
             Self::Given(rest) if rest.len() > 0 => {
@@ -159,7 +158,7 @@ fn first_that_divides<S: Affine>(
     found.map(|(number, cut)| (number, cut.clone()))
 }
 
-/// Candidates of a list, evenly spaced.
+/// Evenly spaced candidates of a list.
 fn spaced(count: usize, Sample(sample): Sample) -> impl Iterator<Item = usize> {
     let stride = count.div_ceil(sample.max(1)).max(1);
     (0..count).step_by(stride)
@@ -205,7 +204,7 @@ fn asked<S: Affine>(
     }
 }
 
-/// The hyperplane whose larger side has the fewest pieces, supporting or through corners.
+/// The hyperplane, supporting or through corners, whose larger side has the fewest pieces.
 fn through_ends<S: Affine>(
     lines: &Lines,
     pieces: &[Piece<S>],
@@ -229,7 +228,7 @@ fn through_ends<S: Affine>(
     }
 }
 
-/// Hyperplanes through as many corners of the pieces as the space has dimensions.
+/// Hyperplanes through corners of the pieces, as many as the space has dimensions.
 fn corner_cuts<'a, S: Affine>(
     lines: &'a Lines,
     pieces: &[Piece<S>],

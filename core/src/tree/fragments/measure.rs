@@ -26,8 +26,8 @@ impl Measure {
 /// The sizes of R(v) for each node, within the root's region.
 ///
 /// # Exactness
-/// Regions are divided exactly; only their sizes are doubles, from corners that are right to a few
-/// units in the last place.
+/// Regions are divided exactly; only their sizes are doubles, from corners correct to a few units in the
+/// last place.
 ///
 /// # Cost
 /// One division for each node.

@@ -13,7 +13,7 @@ use crate::mesh::handle::NodeId;
 pub struct Piece<S: Affine> {
     /// The convex piece.
     pub fragment: S::Fragment,
-    /// The number of the piece it is a part of.
+    /// The number of the input piece it comes from.
     pub number: u32,
 }
 
@@ -22,11 +22,11 @@ pub struct Piece<S: Affine> {
 pub struct Fragment<S: Affine> {
     /// The part of an input piece.
     pub piece: Piece<S>,
-    /// True if it faces against its node's hyperplane.
+    /// Whether it faces against its node's hyperplane.
     pub flipped: bool,
 }
 
-/// The origin of a node's hyperplane: enough to build the same tree again.
+/// The origin of a node's hyperplane: enough to rebuild the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum NodeCut {
     /// The supporting hyperplane of the input piece with this number.
@@ -38,7 +38,7 @@ pub enum NodeCut {
         /// The coordinate.
         at: i64,
     },
-    /// The hyperplane of the tree's own list with this place, see [`FragmentTree::own`].
+    /// The hyperplane at this index in the tree's own list, see [`FragmentTree::own`].
     Own(u32),
 }
 
@@ -55,13 +55,13 @@ pub struct Node<S: Affine> {
     pub minus: Option<NodeId>,
     /// The subtree on the plus side, unless no facet lies there.
     pub plus: Option<NodeId>,
-    /// The node above and the side of it on which this one lies.
+    /// The parent and the side of it on which this node lies.
     pub parent: Option<(NodeId, Half)>,
     /// The number of cuts above.
     pub depth: u32,
 }
 
-/// A node's hyperplane cut a fragment of this piece in two.
+/// A cut of a fragment of this piece by a node's hyperplane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Crossing {
     /// The node.
@@ -90,7 +90,7 @@ impl<S: Affine> FragmentTree<S> {
         }
     }
 
-    /// The nodes in preorder, minus before plus; the root first.
+    /// The nodes in preorder, minus before plus; the root is first.
     pub fn nodes(&self) -> &[Node<S>] {
         &self.nodes
     }
@@ -105,7 +105,7 @@ impl<S: Affine> FragmentTree<S> {
         &self.crossings
     }
 
-    /// Hyperplanes that come from no facet and need not be parallel to an axis.
+    /// Hyperplanes that come from no facet and may have any direction.
     pub fn own(&self) -> &[S::Hyperplane] {
         &self.own
     }
@@ -119,7 +119,7 @@ impl<S: Affine> FragmentTree<S> {
         }
     }
 
-    /// R(v): the part of `whole` on a node's sides of all cuts above it.
+    /// R(v): the part of `whole` on the node's sides of all cuts above it.
     ///
     /// `None` if there is no such node or nothing is left.
     ///

@@ -15,9 +15,9 @@ pub fn sides<S: Affine>(tree: &FragmentTree<S>, eye: &Viewpoint) -> Vec<Side> {
 
 /// The nodes from the farthest to the nearest.
 ///
-/// What lies beyond a node's hyperplane comes first, then what lies in it, then what lies on the
-/// viewpoint's own side. If the viewpoint is in the hyperplane neither side hides the other; the
-/// plus side comes first. The reverse of this order is a front-to-back order.
+/// The far side of a node's hyperplane comes first, then its coplanar fragments, then the viewpoint's side.
+/// If the viewpoint is in the hyperplane, neither side hides the other and the plus side comes first. The
+/// reverse is a front-to-back order.
 ///
 /// # Source
 /// Fuchs, Kedem, Naylor 1980.

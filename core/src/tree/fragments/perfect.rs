@@ -1,8 +1,8 @@
-//! Perfect autopartitions: trees by supporting hyperplanes alone that cut nothing.
+//! Perfect autopartitions: trees of supporting hyperplanes that cut no piece.
 //!
-//! Deciding whether there is one is NP-hard, so that this is an exhaustive search with a limit. A
-//! hyperplane that cuts nothing is not always a good choice: its piece may be the only one that
-//! separates others later. Hence every such pivot is tried, and sets already decided are looked up.
+//! Deciding whether one exists is NP-hard, so this is an exhaustive search with a limit. A hyperplane that
+//! cuts nothing is not always a good choice: its piece may be the only one that separates others later. So
+//! the search tries every such pivot, and caches decided sets.
 //!
 //! # Source
 //! de Berg, Khosravi, "Finding perfect auto-partitions is NP-hard", 2008.
@@ -15,10 +15,10 @@ use crate::geometry::side::Split;
 use crate::geometry::spaces::affine::Affine;
 use crate::interrupt::poll;
 
-/// The largest number of pieces for which the search is allowed: 2^24 sets at most.
+/// The largest number of pieces for the search: 2^24 sets at most.
 pub const PERFECT_LIMIT: usize = 24;
 
-/// Pieces on the two sides of one piece's hyperplane, and those that it cuts, as sets of bits.
+/// Bit sets of the pieces on the two sides of one piece's hyperplane, and of those it cuts.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sides {
     minus: u32,
@@ -26,7 +26,7 @@ struct Sides {
     split: u32,
 }
 
-/// The cuts, in preorder, of a tree that cuts no piece; `None` if there is no such tree.
+/// The cuts, in preorder, of a tree that cuts no piece; `None` if there is none.
 ///
 /// # Errors
 /// `TooMany` above [`PERFECT_LIMIT`] pieces.
@@ -67,7 +67,7 @@ fn sides_of<S: Affine>(pivot: &Piece<S>, pieces: &[Piece<S>]) -> Sides {
 
 struct Search {
     sides: Vec<Sides>,
-    /// For each set decided, a pivot that leads to a perfect tree, if there is one.
+    /// For each decided set, a pivot that leads to a perfect tree, if there is one.
     pivots: FxHashMap<u32, Option<usize>>,
 }
 

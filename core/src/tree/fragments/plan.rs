@@ -1,4 +1,4 @@
-//! The plan by which a tree is to be built, and what of it is still to be divided.
+//! The plan for building a tree, and the regions still to be divided.
 
 use super::node::{FragmentTree, NodeCut, Piece};
 use super::policy::{Policy, Sample};
@@ -9,28 +9,28 @@ use crate::geometry::side::Half;
 use crate::geometry::spaces::affine::{Affine, Polytope};
 use crate::mesh::handle::NodeId;
 
-/// The plan by which a tree is to be built.
+/// The plan for building a tree.
 pub enum Plan<S: Affine> {
     /// By a policy.
     Policy {
         /// The policy that chooses the pivot.
         policy: Policy,
-        /// Regions with more pieces than this are divided by axis-parallel cuts where that helps;
-        /// `None` for autopartition alone.
+        /// Divide regions with more pieces than this by axis-parallel cuts where that helps; `None` for
+        /// autopartition alone.
         top: Option<usize>,
-        /// The root's region, for policies that ask for it.
+        /// The root's region, for policies that need it.
         region: Option<Polytope<S>>,
     },
     /// By these cuts, one for each node in preorder.
     Given(Vec<NodeCut>),
-    /// By whoever is asked.
+    /// By a callback.
     Asked(Ask<S>),
-    /// By lines through ends of pieces, or through corners of them.
+    /// By lines through ends of pieces, or planes through their corners.
     Lines(Lines),
-    /// As this tree goes, whose pieces are the first of the list; where it ends, by another plan.
+    /// Like this tree, whose pieces come first in the list; at its leaves by another plan.
     Grown(Box<FragmentTree<S>>, Box<Self>),
-    /// By these hyperplanes, each where it does not leave all pieces on one side, in their order;
-    /// then by another plan, which may name them.
+    /// By these hyperplanes in order, skipping those with all pieces on one side; then by another plan,
+    /// which may refer to them.
     Own(Vec<S::Hyperplane>, Box<Self>),
 }
 
@@ -55,21 +55,21 @@ impl<S: Affine> Plan<S> {
     }
 }
 
-/// A function that decides.
+/// A callback that decides.
 pub type Answering<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
 
-/// The one who is asked for each region, and how many candidates he is shown.
+/// A callback for each region, and the number of candidates to show it.
 pub struct Ask<S: Affine> {
     /// Candidates are evenly spaced in the region's list; there is at least one.
     pub sample: Sample,
-    /// Takes the region's depth, the number of its pieces and the candidates, whose scores are
-    /// their numbers of splits.
+    /// Gets the region's depth, the number of its pieces and the candidates, scored by their numbers of
+    /// splits.
     pub answer: Answering<S>,
 }
 
-/// The answer that divides a region.
+/// The answer of a callback.
 pub enum Answer<S: Affine> {
-    /// The candidate with this place.
+    /// The candidate at this index.
     Candidate(usize),
     /// A hyperplane that is no candidate.
     Hyperplane(S::Hyperplane),
@@ -79,16 +79,16 @@ pub enum Answer<S: Affine> {
 pub struct Lines {
     /// The corners of each piece, by its number.
     pub corners: Vec<Vec<Lattice>>,
-    /// The number that are compared in each region, beside as many supporting hyperplanes.
+    /// The number of them to compare in each region, besides as many supporting hyperplanes.
     pub sample: Sample,
 }
 
-/// A region that is still to be divided, if there are pieces in it.
+/// A region still to be divided, if it has pieces.
 pub(super) struct Open<S: Affine> {
     pub(super) pieces: Vec<Piece<S>>,
     pub(super) place: Option<(NodeId, Half)>,
     pub(super) depth: u32,
     pub(super) region: Option<Polytope<S>>,
-    /// The node of the tree that is grown with the same region.
+    /// The node with the same region in the tree that is extended.
     pub(super) old: Option<NodeId>,
 }

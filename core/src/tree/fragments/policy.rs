@@ -1,4 +1,4 @@
-//! Pivot policies: whose hyperplane divides a region.
+//! Pivot policies: rules for the hyperplane that divides a region.
 
 use super::node::Piece;
 use super::trace::{Candidate, Reason};
@@ -11,14 +11,14 @@ use crate::tree::trace::Watcher;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample(pub usize);
 
-/// The rule by which a region's pivot is chosen among the pieces in it.
+/// The rule that chooses a region's pivot among its pieces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Policy {
     /// The first in the order given.
     First,
     /// The first in a random order of all pieces, drawn once; the seed makes it reproducible.
     ///
-    /// One order for the whole tree, not one draw for each node: the analysis asks for it.
+    /// One order for the whole tree, not a draw for each node: the analysis needs it.
     Random(u64),
     /// The candidate that cuts the fewest pieces.
     LeastSplits(Sample),
@@ -26,17 +26,17 @@ pub enum Policy {
     Balanced(Sample),
     /// The least alpha·|n⁻ − n⁺| + (1 − alpha)·splits.
     ///
-    /// With alpha one half this is the candidate whose larger side has the fewest pieces.
+    /// With alpha = 1/2: the candidate whose larger side has the fewest pieces.
     Weighted(Sample, f64),
     /// The least expected number of pieces left after one step, P⁻·n⁻ + P⁺·n⁺.
     ///
     /// # Source
-    /// Naylor 1993, "Constructing good partitioning trees", with the size of a subtree's list for
-    /// its unknown cost.
+    /// Naylor 1993, "Constructing good partitioning trees", with the length of a subtree's list for its
+    /// unknown cost.
     LeastCost(Sample),
 }
 
-/// The numbers of pieces that a hyperplane puts on its sides, and divides.
+/// The numbers of pieces on each side of a hyperplane, and of those it cuts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
     pub minus: usize,
@@ -45,7 +45,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Counts fragments on each side; those that are cut count on both.
+    /// Counts fragments on each side; cut fragments count on both.
     pub fn of<S: Affine>(pieces: &[Piece<S>], cut: &S::Hyperplane) -> Self {
         let mut tally = Self::default();
         for piece in pieces {
@@ -78,24 +78,24 @@ impl Tally {
         !one_sided(self.minus, self.plus) && !one_sided(self.plus, self.minus)
     }
 
-    /// By how many fragments the sides differ.
+    /// The difference of fragments between the sides.
     fn skew(&self) -> f64 {
         self.minus.abs_diff(self.plus) as f64
     }
 
-    /// The fragments on the side that has more.
+    /// The number of fragments on the larger side.
     pub fn larger(&self) -> usize {
         self.minus.max(self.plus)
     }
 }
 
 impl Policy {
-    /// Return whether candidates are judged by the region they divide.
+    /// Return whether the policy needs the region to judge candidates.
     pub fn needs_region(&self) -> bool {
         matches!(self, Self::LeastCost(_))
     }
 
-    /// Return the reason why the pivot is the pivot.
+    /// Return the reason for the pivot.
     pub(super) fn reason(&self) -> Reason {
         match self {
             Self::First => Reason::First,
@@ -107,7 +107,7 @@ impl Policy {
         }
     }
 
-    /// The position in the list, which is not empty, of the piece that becomes the pivot.
+    /// The index of the piece that becomes the pivot; the list is not empty.
     pub(super) fn pivot<S: Affine>(
         &self,
         pieces: &[Piece<S>],
@@ -146,7 +146,7 @@ fn shares<S: Affine>(region: Option<&Polytope<S>>, cut: &S::Hyperplane) -> [f64;
     }
 }
 
-/// The first candidate of least penalty.
+/// The first candidate with the least penalty.
 fn best<S: Affine>(
     pieces: &[Piece<S>],
     Sample(count): Sample,

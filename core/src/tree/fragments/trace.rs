@@ -6,32 +6,32 @@ use super::node::NodeCut;
 use crate::geometry::side::Half;
 use crate::mesh::handle::NodeId;
 
-/// A region was divided.
+/// A division of a region.
 ///
-/// Pieces are named by their numbers: a convex piece has one part at most in a convex region.
+/// Numbers identify pieces: a convex piece has one part at most in a convex region.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Division {
-    /// The node made.
+    /// The new node.
     pub node: NodeId,
-    /// The node above and the side of it; `None` for the root.
+    /// The parent and the side of it; `None` for the root.
     pub place: Option<(NodeId, Half)>,
     /// The number of cuts above.
     pub depth: u32,
     /// The owner of the hyperplane.
     pub cut: NodeCut,
-    /// The reason for this one.
+    /// The reason for this hyperplane.
     pub reason: Reason,
-    /// The candidates compared, in the order of the list; none where nothing was compared.
+    /// The compared candidates, in the order of the list; empty if nothing was compared.
     pub candidates: Vec<Candidate>,
     /// The pieces in the region, in the order of the list.
     pub pieces: Vec<u32>,
-    /// Those with a part on the minus side.
+    /// The pieces with a part on the minus side.
     pub minus: Vec<u32>,
-    /// Those with a part on the plus side.
+    /// The pieces with a part on the plus side.
     pub plus: Vec<u32>,
-    /// Those with parts on both sides.
+    /// The pieces with parts on both sides.
     pub split: Vec<u32>,
-    /// Those in the hyperplane.
+    /// The pieces in the hyperplane.
     pub coplanar: Vec<u32>,
 }
 
@@ -54,9 +54,9 @@ pub enum Reason {
     Median,
     /// It was given.
     Given,
-    /// Whoever was asked said so.
+    /// A callback chose it.
     Asked,
-    /// It goes through corners of pieces, or supports one, and its larger side has fewest pieces.
+    /// It goes through corners of pieces, or supports one, and its larger side has the fewest pieces.
     Ends,
 }
 
@@ -65,12 +65,12 @@ pub enum Reason {
 pub struct Candidate {
     /// The piece whose hyperplane it is.
     pub piece: u32,
-    /// The number of pieces that have parts on its minus side.
+    /// The number of pieces with parts on its minus side.
     pub minus: u32,
-    /// The number of those on its plus side.
+    /// The number of pieces with parts on its plus side.
     pub plus: u32,
-    /// The number of those on both.
+    /// The number of pieces with parts on both sides.
     pub splits: u32,
-    /// The score that the policy minimizes; of equal ones the first is taken.
+    /// The score that the policy minimizes; the first of equal ones wins.
     pub score: f64,
 }

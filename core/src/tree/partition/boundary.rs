@@ -9,7 +9,7 @@ use crate::mesh::handle::NodeId;
 
 /// The boundary of a tree's set, in convex pieces with In on their minus sides.
 ///
-/// The border of the frame is not part of it.
+/// Without the border of the frame.
 ///
 /// # Order
 /// Nodes before their subtrees, minus before plus.
@@ -25,11 +25,11 @@ pub fn boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<S::Fragment>> {
     Ok(pieces)
 }
 
-/// The boundary in convex pieces, each with the inner node it lies in, by its place
-/// among the inner nodes in preorder.
+/// The boundary in convex pieces, each with the inner node it lies in, by its index among the inner nodes
+/// in preorder.
 ///
 /// # Order
-/// That of the numbers.
+/// By these indices.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.
@@ -47,8 +47,8 @@ pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(NodeId, S::
 
 /// The boundary as parts of the facets in the tree's coplanar sets, each with its source.
 ///
-/// Where facets overlap, the one with the smallest source number owns the place. Boundary on which
-/// no facet lies (a half-space's) is left out.
+/// Where facets overlap, the smallest source number owns the place. Leaves out boundary without facets,
+/// such as a half-space's.
 ///
 /// # Order
 /// Nodes before their subtrees, minus before plus; within a node by source.
@@ -84,7 +84,7 @@ pub fn for_each_cut<S: Space>(
     Ok(())
 }
 
-/// Coplanar facets without what others with smaller source numbers cover, sorted by source.
+/// Coplanar facets minus the areas of others with smaller source numbers, sorted by source.
 fn disjoint_facets<S: Space>(facets: &[Facet<S>]) -> Vec<Facet<S>> {
     let mut order: Vec<&Facet<S>> = facets.iter().collect();
     order.sort_by_key(|facet| facet.source);
@@ -112,7 +112,7 @@ fn uncovered<'a, S: Space>(
     })
 }
 
-/// The parts of a fragment in a node's cut that separate In from Out, In on the minus side.
+/// The parts of a fragment in a node's cut that separate In from Out, with In on the minus side.
 fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>> {
     let mut walls = Vec::new();
     for (part, minus) in cut.child(Half::Minus).beside(piece)? {
@@ -125,7 +125,7 @@ fn walls<S: Space>(cut: &Cut<S>, piece: S::Fragment) -> Result<Vec<S::Fragment>>
     Ok(walls)
 }
 
-/// A wall turned so that In lies on its minus side, given the label on the cut's minus side.
+/// A wall oriented with In on its minus side, given the label on the cut's minus side.
 fn facing<S: Space>(part: S::Fragment, cut: &S::Hyperplane, minus: Label) -> S::Fragment {
     let as_cut = S::coincide(S::hyperplane(&part), cut) == Some(Orientation::Same);
     if as_cut == (minus == Label::In) {

@@ -1,14 +1,14 @@
-//! Does a set reach the border of the frame?
+//! Tests whether a set reaches the border of the frame.
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::spaces::axis::AxisSpace;
 use crate::interrupt::poll;
 
-/// Return whether the set stays clear of the frame's border, that is, fits into some box.
+/// Return whether the set stays off the frame's border, that is, fits into a box.
 ///
 /// # Cost
-/// Proportional to the nodes whose regions reach the border.
+/// Proportional to the number of nodes whose regions reach the border.
 pub fn is_bounded<S: AxisSpace>(tree: &PartitionTree<S>) -> bool {
     let mut pending: Vec<_> = S::border().into_iter().map(|p| (tree.clone(), p)).collect();
     while let Some((tree, piece)) = pending.pop() {

@@ -1,8 +1,8 @@
-//! Facets → tree by autopartition: every cut is the supporting hyperplane of a facet.
+//! From facets to a tree by autopartition: every cut is the supporting hyperplane of a facet.
 //!
-//! A region without facets is labelled by the side of the last cut on which it lies, which is right
-//! if the facets are the boundary of a set, each once, inside in front of no other. What else comes
-//! in is recognised (`Built::simple`) where it shows, and labelled by `winding` instead.
+//! A region without facets is labelled by its side of the last cut. This is correct if the facets are the
+//! boundary of a set, each once, with the inside behind it. Other input is detected where it shows
+//! (`Built::simple`), and `winding` labels it instead.
 
 use std::sync::Arc;
 
@@ -18,23 +18,23 @@ use crate::interrupt::poll;
 pub struct Built<S: Space> {
     /// The tree; its labels mean nothing unless the facets bound a set.
     pub tree: PartitionTree<S>,
-    /// True if no leaf was seen from two sides at once; false proves overlap or a hole.
+    /// True if the facets at each leaf agree on its label; false proves overlap or a hole.
     pub simple: bool,
 }
 
 /// Builds a tree by supporting hyperplanes alone.
 ///
-/// `facets` lie in `frame`, each with the inside on its minus side; without facets the tree is the
-/// leaf `empty`. Coplanar facets share one node.
+/// `facets` lie in `frame`, with the inside on their minus sides; without facets the tree is the leaf
+/// `empty`. Coplanar facets share one node.
 ///
 /// # Order
-/// The tree is a function of the list and the policy.
+/// The list and the policy determine the tree.
 ///
 /// # Cost
-/// Worst case quadratic: a convex body becomes a chain.
+/// Quadratic in the worst case: a convex body becomes a chain.
 ///
 /// # Errors
-/// `Internal` if a facet's hyperplane does not cross the region the facet lies in.
+/// `Internal` if a facet's hyperplane does not cross the facet's region.
 ///
 /// # Source
 /// Paterson, Yao 1990; de Berg et al., Computational Geometry, chapter 12.
@@ -48,10 +48,10 @@ pub fn autopartition<S: Space>(
     partition(facets, frame, empty, |_, facets| choice.cut(facets))
 }
 
-/// Builds a tree by cuts that `choose` picks for a region and the facets in it, at least one.
+/// Builds a tree; `choose` picks the cut for each region from its facets, of which there is at least one.
 ///
-/// As for [`autopartition`], except that cuts need not support a facet. Labels next to a cut in
-/// which no facet lies mean nothing.
+/// As [`autopartition`], but cuts need not support a facet. Labels next to a cut without facets mean
+/// nothing.
 ///
 /// # Errors
 /// `Internal` if a cut does not cross its region, or never divides the facets.
@@ -86,7 +86,7 @@ struct Builder<S: Space, C> {
 }
 
 enum Step<S: Space> {
-    /// Build the subtree on one side of a sheet whose node lies at `depth`.
+    /// Build the subtree on one side of a sheet whose node is at `depth`.
     Side {
         sheet: Arc<Sheet<S>>,
         half: Half,
@@ -133,7 +133,7 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
         }
     }
 
-    /// Chooses a cut for the current region and leaves its two sides to be built.
+    /// Chooses a cut for the current region and schedules its two sides.
     fn divide(&mut self, facets: Vec<Facet<S>>) -> Result<()> {
         let depth = self.region.depth();
         let cut = (self.choose)(&self.region, &facets);
@@ -158,7 +158,7 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
         Ok(())
     }
 
-    /// Labels a region in which no facet lies by the side of its last cut.
+    /// Labels a region without facets by its side of the last cut.
     fn label(&mut self, sheet: &Sheet<S>, half: Half) {
         let cut = S::hyperplane(&sheet.span);
         let faces_as_cut = |facet: &Facet<S>| {

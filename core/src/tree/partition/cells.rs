@@ -1,4 +1,4 @@
-//! The convex cells of which a set consists.
+//! The convex cells that make up a set.
 
 use super::node::{Label, PartitionTree};
 use crate::geometry::side::Half;
@@ -7,13 +7,13 @@ use crate::interrupt::poll;
 
 /// The faces of each In leaf's region, the region on their minus sides.
 ///
-/// Together the regions are a convex decomposition of the set. The border of the frame is no face.
+/// The regions are a convex decomposition of the set. The border of the frame is not a face.
 ///
 /// # Order
 /// Minus before plus; the faces of a cell from the root's cut down.
 ///
 /// # Cost
-/// For each In leaf the square of its depth.
+/// For each In leaf, the square of its depth.
 pub fn cells<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Vec<Vec<S::Fragment>> {
     let mut region = Region::<S>::new(frame.clone());
     let mut cells = Vec::new();

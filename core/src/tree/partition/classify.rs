@@ -19,14 +19,14 @@ pub enum Location {
 
 /// Classifies a point of the tree's region.
 ///
-/// The leaves that touch the point are visited: a point in a cut belongs to the set's interior if
-/// all of them are In, to the boundary if they differ.
+/// Visits the leaves that touch the point: a point in a cut is interior if all of them are In, and on the
+/// boundary if they differ.
 ///
 /// # Exactness
 /// Exact.
 ///
 /// # Cost
-/// One path for a point in no cut.
+/// One path, unless the point lies in a cut.
 pub fn classify<S: Space>(tree: &PartitionTree<S>, point: &S::Point) -> Location {
     let mut pending = vec![tree.clone()];
     let mut seen = None;

@@ -21,11 +21,11 @@ pub struct Wall<S: Space> {
 
 /// The boundary of a tree's set, each piece with the connected parts that it separates.
 ///
-/// Parts are open: places that touch in less than a piece of a hyperplane are not connected. The
-/// name of a part is its first leaf, and has no meaning beyond telling parts apart.
+/// Parts are open: regions that touch in less than a piece of a hyperplane are not connected. The name of a
+/// part is its first leaf, and only distinguishes parts.
 ///
 /// # Order
-/// That of the nodes, breadth first.
+/// By node, breadth first.
 ///
 /// # Errors
 /// `Internal` if a cut lies in the border of its own region.

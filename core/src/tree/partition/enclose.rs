@@ -1,7 +1,7 @@
-//! Facets → set: axis-parallel cuts on top, supporting hyperplanes below, labels by winding.
+//! From facets to a set: axis-parallel cuts on top, supporting hyperplanes below, labels by winding.
 //!
-//! An autopartition of a convex outline is a chain. Cuts through the middle of long lists, which
-//! support no facet (a free partition), keep the depth logarithmic as long as they divide the list.
+//! An autopartition of a convex outline is a chain. Cuts through the middle of long lists that support no
+//! facet (a free partition) keep the depth logarithmic as long as they divide the list.
 
 use super::build::partition;
 use super::node::{Facet, Label, PartitionTree};
@@ -13,15 +13,15 @@ use crate::geometry::spaces::axis::AxisSpace;
 use crate::geometry::spaces::space::Region;
 use crate::interrupt::poll;
 
-/// Lists of at most this many facets get no axis-parallel cut.
+/// The longest list that gets no axis-parallel cut.
 const MAX_WITHOUT_AXIS_CUT: usize = 12;
 
-/// The division of a tree above the facets' own hyperplanes.
+/// How to divide a tree above the facets' own hyperplanes.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan<'a, S: AxisSpace> {
-    /// Cuts to be made first, in this order, wherever facets lie.
+    /// Cuts to make first, in this order, in every region with facets.
     pub cuts: &'a [S::Hyperplane],
-    /// True if axis-parallel cuts divide long lists.
+    /// Whether to divide long lists by axis-parallel cuts.
     pub axis_cuts: bool,
     /// The choice among the facets' hyperplanes.
     pub policy: PivotPolicy,
@@ -41,13 +41,13 @@ impl<S: AxisSpace> Plan<'_, S> {
 /// Facets may cross, overlap and repeat. `base` is the winding number in the frame's lowest corner.
 ///
 /// # Order
-/// The tree is a function of the list and the plan.
+/// The list and the plan determine the tree.
 ///
 /// # Cost
 /// O(n log n) splits for outlines whose facets are short against the whole.
 ///
 /// # Errors
-/// `NotClosed` if the facets do not give every place one number; `Internal` for a defect.
+/// `NotClosed` if the facets do not define one number for every place; `Internal` for a defect.
 ///
 /// # Source
 /// Thibault, Naylor 1987; free partitions: de Berg et al., Computational Geometry, chapter 12.
@@ -81,10 +81,10 @@ fn planned_cut<S: AxisSpace>(
     middles.min_by_key(|(size, _)| *size).map(|(_, cut)| cut)
 }
 
-/// The cut across an axis at the median corner and the size of the longer list that it leaves, if
-/// that is at most three quarters of all and at most a sixteenth is cut.
+/// The cut across an axis at the median corner, and the size of the longer list that it leaves. `None` if
+/// this is more than three quarters of all, or more than a sixteenth is cut.
 ///
-/// Long facets side by side are better divided by their own hyperplanes.
+/// The own hyperplanes of long facets side by side divide these better.
 fn middle_cut<S: AxisSpace>(facets: &[Facet<S>], axis: usize) -> Option<(usize, S::Hyperplane)> {
     let corner = |facet: &Facet<S>| S::corner(&facet.fragment, axis);
     let mut corners: Vec<i64> = facets.iter().map(corner).collect();

@@ -1,4 +1,4 @@
-//! A tree as a list, so that each leaf has a number, and which leaves touch each other where.
+//! A tree as a list that numbers its leaves, and contacts between leaves.
 
 use std::collections::VecDeque;
 
@@ -31,7 +31,7 @@ pub struct FlatCut<S: Space> {
 
 /// A piece of a cut between two leaves.
 pub struct Contact<S: Space> {
-    /// The piece, oriented as the cut.
+    /// The piece, with the orientation of the cut.
     pub fragment: S::Fragment,
     /// The leaf on the cut's minus side.
     pub minus: NodeId,
@@ -40,7 +40,7 @@ pub struct Contact<S: Space> {
 }
 
 impl<S: Space> Flat<S> {
-    /// The list of a tree's nodes, breadth first.
+    /// Lists a tree's nodes, breadth first.
     pub fn new(tree: &PartitionTree<S>) -> Self {
         let mut nodes = Vec::new();
         let mut pending = VecDeque::from([tree.clone()]);
@@ -86,7 +86,7 @@ impl<S: Space> Flat<S> {
         }
     }
 
-    /// The leaf that a rule of sides leads to.
+    /// The leaf reached by a function that picks a side of each cut.
     pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> NodeId {
         let mut at = NodeId::ROOT;
         while let FlatNode::Cut(node) = &self.nodes[at.place()] {
@@ -128,7 +128,7 @@ impl<S: Space> Flat<S> {
     /// All pieces of cuts between two leaves.
     ///
     /// # Order
-    /// That of the nodes.
+    /// By node.
     ///
     /// # Errors
     /// `Internal` if a cut lies in the border of its own region.
@@ -150,7 +150,7 @@ impl<S: Space> Flat<S> {
         Ok(contacts)
     }
 
-    /// The tree with other labels.
+    /// The tree with new labels.
     pub fn relabelled(&self, label: impl Fn(NodeId) -> Label) -> PartitionTree<S> {
         let mut trees: Vec<PartitionTree<S>> = Vec::new();
         trees.resize(self.len(), PartitionTree::EMPTY);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::spaces::space::Space;
 
-/// The label of a leaf: what it says about its region.
+/// The label of a leaf: whether its region is in the set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Label {
     /// The region belongs to the set.
@@ -40,7 +40,7 @@ impl Label {
 pub struct Facet<S: Space> {
     /// The convex piece, oriented with the inside of its set on the minus side.
     pub fragment: S::Fragment,
-    /// The element's number; of overlapping facets the one with the smallest number owns a place.
+    /// The element's number; the smallest number among overlapping facets owns a place.
     pub source: u64,
 }
 
@@ -62,7 +62,7 @@ impl<S: Space> Sheet<S> {
     }
 }
 
-/// The parts of facets on the minus and on the plus side of a cut they do not lie in.
+/// The parts of facets on the minus and plus side of a cut in which none lies.
 fn split_facets<S: Space>(
     facets: &[Facet<S>],
     cut: &S::Hyperplane,
@@ -95,7 +95,7 @@ pub enum PartitionTree<S: Space> {
     Cut(Cut<S>),
 }
 
-/// A shared reference to an inner node; one bit of it says whether the set is complemented.
+/// A shared reference to an inner node, with a bit for the complement of its set.
 #[derive(Clone)]
 pub struct Cut<S: Space> {
     node: Arc<Node<S>>,
@@ -114,7 +114,7 @@ impl<S: Space> PartitionTree<S> {
     /// The whole region.
     pub const FULL: Self = Self::Leaf(Label::In);
 
-    /// The tree divided along a sheet; a cut between two equal leaves is no cut.
+    /// The tree divided along a sheet, or a leaf if both sides are equal leaves.
     pub fn cut(sheet: Arc<Sheet<S>>, minus: Self, plus: Self) -> Self {
         if let (Self::Leaf(a), Self::Leaf(b)) = (&minus, &plus)
             && a == b
@@ -161,7 +161,7 @@ impl<S: Space> PartitionTree<S> {
         }
     }
 
-    /// The label, if the region is not divided.
+    /// The label, if the tree is a leaf.
     pub fn label(&self) -> Option<Label> {
         match self {
             Self::Leaf(label) => Some(*label),
@@ -176,7 +176,7 @@ impl<S: Space> Cut<S> {
         S::hyperplane(&self.node.sheet.span)
     }
 
-    /// Return the contents of the hyperplane.
+    /// Return the contents of the cut.
     pub fn sheet(&self) -> &Arc<Sheet<S>> {
         &self.node.sheet
     }
@@ -194,12 +194,12 @@ impl<S: Space> Cut<S> {
         }
     }
 
-    /// Both subtrees, plus first: the order in which a stack is filled to meet minus first.
+    /// Both subtrees, plus first: a stack then pops minus first.
     pub fn children(&self) -> [PartitionTree<S>; 2] {
         [Half::Plus, Half::Minus].map(|half| self.child(half))
     }
 
-    /// This node with one subtree exchanged; the node itself if it is the one already there.
+    /// This node with one subtree replaced; the node itself if nothing changes.
     #[must_use]
     pub fn with_child(&self, half: Half, child: PartitionTree<S>) -> PartitionTree<S> {
         let (minus, plus) = match half {
@@ -209,7 +209,7 @@ impl<S: Space> Cut<S> {
         self.with_children(minus, plus)
     }
 
-    /// This node with other subtrees; the node itself if they are the ones already there.
+    /// This node with both subtrees replaced; the node itself if nothing changes.
     #[must_use]
     pub fn with_children(
         &self,
@@ -234,7 +234,7 @@ impl<S: Space> From<Cut<S>> for PartitionTree<S> {
 }
 
 impl<S: Space> fmt::Debug for PartitionTree<S> {
-    /// The root only: a tree can be deeper than the stack.
+    /// Shows the root only: a tree can be deeper than the stack.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Leaf(label) => write!(f, "{label:?}"),
@@ -251,7 +251,7 @@ impl<S: Space> fmt::Debug for Cut<S> {
 }
 
 impl<S: Space> Drop for Node<S> {
-    /// Frees subtrees that nothing else holds, without recursion along the depth.
+    /// Frees unshared subtrees, without recursion along the depth.
     fn drop(&mut self) {
         let mut pending = Vec::new();
         self.release_into(&mut pending);

@@ -1,18 +1,18 @@
-//! Pivot policies: whose hyperplane divides a region.
+//! Pivot policies: rules for the hyperplane that divides a region.
 
 use super::node::Facet;
 use super::random::SplitMix;
 use crate::geometry::side::Split;
 use crate::geometry::spaces::space::Space;
 
-/// The rule by which a node's cut is chosen among the hyperplanes of its facets.
+/// The rule that chooses a node's cut among the hyperplanes of its facets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PivotPolicy {
     /// The first facet in the order given.
     First,
     /// A random facet; the seed makes the tree reproducible.
     Random(u64),
-    /// Of this many candidates, evenly spaced in the list, the first that cuts the fewest facets.
+    /// The first of this many evenly spaced candidates that cuts the fewest facets.
     FewestSplits(usize),
 }
 

@@ -1,4 +1,4 @@
-//! A tree as a list of hyperplanes and labels, and back.
+//! Conversion between trees and lists of hyperplanes and labels.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::geometry::spaces::space::{Region, Space};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A node in preorder: what divides its region, or what its region is.
+/// A node in preorder: the cut or the label of its region.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Entry<H> {
     /// An inner node; its minus subtree follows, then its plus subtree.
@@ -37,8 +37,8 @@ pub fn preorder<S: Space>(tree: &PartitionTree<S>) -> Vec<Entry<S::Hyperplane>> 
 
 /// The tree with these nodes; coplanar sets are empty.
 ///
-/// A cut that misses its region inside the frame is left out with the side that is not there, so
-/// that hyperplanes may have been moved.
+/// Omits a cut that misses its region inside the frame, with the empty side, so that hyperplanes may have
+/// been moved.
 ///
 /// # Errors
 /// `BadSnapshot` if the list is not one tree in preorder or repeats a cut inside itself;
@@ -69,7 +69,7 @@ fn bad_list() -> Error {
     )
 }
 
-/// For each inner node the place of its plus child.
+/// For each inner node, the index of its plus child.
 fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<NodeId>> {
     let mut plus = vec![NodeId::ROOT; entries.len()];
     let mut roots: Vec<NodeId> = Vec::new();
@@ -98,7 +98,7 @@ struct Maker<'a, S: Space> {
     done: Vec<PartitionTree<S>>,
 }
 
-/// The cut above a node, the side of it, and the depth of its own region.
+/// The cut above a node, the node's side of it, and the depth of the cut's region.
 type Above<S> = Option<(Arc<Sheet<S>>, Half, usize)>;
 
 enum Step<S: Space> {
@@ -152,9 +152,9 @@ impl<S: Space> Maker<'_, S> {
     }
 }
 
-/// The side of a cut that misses a region on which the region lies.
+/// The side of a cut on which a region lies that the cut misses.
 ///
-/// The sub-hyperplane above bounds the region, so that it lies on that side as well.
+/// The sub-hyperplane above bounds the region, and so is on that side as well.
 fn side_of_region<S: Space>(
     cut: &S::Hyperplane,
     above: Option<&(Arc<Sheet<S>>, Half, usize)>,

@@ -10,7 +10,7 @@ pub struct SplitMix {
 }
 
 impl SplitMix {
-    /// The sequence named by a seed.
+    /// The sequence of a seed.
     pub fn new(seed: u64) -> Self {
         Self { state: seed }
     }

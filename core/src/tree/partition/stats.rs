@@ -1,4 +1,4 @@
-//! Size of a tree, and the check of its invariants.
+//! The size of a tree, and a check of its invariants.
 
 use super::node::{Cut, PartitionTree};
 use crate::error::{Error, Result};
@@ -6,20 +6,20 @@ use crate::geometry::side::Half;
 use crate::geometry::spaces::space::{overlay, Region, Space};
 use crate::interrupt::poll;
 
-/// Size figures of a tree; shared subtrees count once for each place where they occur.
+/// Size figures of a tree; shared subtrees count at each occurrence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TreeStats {
     /// Inner nodes.
     pub cuts: usize,
     /// Leaves.
     pub leaves: usize,
-    /// Cuts on the longest way from the root to a leaf.
+    /// Cuts on the longest path from the root to a leaf.
     pub depth: usize,
     /// Fragments in all coplanar sets.
     pub facets: usize,
 }
 
-/// Counts what a tree consists of.
+/// Counts the nodes of a tree.
 pub fn stats<S: Space>(tree: &PartitionTree<S>) -> TreeStats {
     let mut stats = TreeStats::default();
     let mut pending = vec![(tree.clone(), 0)];
@@ -45,7 +45,7 @@ pub fn stats<S: Space>(tree: &PartitionTree<S>) -> TreeStats {
 /// One split per node and ancestor.
 ///
 /// # Errors
-/// `Internal`, naming the first invariant that does not hold.
+/// `Internal`, naming the first violated invariant.
 pub fn check<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Result<()> {
     let mut region = Region::new(frame.clone());
     let mut pending = vec![(tree.clone(), None)];

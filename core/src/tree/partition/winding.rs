@@ -1,8 +1,8 @@
 //! Labels by winding numbers, for facets that overlap, cross or face each other.
 //!
-//! Each leaf of an autopartition lies wholly in one cell of the facets' arrangement. The jump of the
-//! winding number across a piece of a cut is the number of facets that cover it, each counted with
-//! its orientation; from one leaf whose number is known all others follow by adjacency.
+//! Each leaf of an autopartition lies in one cell of the facets' arrangement. The winding number jumps
+//! across a piece of a cut by the number of facets that cover it, signed by orientation. From one leaf with
+//! a known number, adjacency gives all others.
 
 use super::flat::{Flat, FlatCut};
 use super::node::{Cut, Facet, Label, PartitionTree};
@@ -23,11 +23,11 @@ pub struct Winding<S: Space> {
 
 /// Labels an autopartition by the winding numbers of its facets.
 ///
-/// `reference` tells on which side of each hyperplane a point lies that is in no cut, `number` is
-/// the winding number there, and `inside` the rule that turns a number into a label.
+/// `reference` gives the side of each hyperplane for a point in no cut, `number` is the winding number
+/// there, and `inside` the rule that turns a number into a label.
 ///
 /// # Errors
-/// `NotClosed` if the facets do not give every place one number; `Internal` for a broken tree.
+/// `NotClosed` if the facets do not define one number for every place; `Internal` for a broken tree.
 pub fn winding_tree<S: Space>(
     tree: &PartitionTree<S>,
     reference: impl Fn(&S::Hyperplane) -> Half,
@@ -45,7 +45,7 @@ pub fn winding_tree<S: Space>(
     Ok(Winding { tree, simple })
 }
 
-/// Two leaves on the sides of a piece of a cut, and the number on the minus side minus the other.
+/// Two leaves on the sides of a piece of a cut, and their numbers' difference, minus side first.
 struct Jump {
     minus: NodeId,
     plus: NodeId,
@@ -142,7 +142,7 @@ fn covered_pieces<S: Space>(cut: &Cut<S>) -> Vec<Piece<S>> {
         })
 }
 
-/// The parts of a piece under a facet and beside it.
+/// The parts of a piece under a facet and outside it.
 fn cover<S: Space>(piece: Piece<S>, facet: &Facet<S>, rise: i32) -> Vec<Piece<S>> {
     let (under, beside) = overlay::<S>(piece.fragment, &facet.fragment);
     let beside = beside.into_iter().map(|fragment| Piece {

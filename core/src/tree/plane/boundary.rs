@@ -8,10 +8,10 @@ use crate::geometry::spaces::dim2::{Dim2, Lattice2, Line2, Point2, Segment2};
 use crate::interrupt::poll;
 use crate::tree::partition::{classify_corner, walls, Label, PartitionTree, Wall};
 
-/// A boundary in edges, each from one corner to another, the set on the left.
+/// A boundary of directed edges between corners, with the set on the left.
 #[derive(Clone, Debug)]
 pub struct Boundary {
-    /// The label beyond all edges: that of the lowest corner of the frame.
+    /// The label outside all edges, at the lowest corner of the frame.
     pub outer: Label,
     /// The corners, ordered by x, then y.
     pub corners: Vec<Corner>,
@@ -64,12 +64,12 @@ impl Corner {
         }
     }
 
-    /// The two lines, of which not both are parallel to a third.
+    /// The two lines; they are not parallel.
     pub fn lines(&self) -> &[Line2; 2] {
         &self.lines
     }
 
-    /// A line that crosses another one here.
+    /// A line that crosses the given one here.
     fn limit(&self, line: &Line2) -> Line2 {
         let [p, q] = self.lines;
         if p.is_parallel(line) {
@@ -81,7 +81,7 @@ impl Corner {
 }
 
 impl Boundary {
-    /// The boundary of nothing, or of everything.
+    /// The boundary of the empty set or the whole plane.
     pub fn uniform(label: Label) -> Self {
         Self {
             outer: label,
@@ -90,7 +90,7 @@ impl Boundary {
         }
     }
 
-    /// The boundary of a tree's set; a place where nothing but two collinear pieces meet is no corner.
+    /// The boundary of a tree's set; a point where only two collinear pieces meet is not a corner.
     ///
     /// # Errors
     /// `Internal` for a broken tree.
@@ -118,7 +118,7 @@ impl Boundary {
         Ok(Self::sorted(classify_corner(tree), corners, edges))
     }
 
-    /// The boundary with edges in any order between corners in their order.
+    /// The boundary from sorted corners and unsorted edges.
     pub fn sorted(outer: Label, corners: Vec<Corner>, mut edges: Vec<Edge>) -> Self {
         edges.sort_unstable_by_key(|edge| (edge.ends, edge.inside));
         Self {
@@ -128,7 +128,7 @@ impl Boundary {
         }
     }
 
-    /// Return whether every edge is followed by another one: the set or its complement is bounded.
+    /// Return whether every edge has a successor: the set or its complement is bounded.
     pub fn is_closed(&self) -> bool {
         let mut balance = vec![0i32; self.corners.len()];
         for edge in &self.edges {
@@ -170,7 +170,7 @@ impl Boundary {
         Self::sorted(self.outer.complement(), self.corners.clone(), edges)
     }
 
-    /// Return whether two sets are equal: their boundaries are, but for the numbers of parts.
+    /// Return whether two sets are equal: their boundaries agree, except for the numbers of parts.
     pub fn equals(&self, other: &Self) -> bool {
         let same_place = |(a, b): (&Corner, &Corner)| a.point.order(&b.point) == Ordering::Equal;
         let same_edge = |(a, b): (&Edge, &Edge)| a.line == b.line && a.ends == b.ends;
@@ -182,7 +182,7 @@ impl Boundary {
     }
 }
 
-/// Pieces joined wherever one ends, the next begins on the same line, and nothing else is.
+/// Joins pieces where one ends, the next begins on the same line, and no other piece meets them.
 fn joined(pieces: &[Wall<Dim2>]) -> Vec<Wall<Dim2>> {
     let next = successors(pieces);
     let mut follows = vec![false; pieces.len()];
@@ -198,7 +198,7 @@ fn joined(pieces: &[Wall<Dim2>]) -> Vec<Wall<Dim2>> {
     heads.map(edge).collect()
 }
 
-/// For each piece the one that continues it.
+/// For each piece, the piece that continues it.
 fn successors(pieces: &[Wall<Dim2>]) -> Vec<Option<usize>> {
     let mut ends: Vec<(&Point2, usize, usize)> = Vec::with_capacity(2 * pieces.len());
     for (i, piece) in pieces.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Boundaries moved by maps of the lattice.
+//! Images of boundaries under maps of the lattice.
 
 use crate::arith::bounds::REACH;
 use crate::arith::convert::as_number;
@@ -54,7 +54,7 @@ impl Corner {
     }
 }
 
-/// Return whether a point lies on the lattice's square.
+/// Return whether a point lies in the lattice's square.
 fn is_near(point: &Point2) -> bool {
     let [low, high] = [-REACH, REACH].map(|k| Point2::lattice([k, k]));
     let near =

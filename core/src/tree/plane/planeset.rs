@@ -1,4 +1,4 @@
-//! A set of the plane, by its boundary or by a tree, each made of the other when it is asked for.
+//! A set of the plane, as a boundary or a tree; makes each from the other on demand.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::Arc;
@@ -25,26 +25,26 @@ use crate::tree::partition::{enclosed, is_bounded, stats, Facet, Label, Partitio
 pub struct PlaneSet {
     form: Form,
     size: usize,
-    /// The work that was spent on the way to this set.
+    /// The work spent on making this set.
     pub spent: Spent,
-    /// Sweeps over all edges for the sake of a few points.
+    /// The number of sweeps over all edges for few points.
     asked: Arc<AtomicUsize>,
 }
 
-/// To build a tree of n edges costs about as much as to sweep over so many times n: 16 µs an edge
-/// against half a microsecond.
+/// Building a tree of n edges costs about as much as this many sweeps over them: 16 µs an edge against half
+/// a microsecond.
 pub const TREE: usize = 32;
 
-/// The work that was spent on making a set by operations, since its tree was last built anew.
+/// The work of the operations that made a set, since its tree was last rebuilt.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spent {
-    /// Edges of larger operands that sweeps went over for the sake of smaller ones.
+    /// Edges of larger operands that sweeps visited to combine them with smaller ones.
     pub swept: usize,
-    /// The nodes of the tree from which merging started; 0 if none has been merged.
+    /// The number of nodes of the tree that merging started from; 0 without merging.
     pub built: usize,
 }
 
-/// The form of a set: what it was made of, and what has been made of that.
+/// The form a set was made from, and the cached other form.
 #[derive(Clone, Debug)]
 enum Form {
     Boundary(Arc<Boundary>, OnceCell<PartitionTree<Dim2>>),
@@ -86,8 +86,7 @@ impl PlaneSet {
         }
     }
 
-    /// The boundary, if every edge of it is followed by another one: the set or its complement is
-    /// bounded.
+    /// The boundary, if every edge has a successor: the set or its complement is bounded.
     ///
     /// # Errors
     /// `Internal` for a broken tree.
@@ -96,7 +95,7 @@ impl PlaneSet {
         Ok(boundary.is_closed().then_some(boundary))
     }
 
-    /// The tree: the one the set was made of, or a balanced one of the boundary's edges.
+    /// The tree: the one the set was made from, or a balanced one of the boundary's edges.
     ///
     /// # Errors
     /// `Internal` for a defect.
@@ -107,7 +106,7 @@ impl PlaneSet {
         }
     }
 
-    /// The boundary, if the set was made of it and it is closed.
+    /// The boundary, if the set was made from it and it is closed.
     pub fn own_boundary(&self) -> Option<&Boundary> {
         match &self.form {
             Form::Boundary(boundary, _) if boundary.is_closed() => Some(boundary),
@@ -115,8 +114,8 @@ impl PlaneSet {
         }
     }
 
-    /// Return whether points are better looked up in the tree: it is there, or questions about a
-    /// few at a time have come so often that sweeps cost more.
+    /// Return whether to look up points in the tree: it exists, or few points at a time were asked for so
+    /// often that sweeps cost more.
     pub fn wants_tree(&self, points: usize) -> bool {
         if self.known_tree().is_some() {
             return true;
@@ -125,7 +124,7 @@ impl PlaneSet {
         few && self.asked.fetch_add(1, Ordering::Relaxed) >= TREE
     }
 
-    /// The tree, if it is there.
+    /// The tree, if it is made already.
     pub fn known_tree(&self) -> Option<&PartitionTree<Dim2>> {
         match &self.form {
             Form::Boundary(_, made) => made.get(),
@@ -133,12 +132,12 @@ impl PlaneSet {
         }
     }
 
-    /// The number of edges, or of nodes if the set was made of a tree.
+    /// The number of edges, or of nodes if the set was made from a tree.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Return the label of everything, if the set is all or nothing.
+    /// Return the label of everything, if the set is empty or everything.
     pub fn label(&self) -> Option<Label> {
         match &self.form {
             Form::Boundary(boundary, _) => boundary.edges.is_empty().then_some(boundary.outer),
@@ -146,7 +145,7 @@ impl PlaneSet {
         }
     }
 
-    /// Return whether the set fits into some box.
+    /// Return whether the set fits into a box.
     pub fn is_bounded(&self) -> bool {
         match &self.form {
             Form::Boundary(boundary, _) => boundary.outer == Label::Out && boundary.is_closed(),
@@ -176,7 +175,7 @@ impl PlaneSet {
     }
 }
 
-/// A balanced tree of a set's maximal edges.
+/// A balanced tree from a set's maximal edges.
 pub fn tree_of(boundary: &Boundary) -> Result<PartitionTree<Dim2>> {
     let base = i32::from(boundary.outer == Label::In);
     let segments = boundary.edges.iter().map(|edge| boundary.segment(edge));

@@ -1,6 +1,6 @@
-//! Partition trees in numbers: coefficients, corners, boxes, sizes.
+//! Partition trees as numbers: coefficients, corners, boxes, sizes.
 //!
-//! [`Space`] answers where things lie and never says where that is; this trait is the door to
+//! [`Space`] tells where things lie relative to each other, without coordinates. This trait has the
 //! numbers, for axis-parallel cuts, viewpoints, measures and output.
 
 mod line;
@@ -18,20 +18,20 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::side::{Side, Split};
 use crate::geometry::spaces::space::Space;
 
-/// A space whose parts can be written down as numbers; positions are in lattice steps.
+/// A space with numeric coordinates, in lattice steps.
 ///
 /// Spaces of fewer than three dimensions use the first coordinates and leave the others zero.
 pub trait Affine: Space {
-    /// The frame of everything the lattice holds.
+    /// The frame around all lattice points.
     const EVERYTHING: Self::Frame;
 
-    /// The largest coordinate that hyperplanes of the frame may have.
+    /// The largest coordinate of hyperplanes in the frame.
     const REACH: i64;
 
     /// The convex fragment with these corners, if it has a relative interior.
     ///
-    /// One corner in 1D, its minus side the smaller coordinates; two in 2D, the minus side to the
-    /// left; the corners of a convex polygon in 3D, counterclockwise seen from the plus side.
+    /// In 1D one corner, with smaller coordinates on its minus side; in 2D two, with the minus side to the
+    /// left; in 3D the corners of a convex polygon, counterclockwise seen from the plus side.
     fn fragment(corners: &[Lattice]) -> Option<Self::Fragment>;
 
     /// The coefficients n, d of n·x + d, each within half a unit in the last place.
@@ -48,13 +48,13 @@ pub trait Affine: Space {
     /// The corners in order, each coordinate within a few units in the last place.
     fn corners(piece: &Self::Fragment) -> Vec<[f64; 3]>;
 
-    /// For each corner whether the edge that leaves it lies on an edge of the facet.
+    /// For each corner, whether the edge that leaves it lies on an edge of the facet.
     ///
-    /// `facet` holds the corners of the facet the piece was cut from. In 2D: whether this end is
-    /// an end of the facet. `seams` marks the facet's edges that do not count.
+    /// `facet` has the corners of the facet that the piece was cut from. In 2D: whether this end is an end
+    /// of the facet. `seams` marks edges of the facet that do not count.
     fn original(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
 
-    /// Return the side of `cut` on which `piece` lies, without its parts.
+    /// Return the side of `cut` on which `piece` lies, without computing its parts.
     fn relation(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<()>;
 
     /// The size of a fragment: 1 in 1D, length in 2D, area in 3D.
@@ -63,7 +63,7 @@ pub trait Affine: Space {
     /// The signed size of the cone from `apex` over a fragment, positive on the minus side.
     fn cone(piece: &Self::Fragment, apex: &[f64; 3]) -> f64;
 
-    /// The least and the largest coordinates of the corners, as [`Affine::corners`] gives them.
+    /// The least and the largest coordinates of the corners, as in [`Affine::corners`].
     fn bounds(piece: &Self::Fragment) -> [[f64; 3]; 2] {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for corner in Self::corners(piece) {
@@ -76,7 +76,7 @@ pub trait Affine: Space {
     }
 }
 
-/// Tell a split from the strict sides that occur among a convex piece's corners.
+/// The split of a convex piece, from the strict sides of its corners.
 fn relation_of(sides: impl Iterator<Item = Side>) -> Split<()> {
     let (mut minus, mut plus) = (false, false);
     for side in sides {
@@ -89,7 +89,7 @@ fn relation_of(sides: impl Iterator<Item = Side>) -> Split<()> {
             plus: (),
         },
         (false, true) => Split::Plus,
-        // No fragment lies in a hyperplane that is not its own.
+        // Fragments lie in no hyperplane but their own.
         _ => Split::Minus,
     }
 }

@@ -1,4 +1,4 @@
-//! Bounded regions: convex bodies by their walls, divided by hyperplanes.
+//! Bounded convex regions, divided by hyperplanes.
 
 use super::Affine;
 use crate::geometry::side::{Half, Split};
@@ -94,7 +94,7 @@ impl<S: Affine> Polytope<S> {
     /// Length in 1D, area in 2D, volume in 3D, in lattice steps.
     ///
     /// # Exactness
-    /// Doubles from corners that are right to a few units in the last place.
+    /// Doubles from corners that are correct to a few units in the last place.
     pub fn volume(&self) -> f64 {
         let apex = self.walls.first().and_then(|w| S::corners(w).pop());
         let apex = apex.unwrap_or_default();

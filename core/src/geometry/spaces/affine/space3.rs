@@ -14,7 +14,7 @@ use crate::geometry::side::Split;
 use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::space::Space;
 
-/// The plane of convex corners: of the first three that are not in one line.
+/// The plane of convex corners, from the first three that are not on one line.
 fn plane_of(corners: &[Lattice]) -> Option<Plane> {
     let (first, rest) = corners.split_first()?;
     rest.windows(2)

@@ -1,4 +1,4 @@
-//! Viewpoints: points or directions given as doubles, their sides decided exactly.
+//! Viewpoints: points or directions in doubles, with exact sides.
 
 use num_bigint::BigInt;
 
@@ -10,8 +10,8 @@ use crate::geometry::side::Side;
 /// A point (x/w, y/w, z/w) with w > 0, or with w = 0 the point at infinity in direction (x, y, z).
 ///
 /// # Exactness
-/// A double is an integer times a power of two, and so is each coordinate in lattice steps but for
-/// a power of ten that goes to the denominator: nothing is snapped or rounded.
+/// A double is an integer times a power of two. So is each coordinate in lattice steps, but for a power of
+/// ten that goes into the denominator: nothing is snapped or rounded.
 #[derive(Clone, Debug)]
 pub struct Viewpoint {
     approx: [f64; 4],
@@ -21,7 +21,7 @@ pub struct Viewpoint {
 impl Viewpoint {
     /// The point with these coordinates in units of 10^`exponent` lattice steps; all finite.
     ///
-    /// `exponent` is minus the pitch: 9 if a step is 10^-9 units.
+    /// `exponent` is the negated pitch: 9 if a step is 10^-9 units.
     pub fn point(position: &[f64; 3], exponent: i64) -> Self {
         Self::homogeneous(position, 1.0, exponent)
     }
@@ -55,8 +55,8 @@ impl Viewpoint {
         let t = [0, 1, 2, 3].map(|i| coefficients[i] * self.approx[i]);
         let sum = t[0] + t[1] + t[2] + t[3];
         let size = t[0].abs() + t[1].abs() + t[2].abs() + t[3].abs();
-        // Scaling rounds each coordinate twice more than FILTER allows for; comparisons with an
-        // overflow or underflow are false.
+        // Scaling rounds each coordinate twice more than FILTER allows; comparisons after an overflow or
+        // underflow are false.
         if size.is_normal() && size > 1e-280 && sum.abs() > size * 2.0 * FILTER {
             return Side::from_sign(Sign::of(sum));
         }
@@ -80,7 +80,7 @@ mod tests {
     fn doubles_are_taken_apart_exactly() {
         for x in [0.0, 1.0, -0.1, 5e-324, f64::MAX, 1e-310] {
             let (m, e) = mantissa_and_exponent(x);
-            // Two steps, since 2^-1074 alone is a double and 2^1074 none.
+            // Two steps, since 2^-1074 is a double but 2^1074 is not.
             let half = e / 2;
             let back = as_double(m) * 2f64.powi(half) * 2f64.powi(e - half);
             assert!((back - x).abs() <= 0.0, "{x:e} became {back:e}");
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_double_next_to_a_lattice_point_is_not_on_it() {
-        // 0.1 is above a tenth as a double, its predecessor below.
+        // 0.1 as a double is above a tenth, its predecessor below.
         let tenth = Point1::new(100_000_000, Direction::Below);
         let side = |x: f64| Viewpoint::point(&[x, 0.0, 0.0], 9).side::<Dim1>(&tenth);
         assert_eq!(side(0.1), Side::Plus);

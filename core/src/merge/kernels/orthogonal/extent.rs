@@ -14,7 +14,7 @@ pub(super) struct Extent {
 }
 
 impl Facet<'_> {
-    /// Return the stretch of the facet's bounds on an axis.
+    /// Return the intervals of the facet's bounds on an axis.
     fn reach(&self, grid: &Grid, axis: usize) -> Reach {
         match &self.place {
             Place::Face(_, _, corners) => {

@@ -1,4 +1,4 @@
-//! The elements of a cell as rectangles of which slanted edges cut something off.
+//! The elements of a cell as rectangles cut by slanted edges.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
 
-/// The axes along the rows and along the bits of a sheet perpendicular to an axis.
+/// For each axis, the axes of the rows and of the bits of a sheet perpendicular to it.
 pub(super) const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
 /// A face or a convex piece of a part, perpendicular to an axis.
@@ -24,9 +24,9 @@ pub(super) struct Facet<'a> {
     pub(super) axis: usize,
     /// The lattice coordinate of its plane.
     pub(super) at: i64,
-    /// True if its normal points to larger coordinates.
+    /// Whether its normal points to larger coordinates.
     pub(super) upward: bool,
-    /// By how much the winding number behind it exceeds that in front of it.
+    /// The winding number behind it minus the number in front.
     weight: i32,
     slants: SmallVec<[Slant; 1]>,
     pub(super) place: Place<'a>,
@@ -38,27 +38,26 @@ pub(super) enum Place<'a> {
     Face(&'a Source, SourceFace, [Lattice; 3]),
     /// The face of a half-space.
     Plane(&'a Source, Slot),
-    /// A convex piece of a part: the part's number in the scene.
+    /// A convex piece of a part, with the part's number in the scene.
     Piece(usize, &'a Polygon),
 }
 
-/// A slanted edge in the coordinates of rows and bits, the facet on its left.
+/// A slanted edge in the coordinates of rows and bits, with the facet on its left.
 #[derive(Clone, Copy)]
 struct Slant {
     from: [i64; 2],
     to: [i64; 2],
 }
 
-/// The facets of a cell by operand, and the parts that pieces belong to with the slots of their
-/// sources.
+/// The facets of a cell by operand, and the parts of their pieces with the slots of their sources.
 pub(super) struct Facets<'a> {
     pub(super) all: Vec<Facet<'a>>,
     pub(super) parts: Vec<(&'a Arc<Part>, Slot)>,
 }
 
 impl<'a> Facets<'a> {
-    /// The facets of lists; `None` if an element is not perpendicular to an axis, or has a slanted
-    /// edge that is not its face's own.
+    /// The facets of lists; `None` if an element is not perpendicular to an axis, or has a slanted edge
+    /// that is not its face's own.
     pub(super) fn new(cell: &Cell, operands: &'a [Listed], sources: &'a Sources) -> Option<Self> {
         let mut facets = Self {
             all: Vec::with_capacity(operands.iter().map(|l| l.list.len()).sum()),
@@ -173,7 +172,7 @@ impl<'a> Facet<'a> {
         })
     }
 
-    /// Return whether the facet's plane meets the cell, and its bounds do.
+    /// Return whether the facet's plane and its bounds meet the cell.
     fn may_meet(&self, cell: &Cell) -> bool {
         let (low, high) = (cell.low(), cell.high());
         let within = |i: usize, p: &Lattice| p[i] >= low[i];
@@ -195,7 +194,7 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// By how much the winding number changes across the facet in the direction of its axis.
+    /// The change of the winding number across the facet along its axis.
     pub(super) fn change(&self) -> i32 {
         if self.upward {
             -self.weight
@@ -204,18 +203,18 @@ impl<'a> Facet<'a> {
         }
     }
 
-    /// Return whether the point just beyond the lower lines of a row and of a bit lies beside no
-    /// slanted edge.
+    /// Return whether the point just beyond the lower lines of a row and of a bit is inside all slanted
+    /// edges.
     pub(super) fn holds(&self, corner: [i64; 2]) -> bool {
         self.slants.iter().all(|s| s.is_left(corner))
     }
 
-    /// Return whether the slanted edges leave something of a rectangle.
+    /// Return whether part of a rectangle is inside the slanted edges.
     pub(super) fn touches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
         self.slants.iter().all(|s| s.reaches(low, high))
     }
 
-    /// Return whether no slanted edge cuts anything off the facet's bounds.
+    /// Return whether no slanted edge cuts the facet's bounds.
     pub(super) fn is_rectangle(&self) -> bool {
         self.slants.is_empty()
     }
@@ -230,8 +229,8 @@ impl<'a> Facet<'a> {
     }
 }
 
-/// The axis of a plane's normal, the plane's lattice coordinate there, and whether the normal
-/// points upward.
+/// The axis of a plane's normal, the plane's lattice coordinate there, and whether the normal points
+/// upward.
 fn upright(plane: &Plane) -> Option<(usize, i64, bool)> {
     let axis = plane.only_axis()?;
     let at = plane.lattice_coordinate(axis)?;
@@ -245,15 +244,15 @@ fn turn(a: &[i64; 2], b: &[i64; 2], c: &[i64; 2]) -> i128 {
 }
 
 impl Slant {
-    /// An edge run with the facet on its left, or on its right; `None` if it is parallel to an
-    /// axis.
+    /// An edge directed with the facet on its left; `left` says whether it is so as given. `None` if it is
+    /// parallel to an axis.
     fn new(from: [i64; 2], to: [i64; 2], left: bool) -> Option<Self> {
         let (from, to) = if left { (from, to) } else { (to, from) };
         let (from, to) = (from.map(|c| 2 * c), to.map(|c| 2 * c));
         (from[0] != to[0] && from[1] != to[1]).then_some(Self { from, to })
     }
 
-    /// Return whether the point (ε, ε²) beyond a doubled one lies on the left.
+    /// Return whether a doubled point moved by (ε, ε²) lies on the left.
     fn is_left(&self, point: [i64; 2]) -> bool {
         match turn(&self.from, &self.to, &point) {
             0 => self.to[1] < self.from[1],
@@ -261,9 +260,9 @@ impl Slant {
         }
     }
 
-    /// Return whether a rectangle has points on the left.
+    /// Return whether part of a rectangle is on the left.
     fn reaches(&self, low: [i64; 2], high: [i64; 2]) -> bool {
-        // The left is where the coordinate of a row falls if the edge rises along the bits.
+        // If the edge rises along the bits, its left has smaller row coordinates.
         let row = if self.to[1] > self.from[1] {
             low[0]
         } else {

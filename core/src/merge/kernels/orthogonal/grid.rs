@@ -1,4 +1,4 @@
-//! The grid that all facets' planes make of a cell.
+//! The grid of a cell along all facets' planes.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,10 +12,10 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
-/// Intervals on each axis, at most: the regions above a rectangle are the bits of one word.
+/// The most intervals on each axis: the regions above a rectangle are the bits of one word.
 const MAX_INTERVALS: usize = 64;
 
-/// The grid: on each axis intervals between lines, of which the first and last are the cell's walls.
+/// The grid: on each axis intervals between lines; the first and last lines are the cell's walls.
 pub(super) struct Grid {
     /// Doubled coordinates by axis, ascending.
     lines: [Vec<i64>; 3],
@@ -63,7 +63,7 @@ impl Grid {
         self.lines[axis].partition_point(|l| *l < 2 * at)
     }
 
-    /// Return the stretch between two doubled coordinates.
+    /// Return the intervals between two doubled coordinates.
     pub(super) fn between(&self, axis: usize, low: i64, high: i64) -> Reach {
         let lines = &self.lines[axis];
         let below = |at: i64| lines.partition_point(|l| *l < at);
@@ -71,7 +71,7 @@ impl Grid {
         Reach::new(&low, below(high), self.count(axis))
     }
 
-    /// Return the stretch of a polygon's bounds.
+    /// Return the intervals of a polygon's bounds.
     pub(super) fn under(&self, axis: usize, polygon: &Polygon) -> Reach {
         let (mut low, mut below) = (usize::MAX..usize::MAX, 0);
         for corner in polygon.corners() {
@@ -82,7 +82,7 @@ impl Grid {
         Reach::new(&low, below, self.count(axis))
     }
 
-    /// From the number of lines below a point to that of lines not above it.
+    /// The range from the number of lines below a point to the number of lines not above it.
     fn place(&self, axis: usize, point: &Vertex) -> Range<usize> {
         let lines = &self.lines[axis];
         if let Some(at) = point.doubled(axis) {
@@ -100,12 +100,12 @@ impl Grid {
         self.count(0) * self.count(1)
     }
 
-    /// The place of a column.
+    /// The index of a column.
     pub(super) fn column(&self, x: usize, y: usize) -> usize {
         x * self.count(1) + y
     }
 
-    /// Of a field of columns the rectangles of one row below and above a line, as bits.
+    /// The rectangles in one row below and above a line, as bits, in a field of columns.
     pub(super) fn sides(&self, field: &[u64], axis: usize, line: usize, row: usize) -> [u64; 2] {
         match axis {
             0 => [line - 1, line].map(|x| field[self.column(x, row)]),
@@ -122,17 +122,17 @@ impl Grid {
     }
 }
 
-/// The intervals of an axis that bounds share.
+/// The intervals of an axis that overlap bounds.
 pub(super) struct Reach {
-    /// Those that share more than a point with the bounds.
+    /// The intervals that share more than a point with the bounds.
     pub(super) touched: Range<usize>,
-    /// The first one that begins inside the bounds.
+    /// The first interval that begins inside the bounds.
     first: usize,
 }
 
 impl Reach {
-    /// Bounds from a place, given by the number of lines below it and that of lines not above it, to
-    /// another one with so many lines below it, among this many intervals.
+    /// Bounds from a place, given by the numbers of lines below it and not above it, to a place with
+    /// `below` lines below it, among `count` intervals.
     fn new(low: &Range<usize>, below: usize, count: usize) -> Self {
         let end = below.min(count);
         Self {
@@ -141,7 +141,7 @@ impl Reach {
         }
     }
 
-    /// All of this many intervals.
+    /// All of `count` intervals.
     pub(super) fn all(count: usize) -> Self {
         Self {
             touched: 0..count,
@@ -155,7 +155,7 @@ impl Reach {
     }
 }
 
-/// Count the lines from the first on for which a condition holds.
+/// Count the leading lines for which a condition holds.
 fn count(planes: &[Arc<Plane>], holds: impl Fn(&Arc<Plane>) -> bool) -> usize {
     planes.iter().take_while(|line| holds(line)).count()
 }

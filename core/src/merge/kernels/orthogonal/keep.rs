@@ -1,4 +1,4 @@
-//! The faces that an expression leaves of the facets of a grid.
+//! The faces that an expression keeps of the facets of a grid.
 
 use std::ops::Range;
 
@@ -14,19 +14,19 @@ use crate::merge::expression::Expression;
 use crate::merge::kernels::kept::Kept;
 use crate::merge::kernels::stays::{kept, Settled, Stays};
 
-/// A cell with all that is known of it.
+/// A cell with all its computed data.
 pub(super) struct Scene<'a> {
     pub(super) cell: &'a Cell,
     pub(super) grid: &'a Grid,
     pub(super) facets: &'a Facets<'a>,
-    /// The places of the facets in the grid.
+    /// The extents of the facets in the grid.
     pub(super) extents: &'a [Extent],
-    /// By operand the columns of the grid.
+    /// The columns of the grid for each operand.
     pub(super) fields: &'a [Vec<u64>],
     /// The columns of the expression's value.
     pub(super) value: &'a [u64],
     pub(super) expression: &'a Expression,
-    /// The operands' places by their numbers.
+    /// The operands' indices by their numbers.
     pub(super) places: &'a [usize],
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Scene<'a> {
 type Plane = (usize, usize);
 
 impl Scene<'_> {
-    /// Return what stays of all facets; `None` if two of an operand overlap.
+    /// Return what stays of all facets; `None` if two facets of one operand overlap.
     pub(super) fn keep(&self) -> Option<Vec<Kept>> {
         let all = &self.facets.all;
         let mut order: Vec<usize> = (0..all.len()).collect();
@@ -50,7 +50,7 @@ impl Scene<'_> {
         Some(kept(settled.into_iter(), &self.facets.parts, polygon))
     }
 
-    /// Settles the facets of one plane.
+    /// Decides the facets of one plane.
     fn keep_sheet(&self, sheet: &[usize], settled: &mut Vec<Settled>) -> Option<()> {
         let all = &self.facets.all;
         let facet = &all[sheet[0]];
@@ -68,8 +68,8 @@ impl Scene<'_> {
         Some(())
     }
 
-    /// For each operand with facets in a plane the rectangles that it owns and across which the
-    /// expression changes, row by row: those with the inside below, and above.
+    /// For each operand with facets in a plane, the rectangles that it owns and where the expression
+    /// changes, row by row: with the inside below, and above.
     fn owned(&self, plane: Plane, operands: &[usize]) -> SmallVec<[Vec<[u64; 2]>; 2]> {
         let (row, _) = ACROSS[plane.0];
         let rows = self.grid.count(row);
@@ -97,8 +97,8 @@ impl Scene<'_> {
         owned
     }
 
-    /// The owners of rectangles of a row of a plane in which faces of several operands bound the
-    /// expression.
+    /// The owners of rectangles in a row of a plane that bound the expression with faces of several
+    /// operands.
     fn owners(&self, contested: u64, plane: Plane, row: usize) -> Vec<(usize, u64)> {
         if contested == 0 {
             return Vec::new();
@@ -109,7 +109,7 @@ impl Scene<'_> {
         owners.map(|(k, won)| (place(k), won)).collect()
     }
 
-    /// The rectangles of a row of a plane across which an operand's label changes.
+    /// The rectangles in a row of a plane across which an operand's label changes.
     fn changes(&self, operand: usize, plane: Plane, row: usize) -> u64 {
         let [below, above] = self.sides(&self.fields[operand], plane, row);
         below ^ above
@@ -119,8 +119,8 @@ impl Scene<'_> {
         self.grid.sides(field, axis, line, row)
     }
 
-    /// Return whether facets of one operand and plane that face different ways overlap. Those that
-    /// face the same way do not where winding numbers are 0 and 1.
+    /// Return whether facets of one operand and plane with opposite orientations overlap. Facets with one
+    /// orientation do not overlap where winding numbers are 0 and 1.
     fn overlap(&self, own: &[usize]) -> bool {
         let rises = |i: &&usize| self.facets.all[**i].change() > 0;
         let (up, down): (Vec<&usize>, Vec<&usize>) = own.iter().partition(rises);
@@ -141,8 +141,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Return what stays of a facet, given the rectangles of its plane that stay with the inside
-    /// below and above; `None` if it does not meet the cell.
+    /// Return what stays of a facet, from the rectangles of its plane that stay with the inside below and
+    /// above; `None` if it does not meet the cell.
     fn settled(&self, i: usize, owned: &[[u64; 2]]) -> Option<Settled> {
         let (facet, extent) = (&self.facets.all[i], &self.extents[i]);
         let owned = &owned[extent.rows.touched.clone()];
@@ -162,7 +162,7 @@ impl Scene<'_> {
         Some((i, facet.owner(), stays?))
     }
 
-    /// Return what stays of a facet on one side, of the rectangles that it touches from a row on.
+    /// Return what stays of a facet on one side, from the rectangles that it touches, starting at a row.
     fn side(
         &self,
         facet: &Facet,
@@ -200,7 +200,7 @@ impl Scene<'_> {
     }
 }
 
-/// Return the bits that more than one word has.
+/// Return the bits set in more than one word.
 fn contested(words: &[u64]) -> u64 {
     let (mut once, mut more) = (0, 0);
     for word in words {
@@ -210,8 +210,7 @@ fn contested(words: &[u64]) -> u64 {
     more
 }
 
-/// Return whether all bits of a mask are set on one side of every row, or none; `None` if they
-/// differ.
+/// Return whether a mask's bits on one side are set in all rows, or in none; `None` if they are mixed.
 fn all_alike(owned: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
     let mut bits = owned.iter().map(|o| o[side] & mask);
     let first = bits.next()?;

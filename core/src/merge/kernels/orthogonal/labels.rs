@@ -7,17 +7,17 @@ use super::facet::{Facet, ACROSS};
 use super::grid::{mask, Grid, Reach};
 use crate::interrupt::poll;
 
-/// The coarser grid of one operand's own planes, and its winding numbers there.
+/// The coarser grid of one operand's own planes, with its winding numbers.
 struct Own<'a> {
     grid: &'a Grid,
-    /// On each axis the numbers of the grid's lines at which the operand's intervals begin, and the
-    /// number of intervals in the grid.
+    /// On each axis, the numbers of the grid's lines where the operand's intervals begin, and the grid's
+    /// number of intervals.
     starts: [Vec<usize>; 3],
     numbers: Vec<i32>,
 }
 
-/// The columns of the grid with a bit for each region inside an operand; `None` if a winding
-/// number is neither 0 nor 1.
+/// The columns of the grid with a bit for each region inside an operand; `None` if a winding number is
+/// neither 0 nor 1.
 pub(super) fn field<'b>(
     grid: &Grid,
     facets: impl Iterator<Item = (&'b Facet<'b>, &'b Extent)> + Clone,
@@ -61,15 +61,15 @@ impl<'a> Own<'a> {
         (x * self.count(1) + y) * self.count(2) + z
     }
 
-    /// The operand's intervals that begin inside a range of the grid's.
+    /// The operand's intervals that begin in a range of the grid's intervals.
     fn within(&self, axis: usize, range: &Range<usize>) -> Range<usize> {
         let starts = &self.starts[axis][..self.count(axis)];
         let first = starts.partition_point(|s| *s < range.start);
         first..starts.partition_point(|s| *s < range.end)
     }
 
-    /// Notes the change across a facet: everywhere for those across z, at the bottom for those
-    /// across y, and in one row for those across x.
+    /// Records the change across a facet: everywhere if it is across z, at the bottom if it is across y,
+    /// and in one row if it is across x.
     fn enter(&mut self, facet: &Facet, extent: &Extent) {
         let axis = facet.axis;
         let at = self.starts[axis].partition_point(|s| *s < extent.line);
@@ -97,7 +97,7 @@ impl<'a> Own<'a> {
         }
     }
 
-    /// Makes numbers of changes: along x, from there along y, from there along z.
+    /// Adds up the changes: along x, then from there along y, then from there along z.
     fn add_up(&mut self) {
         let [nx, ny, nz] = [0, 1, 2].map(|i| self.count(i));
         for x in 1..nx {
@@ -155,7 +155,7 @@ mod tests {
         let extents: Vec<Extent> = facets.all.iter().map(|f| f.extent(&grid)).collect();
         let field = |corner: i32| field(&grid, facets.all.iter().zip(&extents), corner);
         assert_eq!(field(0), Some(vec![0, 0, 0, 0, 0b010, 0, 0, 0, 0]));
-        // Inside of what is inside: no number that this kernel knows.
+        // With 1 at the corner the box has the number 2, which is refused.
         assert_eq!(field(1), None);
     }
 }

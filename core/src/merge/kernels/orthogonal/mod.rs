@@ -1,8 +1,8 @@
 //! The kernel for cells in which every face is perpendicular to an axis.
 //!
-//! The planes of the faces make a grid of the cell. An operand is inside in whole regions of it, so
-//! that sets of regions are bits, expressions are evaluated a word at a time, and faces in one plane
-//! need no special care. What a face keeps is found on the rectangles of its plane.
+//! The planes of the faces form a grid in the cell. An operand is inside in whole regions of it. So sets of
+//! regions are bits, expressions are evaluated a word at a time, and faces in one plane are no special
+//! case. The rectangles of a face's plane determine what stays of it.
 
 mod extent;
 mod facet;
@@ -20,13 +20,13 @@ use facet::Facets;
 use grid::Grid;
 use keep::Scene;
 
-/// Words of all operands' columns, at most: two megabytes, which stay in a cache.
+/// The most words for all operands' columns: two megabytes, which stay in a cache.
 const MAX_WORDS: usize = 1 << 18;
 
-/// Works in the grid of the faces' planes.
+/// Works on the grid of the faces' planes.
 ///
-/// Refuses cells with a face that is not perpendicular to an axis or an operand that overlaps
-/// itself, and too fine grids.
+/// Refuses cells with a face that is not perpendicular to an axis or an operand that overlaps itself, and
+/// grids that are too fine.
 #[derive(Debug)]
 pub struct Orthogonal;
 
@@ -81,7 +81,7 @@ fn fields(
     operands.iter().enumerate().map(field).collect()
 }
 
-/// Return the places of operands by their numbers.
+/// Return the indices of operands by their numbers.
 fn places(operands: &[Listed]) -> Vec<usize> {
     let last = operands.last().map_or(0, |l| l.number as usize);
     let mut places = vec![0; last + 1];
@@ -111,7 +111,7 @@ mod tests {
     use crate::merge::expression::Term;
     use crate::merge::scenes::{both, counts, crossing, cuboid, Shared};
 
-    /// Two boxes side by side lose the walls between them.
+    /// Two adjacent boxes lose the walls between them.
     #[test]
     fn faces_in_one_plane_need_no_care() {
         let boxes = [[[0; 3], [4; 3]], [[4, 0, 0], [8, 4, 4]]];

@@ -6,10 +6,10 @@ use crate::geometry::cell::Cell;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::interrupt::poll;
 
-/// The pieces of a facet that cover those of the rectangles it touches that stay.
+/// The pieces of a facet that cover its touched rectangles that stay.
 ///
-/// The rectangles are given by rows, from row `first` on, as bits. Rows that may be alike become one
-/// slab, and each run of bits in a slab one piece.
+/// Rectangles are bits in rows, from row `first` on. Compatible rows form one slab, and each run of bits in
+/// a slab one piece.
 pub(super) fn pieces(
     cell: &Cell,
     grid: &Grid,
@@ -39,7 +39,7 @@ pub(super) fn pieces(
     found
 }
 
-/// Rows that are alike wherever the facet touches them.
+/// Rows that agree wherever the facet touches them.
 struct Slab {
     rows: usize,
     stay: u64,
@@ -47,7 +47,7 @@ struct Slab {
 }
 
 impl Slab {
-    /// The first rows that may be alike.
+    /// The longest prefix of rows that agree.
     fn new(touched: &[u64], kept: &[u64]) -> Self {
         let (mut stay, mut go) = (kept[0], touched[0] & !kept[0]);
         let more = touched[1..].iter().zip(&kept[1..]);
@@ -63,7 +63,7 @@ impl Slab {
         Self { rows, stay, go }
     }
 
-    /// The next run of bits from one on: where it starts, and where a bit goes again.
+    /// The next run of bits from one on: where it starts, and the first bit after it that goes.
     fn run(&self, from: u32) -> Option<(u32, u32)> {
         let rest = self.stay & u64::MAX.checked_shl(from)?;
         if rest == 0 {
@@ -75,7 +75,7 @@ impl Slab {
     }
 }
 
-/// The runs of bits in the part of a facet in a slab.
+/// The pieces for the runs of bits in a slab's part of a facet.
 fn cut_slab(
     polygon: Option<Polygon>,
     grid: &Grid,
@@ -86,7 +86,7 @@ fn cut_slab(
     let mut rest = polygon;
     let mut from = 0;
     while let Some((start, end)) = slab.run(from) {
-        // A bit that goes lies before the run, unless it is the first.
+        // A bit that goes lies before the run, unless it is the first run.
         if slab.go & ((1 << start) - 1) != 0 {
             take_below(&mut rest, grid, bit, start as usize);
         }
@@ -99,7 +99,7 @@ fn cut_slab(
     }
 }
 
-/// Cuts off what lies below a line.
+/// Cuts off the part below a line.
 fn take_below(
     rest: &mut Option<Polygon>,
     grid: &Grid,

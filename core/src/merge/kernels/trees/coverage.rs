@@ -15,8 +15,8 @@ use crate::geometry::polygon::{straddle, Polygon, PolygonSplit};
 use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 
-/// The fragments of one plane made disjoint: what lies over each other has the sum of the weights,
-/// and is of the first one's face.
+/// The fragments of one plane made disjoint: where some overlap, the piece has the sum of the weights and
+/// the first one's face.
 pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
     let Some(region) = fragments
         .first()
@@ -36,7 +36,7 @@ pub(super) fn partitioned(fragments: &[Fragment]) -> Vec<Fragment> {
 struct Shape {
     /// Planes through the edges, the fragment on their minus sides.
     walls: SmallVec<[Arc<Plane>; 4]>,
-    /// The jump of the winding number, seen from the plane that is partitioned.
+    /// The jump of the winding number, relative to the partitioned plane.
     weight: i32,
 }
 
@@ -57,11 +57,11 @@ impl Shape {
     }
 }
 
-/// Fragments that cover a cell, in numbers.
+/// The fragments that cover a cell: their sum and the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Cover {
     weight: i32,
-    /// The place of the first one.
+    /// The index of the first one.
     first: Option<u32>,
 }
 
@@ -73,7 +73,7 @@ impl Cover {
         }
     }
 
-    /// Return whether two cells beside each other are one.
+    /// Return whether two adjacent cells can be merged.
     fn is_like(self, other: Self) -> bool {
         self.weight == other.weight && (self.weight == 0 || self.first == other.first)
     }
@@ -97,7 +97,7 @@ impl Covered {
     }
 }
 
-/// A fragment that covers a part of a cell, and its walls that cross the cell.
+/// A fragment that covers part of a cell, and its walls that cross the cell.
 #[derive(Clone)]
 struct Crossing {
     place: u32,
@@ -133,7 +133,7 @@ impl Partition {
         }
     }
 
-    /// Counts the fragments that cover a cell, and returns those that cover a part of it.
+    /// Counts the fragments that cover a cell, and returns those that cover only part of it.
     fn settle(&mut self, cell: usize, crossing: Vec<Crossing>) -> Vec<Crossing> {
         let mut left = Vec::with_capacity(crossing.len());
         for one in crossing {
@@ -166,7 +166,7 @@ impl Partition {
         Some(across)
     }
 
-    /// The halves of a cell, divided by a wall of a fragment in the middle of the list.
+    /// The halves of a cell, cut by a wall of the fragment in the middle of the list.
     fn halves(&self, cell: usize, crossing: &[Crossing]) -> Option<[Polygon; 2]> {
         let one = crossing.get(crossing.len() / 2)?;
         let wall = *one.walls.first()?;
@@ -177,7 +177,7 @@ impl Partition {
         }
     }
 
-    /// The covered cells; halves that are alike are one.
+    /// The covered cells, with equal halves merged.
     fn pieces(mut self, fragments: &[Fragment]) -> Vec<Fragment> {
         for cell in (0..self.cells.len()).rev() {
             poll();
@@ -212,7 +212,7 @@ impl Partition {
     }
 }
 
-/// A region as a piece of a fragment, oriented as that is.
+/// A region as a piece of a fragment, with the fragment's orientation.
 fn piece(region: &Polygon, weight: i32, of: &Fragment) -> Fragment {
     let same = of.polygon.support().coincides(region.support()) == Some(Orientation::Same);
     Fragment {

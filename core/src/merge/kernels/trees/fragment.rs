@@ -1,4 +1,4 @@
-//! Fragments: what a cell cuts out of an operand's faces.
+//! Fragments: the parts of an operand's faces in a cell.
 
 use crate::geometry::polygon::Polygon;
 use crate::mesh::handle::SourceFace;
@@ -12,6 +12,6 @@ pub struct Fragment {
     pub weight: i32,
     /// The face.
     pub face: SourceFace,
-    /// True if the fragment is all of a whole face inside the cell.
+    /// Whether the fragment is all of a whole face inside the cell.
     pub intact: bool,
 }

@@ -1,8 +1,8 @@
 //! The local autopartition of one operand inside a small cell.
 //!
-//! A transient BSP tree cut by the supporting planes of the operand's own fragments. Regions are
-//! labelled with winding numbers by adjacency, so that overlapping, nested and inverted boundaries
-//! are labelled rightly too: labels by plane sides would hold for simple boundaries only.
+//! A transient BSP tree cut by the supporting planes of the operand's own fragments. Regions are labelled
+//! with winding numbers by adjacency, which is correct for overlapping, nested and inverted boundaries too:
+//! labels by plane sides would be correct for simple boundaries only.
 //!
 //! # Source
 //! Thibault and Naylor 1987 (construction, classification).
@@ -40,7 +40,7 @@ pub struct Sided {
     pub plus: i32,
 }
 
-/// A leaf by the place of its label.
+/// A leaf, by the index of its label.
 #[derive(Clone, Copy, Debug)]
 struct Region(u32);
 
@@ -72,16 +72,16 @@ pub struct LocalTree {
     labels: Vec<i32>,
 }
 
-/// A fragment, or a piece of one, while a tree grows.
+/// A fragment or a piece of one during construction.
 struct Growing {
     fragment: Weighted,
     extent: Extent,
 }
 
-/// The fragments and pieces that are divided among nodes, which name them by their places.
+/// The fragments and pieces to distribute among nodes, which refer to them by index.
 struct Nursery {
     all: Vec<Growing>,
-    /// One fragment of each node's coplanar set: it ties the labels on both sides of the node together.
+    /// One fragment of each node's coplanar set, which relates the labels on both sides of the node.
     links: Vec<usize>,
     open: Vec<Task>,
 }
@@ -160,10 +160,10 @@ impl LocalTree {
         Child::Node(node)
     }
 
-    /// Labels the corner's region, then every other one across the links.
+    /// Labels the corner's region, then all others across the links.
     ///
-    /// The links connect all regions: each ties a region of a node's minus subtree to one of its
-    /// plus subtree, and there is one link for every node.
+    /// The links connect all regions: there is one for each node, between a region of its minus subtree and
+    /// one of its plus subtree.
     fn spread_labels(&mut self, nursery: &Nursery, corner: &Lattice, label: i32) {
         let mut neighbours: Vec<Vec<(Region, i32)>> = vec![Vec::new(); self.labels.len()];
         for (node, link) in self.nodes.iter().zip(&nursery.links) {
@@ -189,10 +189,10 @@ impl LocalTree {
         }
     }
 
-    /// The leaf of a subtree that a polygon borders, or lies in, near its first corner.
+    /// The leaf of a subtree that a polygon borders or lies in, near its first corner.
     ///
-    /// A point of the polygon near a corner, next to the edge that leaves it, lies in a plane only if
-    /// all of the polygon does.
+    /// A point of the polygon near a corner, next to the edge that leaves it, lies in a plane only if the
+    /// whole polygon does.
     fn leaf_beside(&self, from: Child, polygon: &Polygon) -> Region {
         let corners = polygon.corners();
         let nearest = [0, 1, corners.len() - 1].map(|i| &corners[i].at);
@@ -236,7 +236,7 @@ impl LocalTree {
         }
     }
 
-    /// Pushes a polygon down the tree: its pieces with the winding numbers on both sides.
+    /// Pushes a polygon down the tree; returns its pieces with the winding numbers on both sides.
     pub fn sides(&self, polygon: Polygon) -> Vec<Sided> {
         let mut found = Vec::new();
         let mut open = vec![(self.root(), polygon)];
@@ -284,7 +284,7 @@ impl LocalTree {
         }
     }
 
-    /// The pieces of a polygon by the leaves of a subtree whose planes it does not lie in.
+    /// The pieces of a polygon by the leaves of a subtree; the polygon lies in none of its planes.
     fn labelled(&self, from: Child, polygon: Polygon) -> Vec<(Polygon, i32)> {
         let mut found = Vec::new();
         let mut open = vec![(from, polygon)];
@@ -293,17 +293,16 @@ impl LocalTree {
             let (polygon, ended) = self.descend(at, polygon, &mut open);
             match ended {
                 Ended::Within(leaf) => found.push((polygon, self.labels[leaf.place()])),
-                // What lies in a node's plane is no fragment of its subtrees.
+                // A polygon in a node's plane is no fragment of its subtrees.
                 Ended::Coplanar(node, _) => open.push((node.children[0], polygon)),
             }
         }
         found
     }
 
-    /// Push a polygon down a subtree to where its labels are known; what is cut off waits.
+    /// Pushes a polygon down a subtree until its labels are known; adds cut-off pieces to `open`.
     ///
-    /// Where no fragment of the subtree is near, all of the polygon has the labels of any leaf that it
-    /// borders.
+    /// If no fragment of the subtree is near, the whole polygon has the labels of any leaf that it borders.
     fn descend(
         &self,
         from: Child,
@@ -339,9 +338,9 @@ impl LocalTree {
     }
 }
 
-/// The place where the way of a polygon down a tree ends.
+/// Where the path of a polygon down a tree ends.
 enum Ended<'t> {
-    /// In a leaf, or somewhere with labels as in that leaf.
+    /// In a leaf, or in several with the same label.
     Within(Region),
     /// At a node in whose plane it lies.
     Coplanar(&'t LocalNode, Orientation),
@@ -361,7 +360,7 @@ impl Nursery {
         }
     }
 
-    /// The pieces on either side of a plane; those that lie in it are left out.
+    /// The pieces on either side of a plane, without those in it.
     fn divide(&mut self, pieces: &[usize], cut: &Arc<Plane>) -> [Vec<usize>; 2] {
         let (mut minus, mut plus) = (Vec::new(), Vec::new());
         for &piece in pieces {

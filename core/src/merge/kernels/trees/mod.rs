@@ -1,9 +1,9 @@
 //! The kernel that takes every cell: local trees.
 //!
-//! Each operand gets its local autopartition; each operand's fragments are pushed through the
-//! others' trees, and a piece stays if the expression differs on its two sides. This is the dual of
-//! merging the trees (which `merge::merge` does, and tests compare): it labels the same regions,
-//! but cuts only fragments, never regions.
+//! Each operand gets a local autopartition; each operand's fragments are pushed through the others' trees,
+//! and a piece stays if the expression differs on its two sides. This is the dual of merging the trees
+//! (`merge::merge`, which tests compare): it labels the same regions, but cuts only fragments, never
+//! regions.
 
 mod coverage;
 mod fragment;
@@ -26,11 +26,11 @@ use operand::Operand;
 
 /// Pushes fragments through local trees.
 ///
-/// The result is the reduced boundary, whatever the operands are.
+/// The result is the reduced boundary for any operands.
 #[derive(Debug)]
 pub struct LocalTrees;
 
-/// A piece of a fragment, with what is known of the operands on its two sides.
+/// A piece of a fragment, with the operands' labels on its two sides.
 pub(in crate::merge) struct Piece {
     pub(in crate::merge) polygon: Polygon,
     pub(in crate::merge) minus: Vec<bool>,
@@ -88,8 +88,8 @@ impl Bounds<'_> {
         self.expression.value(label, scratch)
     }
 
-    /// Return the orientation in which a piece of an operand bounds the expression; `None` if it does
-    /// not, or another operand owns the place.
+    /// Return the orientation in which a piece of an operand bounds the expression; `None` if it does not,
+    /// or another operand owns the place.
     fn side(&self, piece: &Piece, own: usize, scratch: &mut Vec<u64>) -> Option<Orientation> {
         if piece.minus[own] == piece.plus[own] {
             return None;
@@ -118,7 +118,7 @@ pub(in crate::merge) fn orientation([minus, plus]: [bool; 2]) -> Option<Orientat
     })
 }
 
-/// Cuts a fragment into pieces that have one label of each operand on either side.
+/// Cuts a fragment into pieces on whose sides each operand has one label.
 fn sides(fragment: &Fragment, own: usize, operands: &[Operand], rule: Rule) -> Vec<Piece> {
     let first = Piece {
         polygon: fragment.polygon.clone(),
@@ -147,7 +147,7 @@ impl Piece {
     fn pushed(self, tree: &LocalTree, rule: Rule) -> Vec<Self> {
         poll();
         let mut sided = tree.sides(self.polygon);
-        // One piece, as most are left, keeps the memory of the labels.
+        // The last piece, usually the only one, reuses the labels' memory.
         let last = sided.pop();
         let labelled = |s: Sided, mut minus: Vec<bool>, mut plus: Vec<bool>| {
             minus.push(rule.inside(s.minus));
@@ -166,14 +166,14 @@ impl Piece {
         pieces
     }
 
-    /// Return whether of no other operand the label differs on the two sides.
+    /// Return whether no other operand's label differs on the two sides.
     fn is_alone(&self, operand: usize) -> bool {
         let differs = |k: usize| self.minus[k] != self.plus[k];
         (0..self.minus.len()).all(|k| k == operand || !differs(k))
     }
 }
 
-/// The pieces of a fragment that stay, by the orientation in which they do.
+/// The pieces of a fragment that stay, in their orientations.
 pub(in crate::merge) fn keep(
     fragment: &Fragment,
     pieces: Vec<Piece>,

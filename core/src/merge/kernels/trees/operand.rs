@@ -18,7 +18,7 @@ pub(super) struct Operand {
     pub(super) corner: i32,
     pub(super) fragments: Vec<Fragment>,
     pub(super) tree: LocalTree,
-    /// True if nothing overlaps in the cell and all winding numbers are 0 or 1.
+    /// Whether nothing overlaps in the cell and all winding numbers are 0 or 1.
     pub(super) simple: bool,
 }
 
@@ -102,12 +102,12 @@ impl LeafTree {
         self.0.simple
     }
 
-    /// The faces that truly meet the cell.
+    /// The faces with a fragment in the cell.
     pub fn faces(&self) -> impl Iterator<Item = FaceId> + '_ {
         self.0.fragments.iter().map(|f| f.face.id)
     }
 
-    /// The winding numbers behind and in front of a polygon that no piece crosses.
+    /// The winding numbers behind and in front of a polygon that crosses no piece.
     pub fn sides_of(&self, polygon: Polygon) -> Option<[i32; 2]> {
         let sides = self.0.tree.sides(polygon);
         sides.first().map(|s| [s.minus, s.plus])
