@@ -137,6 +137,28 @@ PARTS = {
         "A block with round edges and a bore",
         "Manifold, trimesh and OpenSCAD have no round boxes; the hull of eight balls is one.",
     ),
+    "flange": Part(
+        "A flange with six counterbored holes",
+        "build123d is a line shorter: a counterbored hole is one shape there, and places multiply "
+        "it. OpenSCAD's cuts reach a little beyond the faces that they open, for its previews "
+        "flicker where two faces coincide.",
+    ),
+    "case": Part(
+        "A case with a rim for its lid",
+        "manifold3d, trimesh and OpenSCAD have no fillets in the plane; a smaller rectangle, moved "
+        "outwards, has round corners. build123d has round rectangles.",
+    ),
+    "nut": Part(
+        "A nut without its thread",
+        "One profile, turned about the axis, has the bore and all chamfers. Here and in build123d "
+        "a hexagon has a width across flats; elsewhere its corners lie on a circle, whose size is "
+        "computed.",
+    ),
+    "bracket": Part(
+        "A bracket with a rib and four holes",
+        "Here holes are drilled into faces, right through. The other scripts subtract cylinders, "
+        "which have a length and are turned or have two ends.",
+    ),
     "label": Part(
         "A label",
         "manifold3d and trimesh have no text. build123d's sizes are those of the em, which is 1.39 "
