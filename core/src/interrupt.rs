@@ -5,7 +5,7 @@
 //! no error of its own. What calls share is never left half made: values that are kept are put in
 //! their place only when they are complete.
 //!
-//! Polls are counted and the state is looked at once in [`BUDGET`] of them, so that a poll costs
+//! Polls are counted and the state is looked at once in [`UNITS_BETWEEN_LOOKS`] of them, so that a poll costs
 //! about as much as an addition.
 //!
 //! # Source
@@ -22,7 +22,7 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// Units of work between two looks. A unit takes between 10 ns and some microseconds (an element of
 /// a pass; a pair of elements; an exact question), so looks are 10 µs to some milliseconds apart.
-const BUDGET: usize = 1 << 10;
+const UNITS_BETWEEN_LOOKS: usize = 1 << 10;
 
 /// The time between two questions to a caller: two threads work less than a tenth of a second in it.
 pub const ASK_EVERY: Duration = Duration::from_millis(30);
@@ -38,7 +38,7 @@ static STOPPING: AtomicUsize = AtomicUsize::new(0);
 static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());
 
 thread_local! {
-    static LEFT: Cell<usize> = const { Cell::new(BUDGET) };
+    static LEFT: Cell<usize> = const { Cell::new(UNITS_BETWEEN_LOOKS) };
     static CURRENT: Cell<Task> = const { Cell::new(Task { call: NOBODY }) };
     static CALLER: Cell<Option<Caller>> = const { Cell::new(None) };
 }
@@ -225,7 +225,7 @@ pub fn spend(units: usize) {
 #[cold]
 #[inline(never)]
 fn look() {
-    LEFT.set(BUDGET);
+    LEFT.set(UNITS_BETWEEN_LOOKS);
     if Task::current().is_stopped() || caller_wants_to_stop() {
         end();
     }
@@ -320,7 +320,7 @@ mod tests {
         let (stopped, other) = (Call::new(), Call::new());
         stopped.stop();
         let passes = || {
-            spend(2 * BUDGET);
+            spend(2 * UNITS_BETWEEN_LOOKS);
             Ok(())
         };
         assert!(other.run(passes).is_ok());

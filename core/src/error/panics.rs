@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use super::{Error, Result};
 
 /// The number of panics that are remembered for those who catch them on another thread.
-const RECENT: usize = 8;
+const MAX_PANICS_REMEMBERED: usize = 8;
 
 /// A panic: what it said, and where it happened.
 struct Seen {
@@ -56,7 +56,7 @@ fn remember(info: &PanicHookInfo<'_>) {
         .location()
         .map_or_else(String::new, ToString::to_string);
     if let Ok(mut seen) = SEEN.try_lock() {
-        seen.truncate(RECENT - 1);
+        seen.truncate(MAX_PANICS_REMEMBERED - 1);
         seen.push_front(Seen { message, place });
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::arrangement::{arranged, is_simple_mesh, united, United, POOL};
+use super::arrangement::{arranged, is_simple_mesh, united, United, MIN_FACES_FOR_POOL};
 use super::descent::counters::Counters;
 use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
@@ -134,7 +134,7 @@ fn fresh_pair(
         .map(|s| s.face_count())
         .sum();
     let run = |profile| arranged(expression, operands, &sources, profile);
-    let found = if faces >= POOL {
+    let found = if faces >= MIN_FACES_FOR_POOL {
         handed_over(profile, run).unwrap_or_else(run)
     } else {
         run(profile)

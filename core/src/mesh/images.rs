@@ -23,7 +23,7 @@ struct Known<T> {
 
 /// Yields before the lock counts as held for ever. A thread holds it while it looks up an image, and at
 /// times while it drops old ones; a process forked meanwhile never gets it.
-const TURNS: usize = 1000;
+const MAX_YIELDS: usize = 1000;
 
 impl<T> Default for Images<T> {
     fn default() -> Self {
@@ -55,7 +55,7 @@ impl<T> Images<T> {
     }
 
     fn free(&self) -> Option<MutexGuard<'_, Known<T>>> {
-        for _ in 0..TURNS {
+        for _ in 0..MAX_YIELDS {
             match self.0.try_lock() {
                 Ok(known) => return Some(known),
                 Err(TryLockError::Poisoned(known)) => return Some(known.into_inner()),

@@ -9,12 +9,12 @@ use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
 /// The most edges in a [`Short`] link; around most vertices of most meshes there are six.
-const ROOM: usize = 8;
+const MAX_SHORT_LINK_EDGES: usize = 8;
 
 /// The starts, then the ends of a link's edges; zero where there is none.
 ///
 /// A corner's label is its low fifteen bits under a set top bit.
-type Short = [u16; 2 * ROOM];
+type Short = [u16; 2 * MAX_SHORT_LINK_EDGES];
 
 /// The vertices of a closed surface whose link is not one cycle, sorted.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
@@ -111,7 +111,7 @@ fn doubtful(
     count: usize,
     place: impl Fn(VertexId) -> Option<usize>,
 ) -> Vec<u32> {
-    let mut links: Vec<Short> = vec![[0; 2 * ROOM]; count];
+    let mut links: Vec<Short> = vec![[0; 2 * MAX_SHORT_LINK_EDGES]; count];
     let mut counts = vec![0u8; count];
     for &[a, b, c] in faces {
         poll();
@@ -121,10 +121,10 @@ fn doubtful(
             };
             let count = &mut counts[place];
             let at = usize::from(*count);
-            if at < ROOM {
+            if at < MAX_SHORT_LINK_EDGES {
                 let link = &mut links[place];
                 link[at] = label(from);
-                link[ROOM + at] = label(to);
+                link[MAX_SHORT_LINK_EDGES + at] = label(to);
             }
             *count = count.saturating_add(1);
         }
@@ -150,10 +150,10 @@ fn label(vertex: VertexId) -> u16 {
 /// different. All are labels of starts, since the walk stays at zero once it leaves these. So the labels of
 /// the starts differ, and with them the corners: no two share a label.
 fn is_short_cycle(link: &Short, count: usize) -> bool {
-    if count > ROOM {
+    if count > MAX_SHORT_LINK_EDGES {
         return false;
     }
-    let mut label = link[ROOM];
+    let mut label = link[MAX_SHORT_LINK_EDGES];
     for _ in 1..count {
         if label == link[0] {
             return false;
@@ -165,9 +165,9 @@ fn is_short_cycle(link: &Short, count: usize) -> bool {
 
 /// The label after another; if several edges start with that label, the bitwise or of their ends.
 fn after(link: &Short, label: u16) -> u16 {
-    (0..ROOM).fold(0, |found, i| {
+    (0..MAX_SHORT_LINK_EDGES).fold(0, |found, i| {
         let mask = if link[i] == label { u16::MAX } else { 0 };
-        found | (link[ROOM + i] & mask)
+        found | (link[MAX_SHORT_LINK_EDGES + i] & mask)
     })
 }
 

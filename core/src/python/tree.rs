@@ -9,7 +9,7 @@ use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::arrays::{array, rows, wide};
 use super::calls::errors::{blamed, to_python};
-use super::calls::run::{here, run, SMALL};
+use super::calls::run::{here, run, MIN_ELEMENTS_FOR_POOL};
 use super::hyperplanes::{coefficients, row_of, Row};
 use crate::error::panics::caught;
 use crate::error::{Error, ErrorKind, Result};
@@ -116,7 +116,7 @@ impl Tree {
     }
 
     fn size(&self) -> usize {
-        work(std::slice::from_ref(&self.solid), SMALL)
+        work(std::slice::from_ref(&self.solid), MIN_ELEMENTS_FOR_POOL)
     }
 
     fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<&Rounded> {
@@ -229,7 +229,7 @@ impl Tree {
             .and_then(Expression::new)
             .map_err(|e| to_python(py, &e))?;
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, work(&solids, SMALL), || {
+        let (solid, counters) = run(py, threads, work(&solids, MIN_ELEMENTS_FOR_POOL), || {
             evaluate(&expression, &solids)
         })
         .map_err(|e| {

@@ -90,7 +90,7 @@ fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
 }
 
 /// Binary places that [`volume_near`] keeps of each cut triangle's share, in cubic steps.
-const PLACES: usize = 128;
+const BINARY_PLACES: usize = 128;
 
 /// The volume in cubic model units to within 2^-128 cubic steps for each cut triangle.
 ///
@@ -103,9 +103,9 @@ const PLACES: usize = 128;
 pub fn volume_near(solid: &Solid) -> Result<Fraction> {
     let mesh = assemble(solid)?;
     let shares = Shares::of(solid, &mesh);
-    let rounded: BigInt = shares.near(PLACES).sum();
-    let sum = (shares.whole << PLACES) + rounded;
-    let denominator = BigInt::from(6) << PLACES;
+    let rounded: BigInt = shares.near(BINARY_PLACES).sum();
+    let sum = (shares.whole << BINARY_PLACES) + rounded;
+    let denominator = BigInt::from(6) << BINARY_PLACES;
     Ok(in_units(sum, denominator, solid.pitch().exponent()))
 }
 
@@ -126,10 +126,10 @@ pub fn volume_residues(solid: &Solid) -> Result<Option<[u64; 2]>> {
 
 /// Fractions longer than this many bits are not reduced: finding the divisor would cost more than
 /// it saves.
-const REDUCED: u64 = 4096;
+const MAX_BITS_REDUCED: u64 = 4096;
 
 fn reduced(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
-    if denominator.bits() > REDUCED {
+    if denominator.bits() > MAX_BITS_REDUCED {
         return (numerator, denominator);
     }
     lowest(numerator, denominator)

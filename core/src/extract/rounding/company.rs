@@ -11,11 +11,11 @@ use crate::mesh::tasks::{each_chunk, fill_chunks};
 
 /// The most cells along an axis: the grid then fits into a cache, and the number of a cell into
 /// sixteen bits.
-const FINEST: usize = 32;
+const MAX_CELLS_PER_AXIS: usize = 32;
 
 /// The most cells that a triangle reaches into, on average: comparing it with its neighbours costs as
 /// much. A grid of four cells along an axis has no more.
-const SPREAD: usize = 64;
+const MAX_CELLS_PER_TRIANGLE: usize = 64;
 
 /// The triangles outside `some`, which is ascending, that may meet one of these or a triangle of
 /// another party; with their parties, ascending.
@@ -74,7 +74,9 @@ impl<'a> Cells<'a> {
             faces.vertices.iter().fold(first, joined)
         };
         let (low, high) = (end(f64::min), end(f64::max));
-        let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
+        let size = (faces.triangles.len() / 24)
+            .isqrt()
+            .clamp(2, MAX_CELLS_PER_AXIS);
         let bits = size.next_power_of_two().ilog2();
         let along = as_double(1usize << bits);
         let factor = each_axis(|i| along / (high[i] - low[i]).max(f64::MIN_POSITIVE));
@@ -137,7 +139,7 @@ impl<'a> Cells<'a> {
         parties: impl Iterator<Item = ([VertexId; 3], u32)>,
         count: usize,
     ) -> bool {
-        let mut left = SPREAD * count;
+        let mut left = MAX_CELLS_PER_TRIANGLE * count;
         for (corners, party) in parties {
             let mut reached = 0;
             self.any_row(marks, corners, |row| {

@@ -47,7 +47,7 @@ impl Faults {
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
-        Worth::pool_if(some.len() > SHARE),
+        Worth::pool_if(some.len() > TRIANGLES_PER_TASK),
         || -> Vec<Candidate> {
             let near = in_company(faces, some, &party);
             let has_area = near.iter().filter(|e| !has_no_area(&faces.corners(e.1)));
@@ -125,10 +125,10 @@ fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
 }
 
 /// Triangles that one thread compares: half a millisecond of work or more.
-const SHARE: usize = 512;
+const TRIANGLES_PER_TASK: usize = 512;
 
 /// Pairs that are compared together, by several threads if there are any.
-const BATCH: usize = 8 * CHUNK;
+const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
 /// A triangle that is compared with others.
 struct Candidate {
@@ -270,7 +270,7 @@ impl<'a> Search<'a> {
             slabs: candidates.iter().map(slabs).collect(),
         };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
-        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(SHARE);
+        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(TRIANGLES_PER_TASK);
         let found = each(Worth::Pool, parts, |part| search.kept(part));
         found.into_iter().fold(K::default(), K::with)
     }
@@ -304,7 +304,7 @@ impl<'a> Search<'a> {
                     return Some(());
                 }
                 waiting.push([i, j]);
-                if waiting.len() == BATCH {
+                if waiting.len() == PAIRS_PER_BATCH {
                     self.look_at(&waiting, &mut found);
                     waiting.clear();
                 }

@@ -17,12 +17,12 @@ use crate::mesh::snap::snap_all;
 use crate::mesh::triangles::firsts;
 
 /// Rounds of finding and mending: each mends what it found, the next checks what that moved.
-const ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 4;
 
 /// The most crossing pairs, per triangle, for which a moved mesh is mended. Surfaces that touched
 /// cross along curves, in fewer pairs than there are triangles. With more, they lie on each other
 /// as a whole, and no change as small as the rounding separates them.
-const MOST_CROSSINGS: usize = 1;
+const MAX_CROSSINGS_PER_TRIANGLE: usize = 1;
 
 /// A mesh whose vertices were rounded, closed by index.
 #[derive(Clone, Debug)]
@@ -72,7 +72,7 @@ pub fn settle(
         settled.moved = merged(&settled.moved, &moved);
         found = mesh.faults_after(&found, &changed, &touched, &party);
     }
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         if found.is_empty() {
             break;
         }
@@ -133,7 +133,7 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
             ..Settled::default()
         };
     }
-    if found.crossings.len() > MOST_CROSSINGS * mesh.triangles.len() {
+    if found.crossings.len() > MAX_CROSSINGS_PER_TRIANGLE * mesh.triangles.len() {
         let left = found;
         return Settled {
             left,

@@ -8,11 +8,11 @@ use crate::geometry::doubles::{is_flat, Triangle};
 use crate::mesh::handle::VertexId;
 
 /// A vertex of more triangles stays: checking each edge of a hub costs a pass over all of them.
-pub const MOST_AROUND: usize = 64;
+pub const MAX_TRIANGLES_PER_VERTEX: usize = 64;
 
 /// Triangles lower than this part of the tolerance are not made, unless one was as low before: they
 /// are lower than those that gathering corners leave, and further collapses would not remove them.
-const LEAST_HEIGHT: f64 = 0.25;
+const MIN_HEIGHT_SHARE: f64 = 0.25;
 
 /// A change to try, by its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -106,7 +106,7 @@ impl Limits<'_> {
             return None;
         };
         let star = self.surface.star(from);
-        if star.len() > MOST_AROUND || !self.may_be_joined(from, to) {
+        if star.len() > MAX_TRIANGLES_PER_VERTEX || !self.may_be_joined(from, to) {
             return None;
         }
         let (place, coming) = (self.surface.place(to), Coming::Vertex(from));
@@ -123,7 +123,7 @@ impl Limits<'_> {
             least = least.min(self.change(&mut edit, t, [from, to])?);
         }
         let lowest = |m: f64, t: &u32| m.min(height(&self.surface.corners(*t)));
-        let before = star.iter().fold(LEAST_HEIGHT * self.tolerance, lowest);
+        let before = star.iter().fold(MIN_HEIGHT_SHARE * self.tolerance, lowest);
         (least >= before).then_some(edit)
     }
 

@@ -115,7 +115,7 @@ struct Sum {
 }
 
 /// Roundings of a difference, a minor, a product and a sum, in units of the last place, with a margin.
-const ROUNDINGS: f64 = 16.0;
+const VOLUME_ROUNDINGS: f64 = 16.0;
 
 impl Sum {
     fn add(&mut self, corners: &[Point; 3]) {
@@ -129,7 +129,7 @@ impl Sum {
     }
 
     fn sign(&self) -> Filtered<Sign> {
-        let error = (ROUNDINGS + self.count) * f64::EPSILON * self.size;
+        let error = (VOLUME_ROUNDINGS + self.count) * f64::EPSILON * self.size;
         Filtered::when(self.volume.abs() > error, Sign::of(self.volume))
     }
 }

@@ -10,7 +10,7 @@ use super::segments::{contacts_among, Contacts};
 use super::shells::{distinct, is_outward, shells, Shell};
 use super::star::is_star_shaped;
 use super::surfaces::Surfaces;
-use super::POOL;
+use super::MIN_FACES_FOR_POOL;
 use crate::geometry::cell::Cell;
 use crate::geometry::side::Orientation;
 use crate::merge::rule::Rule;
@@ -166,7 +166,7 @@ impl<'a> Scene<'a> {
     fn alone(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
         let all: Vec<FaceId> = operand.mesh.face_ids().collect();
         Self {
-            worth: Worth::pool_if(all.len() >= POOL),
+            worth: Worth::pool_if(all.len() >= MIN_FACES_FOR_POOL),
             surfaces: Surfaces::new(vec![operand], vec![all.clone()]),
             near: vec![all],
             cell,

@@ -28,8 +28,8 @@ pub use alone::{is_simple_mesh, united, United};
 pub use pair::{arranged, Arranged};
 
 /// The number of faces in one box that is worth waking a pool: they take some milliseconds.
-pub const POOL: usize = 4096;
+pub const MIN_FACES_FOR_POOL: usize = 4096;
 
 /// The number of pairs for each face beyond which faces are crowded: boxes do not separate them, and the
 /// descent divides space instead.
-const PAIRS_FOR_EACH: usize = 24;
+const MAX_PAIRS_PER_FACE: usize = 24;

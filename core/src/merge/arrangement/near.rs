@@ -4,7 +4,7 @@
 use rustc_hash::FxHashMap as HashMap;
 
 use super::looked::Looked;
-use super::PAIRS_FOR_EACH;
+use super::MAX_PAIRS_PER_FACE;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
@@ -20,10 +20,10 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
 /// The number of pairs tested together, by several threads if there are any.
-const BATCH: usize = 8 * CHUNK;
+const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
 /// The first batch of a search that may end early; the batch then doubles each time.
-const FIRST_BATCH: usize = 256;
+const PAIRS_IN_FIRST_BATCH: usize = 256;
 
 /// A mesh prepared for quick tests of its faces.
 pub(super) struct View<'a> {
@@ -86,7 +86,11 @@ impl<'a> View<'a> {
         let mut search = Search {
             view: self,
             until_overlap,
-            batch: if until_overlap { FIRST_BATCH } else { BATCH },
+            batch: if until_overlap {
+                PAIRS_IN_FIRST_BATCH
+            } else {
+                PAIRS_PER_BATCH
+            },
             waiting: Vec::new(),
             found: Vec::new(),
             overlap: false,
@@ -161,7 +165,7 @@ impl Search<'_> {
         if self.waiting.len() < self.batch {
             return Some(());
         }
-        self.batch = BATCH.min(2 * self.batch);
+        self.batch = PAIRS_PER_BATCH.min(2 * self.batch);
         self.look()
     }
 
@@ -177,7 +181,7 @@ impl Search<'_> {
         }
         let ascending = found.iter().map(|[a, b]| [a.0.min(b.0), a.0.max(b.0)]);
         self.found.extend(ascending);
-        (self.found.len() <= PAIRS_FOR_EACH * self.view.mesh.faces.len()).then_some(())
+        (self.found.len() <= MAX_PAIRS_PER_FACE * self.view.mesh.faces.len()).then_some(())
     }
 }
 
@@ -264,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_search_gives_up_where_most_faces_overlap_most_others() {
-        let boxes = vec![[[0; 3], [9; 3]]; 4 * PAIRS_FOR_EACH];
+        let boxes = vec![[[0; 3], [9; 3]]; 4 * MAX_PAIRS_PER_FACE];
         assert!(pairs_of(&boxes).is_none());
     }
 

@@ -7,7 +7,7 @@ use super::probe::probe;
 use super::scene::Scene;
 use super::segments::{contacts_of, Contacts};
 use super::surfaces::Surfaces;
-use super::POOL;
+use super::MIN_FACES_FOR_POOL;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
@@ -41,7 +41,7 @@ pub fn arranged(
     let operands = operands(expression, solids, sources).ok_or(Declined::Operands)?;
     let window = window(operands.each_ref().map(|o| o.bounds)).ok_or(Declined::Apart)?;
     let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
-    let worth = Worth::pool_if(faces >= POOL);
+    let worth = Worth::pool_if(faces >= MIN_FACES_FOR_POOL);
     let count = |found: &Result<Near, Declined>| found.as_ref().map_or(0, Near::len);
     let near = profile.timed("candidates", || near(&operands, &window, worth), count)?;
     let Near {

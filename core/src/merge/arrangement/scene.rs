@@ -21,7 +21,7 @@ use crate::mesh::tasks::{each, Worth};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 
 /// The number of items in a task for other threads.
-const TASK: usize = 32;
+const ITEMS_PER_TASK: usize = 32;
 
 /// Two meshes, or one compared with itself.
 #[derive(Debug)]
@@ -95,7 +95,7 @@ impl<'a> Scene<'a> {
     /// The points and planes of all contacts.
     fn shared<'b>(&'b self, found: &'b Contacts) -> Shared<'b> {
         let planes = self.planes(found);
-        let blocks = found.points.chunks(TASK).collect();
+        let blocks = found.points.chunks(ITEMS_PER_TASK).collect();
         let vertices = each(self.worth, blocks, |block: &[CommonPoint]| {
             let vertex = |point: &CommonPoint| Arc::new(self.vertex(point, &planes));
             block.iter().map(vertex).collect::<Vec<_>>()
@@ -113,7 +113,7 @@ impl<'a> Scene<'a> {
         let faces = self.arranged_faces(found);
         let planes = each(
             self.worth,
-            faces.chunks(TASK).collect(),
+            faces.chunks(ITEMS_PER_TASK).collect(),
             |block: &[u32]| {
                 let planes = block
                     .iter()
@@ -179,7 +179,7 @@ impl<'a> Scene<'a> {
         };
         let found = each(
             self.worth,
-            faces.chunks(TASK).collect(),
+            faces.chunks(ITEMS_PER_TASK).collect(),
             |block: &[u32]| {
                 let block = block.iter().map(|number| arranged(*number));
                 block.collect::<Result<Vec<_>, Declined>>()
@@ -312,7 +312,7 @@ impl<'a> Scene<'a> {
             .collect();
         all.sort_unstable_by_key(|(id, ..)| *id);
         let ids: Vec<FaceId> = all.iter().map(|(id, ..)| *id).collect();
-        let blocks = all.chunks_mut(TASK).collect();
+        let blocks = all.chunks_mut(ITEMS_PER_TASK).collect();
         let found = each(
             self.worth,
             blocks,

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::candidates::Candidates;
 use super::contact::{contact, Contact, End, Spot, Touching};
 use super::surfaces::Surfaces;
-use super::PAIRS_FOR_EACH;
+use super::MAX_PAIRS_PER_FACE;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::{Facing, Triangle};
 use crate::geometry::plane::Lattice;
@@ -18,7 +18,7 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 
 /// The number of pairs of one operand tested together.
-const BLOCK: usize = 1 << 9;
+const PAIRS_PER_BLOCK: usize = 1 << 9;
 
 /// An edge: the operand, and its end vertices there, the lower first.
 pub(super) type Edge = (usize, [VertexId; 2]);
@@ -112,7 +112,8 @@ pub(super) fn contacts_of(
     worth: Worth,
 ) -> Result<Contacts, Declined> {
     let [first, second] = candidates;
-    let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.triangles.len() + second.triangles.len()));
+    let left =
+        AtomicUsize::new(MAX_PAIRS_PER_FACE * (first.triangles.len() + second.triangles.len()));
     let visit = |block: &[[u32; 2]]| -> Result<Vec<Met>, Declined> {
         let take = |left: usize| left.checked_sub(block.len());
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
@@ -126,7 +127,7 @@ pub(super) fn contacts_of(
 
 /// The contacts of the given pairs of faces of one operand.
 pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Worth) -> Contacts {
-    let blocks = pairs.chunks(BLOCK).collect();
+    let blocks = pairs.chunks(PAIRS_PER_BLOCK).collect();
     let operand = &surfaces.operands[0];
     let triangle = |face: u32| operand.triangle(FaceId(face));
     let met = each(worth, blocks, |block: &[[u32; 2]]| {

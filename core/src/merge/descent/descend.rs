@@ -9,7 +9,10 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::choice::{extent, is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK};
+use super::choice::{
+    extent, is_crowded, is_overcrowded, Round, MAX_ELEMENTS_ORTHOGONAL, MAX_ELEMENTS_PER_LEAF,
+    MAX_ELEMENTS_STUCK, MAX_ORTHOGONAL_PER_OPERAND,
+};
 use super::counters::Counters;
 use super::join;
 use super::state::{find, has_constant, has_surface, nested, worth, State, States, BINS_FROM};
@@ -257,13 +260,13 @@ impl<'a> Descent<'a> {
         let mut round = round;
         let stuck = round.is_stuck(&cell, &states, total);
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
-        let small = total <= LEAF || stuck && total <= STUCK;
+        let small = total <= MAX_ELEMENTS_PER_LEAF || stuck && total <= MAX_ELEMENTS_STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             let solved = self.solved(cell, &expression, &states, total, &ALL)?;
             return Ok(solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"))?);
         };
         let flat = || states.iter().all(|s| s.1.is_orthogonal(self.sources));
-        if total <= (ORTHOGONAL * states.len()).min(CROWD)
+        if total <= (MAX_ORTHOGONAL_PER_OPERAND * states.len()).min(MAX_ELEMENTS_ORTHOGONAL)
             && flat()
             && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])?
         {

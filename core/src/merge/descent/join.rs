@@ -17,7 +17,7 @@ use crate::tree::node::{Branch, Deferred, Group, Node};
 /// The most faces of two deferred leaves that are joined into one.
 ///
 /// Half the size of cells that kernels take, so that a joined leaf is not split again at once.
-pub const JOINED: usize = 16;
+pub const MAX_FACES_JOINED: usize = 16;
 
 /// The branch for a cell from the branches for its halves.
 ///
@@ -84,7 +84,7 @@ fn divided(cell: Cell, minus: Branch, plus: Branch, joined: Option<Node>) -> Bra
 /// One deferred leaf for both halves, if they are small and list only whole faces.
 fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Sources) -> Option<Node> {
     let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
-    if a.len() + b.len() > 2 * JOINED {
+    if a.len() + b.len() > 2 * MAX_FACES_JOINED {
         return None;
     }
     let mut faces = listed(minus, a);
@@ -95,7 +95,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
             None => faces.push(element),
         }
     }
-    if faces.len() > JOINED {
+    if faces.len() > MAX_FACES_JOINED {
         return None;
     }
     let halves = [
@@ -155,7 +155,9 @@ fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
 
 fn small_leaf(branch: &Branch) -> Option<&Deferred> {
     match &*branch.node {
-        Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= JOINED => Some(leaf),
+        Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= MAX_FACES_JOINED => {
+            Some(leaf)
+        }
         _ => None,
     }
 }

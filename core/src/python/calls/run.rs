@@ -14,7 +14,7 @@ use crate::interrupt::{Call, Means, Share, Task, ASK_EVERY};
 
 /// Work on fewer elements than this begins on the caller's thread: passes over them are not shared,
 /// and what is worth more wakes the pool by itself.
-pub const SMALL: usize = 1 << 13;
+pub const MIN_ELEMENTS_FOR_POOL: usize = 1 << 13;
 
 /// The abilities of a caller's thread.
 const MEANS: Means = Means {
@@ -58,7 +58,7 @@ pub fn run<T: Send>(
 ) -> PyResult<T> {
     RAISED.set(None);
     let call = Call::new();
-    let result = if size < SMALL {
+    let result = if size < MIN_ELEMENTS_FOR_POOL {
         let before = HELPERS.replace((threads, None));
         let result = detached(py, || call.run_here(MEANS, work));
         HELPERS.set(before);

@@ -235,7 +235,7 @@ impl PyFragmentTree {
         directions: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Paths<'py>> {
         let rays = rays_of(&origins, &directions);
-        let paths = self.run(py, rays.len() * CAST, || {
+        let paths = self.run(py, rays.len() * ELEMENTS_PER_RAY, || {
             each_cast!(&self.inner, held, cast, &rays)
         })?;
         let count = |of: fn(&RayPath) -> u64| {
@@ -263,7 +263,7 @@ impl PyFragmentTree {
         let [a, b, c] = origin;
         let [d, e, f] = direction;
         let ray = [a, b, c, d, e, f];
-        let path = self.run(py, CAST, || {
+        let path = self.run(py, ELEMENTS_PER_RAY, || {
             each_cast!(&self.inner, held, cast_one, &ray, &mut events)
         })?;
         Ok((path.hit, events.iter().map(event_row).collect()))
@@ -479,7 +479,7 @@ impl PyFragmentTree {
 }
 
 /// Casting a ray costs about as much as a thousand elements of other work.
-const CAST: usize = 1000;
+const ELEMENTS_PER_RAY: usize = 1000;
 
 /// The exception that a callable raised.
 type Raised = Arc<Mutex<Option<PyErr>>>;

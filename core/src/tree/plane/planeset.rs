@@ -33,7 +33,7 @@ pub struct PlaneSet {
 
 /// Building a tree of n edges costs about as much as this many sweeps over them: 16 µs an edge against half
 /// a microsecond.
-pub const TREE: usize = 32;
+pub const SWEEPS_PER_TREE: usize = 32;
 
 /// The work of the operations that made a set, since its tree was last rebuilt.
 #[derive(Clone, Copy, Debug, Default)]
@@ -121,7 +121,7 @@ impl PlaneSet {
             return true;
         }
         let few = points < self.size;
-        few && self.asked.fetch_add(1, Ordering::Relaxed) >= TREE
+        few && self.asked.fetch_add(1, Ordering::Relaxed) >= SWEEPS_PER_TREE
     }
 
     /// The tree, if it is made already.
