@@ -365,12 +365,12 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::interrupt::{Call, Means};
+    use crate::interrupt::{Call, CallerHooks};
     use crate::merge::scenes::{both, cuboid, made_of};
 
     static SHARES: AtomicUsize = AtomicUsize::new(0);
 
-    const MEANS: Means = Means {
+    const HOOKS: CallerHooks = CallerHooks {
         wants_to_stop: || false,
         hand_over: |task, share| {
             SHARES.fetch_add(1, Ordering::Relaxed);
@@ -383,7 +383,7 @@ mod tests {
         let shared = |solids: &[Solid; 2]| {
             let before = SHARES.load(Ordering::Relaxed);
             let work = || evaluate(&both(Term::Or), solids);
-            let (_, counters) = Call::new().run_here(MEANS, work).expect("not stopped");
+            let (_, counters) = Call::new().run_here(HOOKS, work).expect("not stopped");
             (counters.named(), SHARES.load(Ordering::Relaxed) - before)
         };
         let step = made_of(&[cuboid([1; 3], [9; 3]), cuboid([2; 3], [12; 3])], Term::Or);

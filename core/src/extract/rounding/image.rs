@@ -119,7 +119,7 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
 /// A needle along one of the lines is thin seen across both, and seen in their plane across its
 /// own.
 fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
-    let needles: Vec<Point> = sample.iter().filter_map(bearing).collect();
+    let needles: Vec<Point> = sample.iter().filter_map(second_edge_direction).collect();
     if SUITED_IF_ONE_IN * needles.len() < sample.len() || needles.iter().all(is_axis) {
         return None;
     }
@@ -137,7 +137,7 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
 
 /// The direction of the second longest edge of a needle; `None` for other triangles. The longest
 /// edge is the diagonal between neighbours.
-fn bearing(triangle: &Triangle) -> Option<Point> {
+fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
     let mut edges = [less(b, a), less(c, b), less(a, c)];
     edges.sort_unstable_by(|e, f| dot(e, e).total_cmp(&dot(f, f)));

@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
-use super::company::in_company;
+use super::broad_phase::triangles_near;
 use super::crossings::{all_faults, faults, Faults};
 use super::mend::{Mending, Precision};
 use super::snapping::crossed;
@@ -304,7 +304,7 @@ impl Rounded {
     ) -> Vec<u32> {
         let corners = members(found).flat_map(|t| self.triangles[t as usize]);
         let core = self.stars(&corners.collect::<Vec<VertexId>>());
-        let near = in_company(&self.faces(), &core, |_| 0);
+        let near = triangles_near(&self.faces(), &core, |_| 0);
         let some = merged(&core, &near.into_iter().map(|o| o.1).collect::<Vec<u32>>());
         let part = Part::of(self, &some);
         let local = |t: &u32| as_number(some.binary_search(t).unwrap_or(0));

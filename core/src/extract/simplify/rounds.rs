@@ -104,7 +104,7 @@ impl Simplifying {
         }
         for edit in &kept {
             edit.corners().for_each(|v| self.awake[v.place()] = true);
-            self.drift.follow(edit.target, edit.coming, edit.bound);
+            self.drift.follow(edit.target, edit.arrival, edit.bound);
         }
         self.changed |= !kept.is_empty();
         self.refused.extend(refused);

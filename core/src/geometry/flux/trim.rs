@@ -51,7 +51,7 @@ fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [
         error: 0.0,
     };
     for beyond in cuts {
-        let lone = alone(beyond);
+        let lone = lone_corner(beyond);
         let inside = beyond[lone] < 0;
         let corner = at_corner(corners, area, beyond, lone);
         rest.add(&corner, Orientation::turned_around(!inside));
@@ -63,7 +63,7 @@ fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [
 }
 
 /// The corner that lies alone on its side of a wall.
-fn alone(beyond: &[i64; 3]) -> usize {
+fn lone_corner(beyond: &[i64; 3]) -> usize {
     match beyond.map(|b| b > 0) {
         [a, b, c] if b == c && a != b => 0,
         [a, b, c] if a == c && a != b => 1,

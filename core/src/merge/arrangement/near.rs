@@ -3,7 +3,7 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::looked::Looked;
+use super::prepared::PreparedFace;
 use super::MAX_PAIRS_PER_FACE;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
@@ -99,7 +99,7 @@ impl<'a> View<'a> {
         let swept = |number: u32| self.swept(face(number));
         let add = |a: u32, b: u32| search.add([face(a), face(b)]);
         let all = pairs_of_many(Part::of(boxes, self.shift), swept, add);
-        if all.and_then(|()| search.look()).is_none() {
+        if all.and_then(|()| search.test_waiting()).is_none() {
             return if search.overlap {
                 Pairs::Overlap
             } else {
@@ -114,9 +114,9 @@ impl<'a> View<'a> {
 
 impl View<'_> {
     /// A face prepared for quick tests.
-    fn of(&self, face: FaceId) -> Looked {
+    fn of(&self, face: FaceId) -> PreparedFace {
         let terrain = self.terrains[face.place()];
-        Looked::at(self.mesh, face, self.irregular, terrain)
+        PreparedFace::at(self.mesh, face, self.irregular, terrain)
     }
 
     /// The party of a face: faces of one terrain are not compared.
@@ -166,11 +166,11 @@ impl Search<'_> {
             return Some(());
         }
         self.batch = PAIRS_PER_BATCH.min(2 * self.batch);
-        self.look()
+        self.test_waiting()
     }
 
     /// Tests the waiting pairs; `None` if the search ends.
-    fn look(&mut self) -> Option<()> {
+    fn test_waiting(&mut self) -> Option<()> {
         let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
         self.waiting.clear();
         let found: Vec<[FaceId; 2]> = found.into_iter().flatten().collect();
@@ -201,32 +201,32 @@ fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
 
 /// The pairs that a quick test does not clear.
 fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
-    let mut looks = Looks {
+    let mut prepared = PreparedFaces {
         view,
         places: HashMap::default(),
-        looked: Vec::new(),
+        faces: Vec::new(),
     };
     let is_unclear = |pair: &&[FaceId; 2]| {
         poll();
-        let [a, b] = pair.map(|face| looks.at(face));
-        !looks.looked[a].is_clear_of(&looks.looked[b])
+        let [a, b] = pair.map(|face| prepared.at(face));
+        !prepared.faces[a].is_clear_of(&prepared.faces[b])
     };
     pairs.iter().filter(is_unclear).copied().collect()
 }
 
 /// The prepared faces: pairs found in succession have few faces.
-struct Looks<'a> {
+struct PreparedFaces<'a> {
     view: &'a View<'a>,
     places: HashMap<FaceId, usize>,
-    looked: Vec<Looked>,
+    faces: Vec<PreparedFace>,
 }
 
-impl Looks<'_> {
+impl PreparedFaces<'_> {
     /// The index of a face.
     fn at(&mut self, face: FaceId) -> usize {
         *self.places.entry(face).or_insert_with(|| {
-            self.looked.push(self.view.of(face));
-            self.looked.len() - 1
+            self.faces.push(self.view.of(face));
+            self.faces.len() - 1
         })
     }
 }

@@ -1,9 +1,9 @@
 //! Two unchanged meshes: which of their faces may meet.
 
 use super::candidates::{Candidates, Operand, Within};
-use super::kept::Kept;
+use super::keep_rule::KeepRule;
 use super::occupancy::Occupancy;
-use super::probe::probe;
+use super::sample::sample;
 use super::scene::Scene;
 use super::segments::{contacts_of, Contacts};
 use super::surfaces::Surfaces;
@@ -58,7 +58,7 @@ pub fn arranged(
         surfaces,
         near: within.map(|w| w.faces).into(),
         cell: solids[0].root().cell.join(&solids[1].root().cell),
-        kept: Kept::of(expression),
+        kept: KeepRule::of(expression),
         worth,
     };
     let root = profile.timed("faces", || scene.root(&found), leaf_len)?;
@@ -87,7 +87,7 @@ impl Near {
 
 fn near(operands: &[Operand; 2], window: &[Point; 2], worth: Worth) -> Result<Near, Declined> {
     let within = for_both(worth, |k| operands[k].within(window));
-    probe(operands, &within)?;
+    sample(operands, &within)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
     let occupied = for_both(worth, |k| {
         let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);

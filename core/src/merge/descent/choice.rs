@@ -76,7 +76,7 @@ pub struct Round {
     /// True if operands are results of groups that the kernel did not refuse yet.
     groups: bool,
     /// True if the other half of the cell that was halved last is empty.
-    alone: bool,
+    empty_sibling: bool,
 }
 
 impl Round {
@@ -87,7 +87,7 @@ impl Round {
         stuck: false,
         refused: usize::MAX,
         groups: false,
-        alone: false,
+        empty_sibling: false,
     };
 
     /// The same, where operands are results of groups that were in one place.
@@ -102,7 +102,7 @@ impl Round {
         if self.depth + 1 < HALVINGS_PER_ROUND {
             return Self {
                 depth: self.depth + 1,
-                alone: false,
+                empty_sibling: false,
                 ..self
             };
         }
@@ -110,7 +110,7 @@ impl Round {
             depth: 0,
             start: total,
             stuck: total * 8 > self.start * MAX_EIGHTHS_LEFT,
-            alone: false,
+            empty_sibling: false,
             ..self
         }
     }
@@ -118,21 +118,21 @@ impl Round {
     /// After a halving of a cell with so many elements that only cuts off what is empty: it tells
     /// nothing about how the rest separates, if that is small.
     #[must_use]
-    pub fn next_alone(self, cell: &Cell, extent: i64, total: usize) -> Self {
+    pub fn next_with_empty_sibling(self, cell: &Cell, extent: i64, total: usize) -> Self {
         let round = if fills(extent, cell) {
             self.next(total)
         } else {
             self
         };
         Self {
-            alone: true,
+            empty_sibling: true,
             ..round
         }
     }
 
     /// Return whether the other half of the cell that was halved last is empty.
-    pub fn is_alone(&self) -> bool {
-        self.alone
+    pub fn has_empty_sibling(&self) -> bool {
+        self.empty_sibling
     }
 
     /// Return whether the last three halvings left most elements in one part.
@@ -145,7 +145,7 @@ impl Round {
     pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
         let (mut cell, mut round) = (cell, self);
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
-            round = round.next_alone(&cell, extent, total);
+            round = round.next_with_empty_sibling(&cell, extent, total);
             let lower = cell.half(cut, Half::Minus);
             cell = if lower.holds(inner) {
                 lower
@@ -156,8 +156,14 @@ impl Round {
                 break;
             }
         }
-        let alone = false;
-        (cell, Self { alone, ..round })
+        let empty_sibling = false;
+        (
+            cell,
+            Self {
+                empty_sibling,
+                ..round
+            },
+        )
     }
 
     /// The kernel for general position refused so many elements.

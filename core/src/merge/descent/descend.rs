@@ -16,7 +16,7 @@ use super::choice::{
 use super::counters::Counters;
 use super::join;
 use super::state::{find, has_constant, has_surface, nested, worth, State, States, BINS_FROM};
-use super::twins::{self, Firsts};
+use super::twins::{self, TwinTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
@@ -238,7 +238,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Operands that are equal in a cell, unless each must be examined.
-    fn twins(&self, found: impl FnOnce() -> Option<Firsts>) -> Option<Firsts> {
+    fn twins(&self, found: impl FnOnce() -> Option<TwinTable>) -> Option<TwinTable> {
         self.share.then(found).flatten()
     }
 
@@ -250,7 +250,7 @@ impl<'a> Descent<'a> {
         states: States,
         round: Round,
     ) -> Visited {
-        if let Some(inner) = nested(&cell, &states, round.is_alone()) {
+        if let Some(inner) = nested(&cell, &states, round.has_empty_sibling()) {
             return self.jump(cell, inner, expression, states, round);
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
@@ -304,7 +304,7 @@ impl<'a> Descent<'a> {
         mut states: States,
         mut round: Round,
     ) -> Visited {
-        if let Some(extent) = extent(&cell, &states).filter(|_| round.is_alone()) {
+        if let Some(extent) = extent(&cell, &states).filter(|_| round.has_empty_sibling()) {
             let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
             (inner, round) = round.inward(cell, &inner, extent, total);
         }
@@ -394,7 +394,7 @@ impl<'a> Descent<'a> {
         };
         let round = remaining.map_or_else(
             || round.next(total),
-            |extent| round.next_alone(&cell, extent, total),
+            |extent| round.next_with_empty_sibling(&cell, extent, total),
         );
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)

@@ -140,13 +140,13 @@ fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
 ///
 /// An operand taken unchanged may have numbers above one where the leaf kernel says one: leaves that
 /// disagree across the cut must not be joined.
-fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
+fn change_along_edge(faces: &[ListedFace], cell: &Cell, cut: Cut) -> i32 {
     let segment = Segment {
         from: cell.corner(),
         axis: cut.axis,
         to: 2 * cut.at - 1,
     };
-    let across = |f: &Listed| match f.source.shape() {
+    let across = |f: &ListedFace| match f.source.shape() {
         Shape::Mesh(mesh) => triangle_change(&mesh.corners(f.face), &segment),
         Shape::HalfSpace(plane) => plane_change(plane, &segment),
     };
@@ -162,15 +162,15 @@ fn small_leaf(branch: &Branch) -> Option<&Deferred> {
     }
 }
 
-struct Listed {
+struct ListedFace {
     touching: bool,
     source: Arc<Source>,
     orientation: Orientation,
     face: FaceId,
 }
 
-fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
-    let entry = |g: &Group, face: &FaceId| Listed {
+fn listed(branch: &Branch, leaf: &Deferred) -> Vec<ListedFace> {
+    let entry = |g: &Group, face: &FaceId| ListedFace {
         touching: g.touching,
         source: Arc::clone(&g.source),
         orientation: g.orientation.turned_if(branch.complement),
@@ -182,7 +182,7 @@ fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
         .collect()
 }
 
-impl Listed {
+impl ListedFace {
     fn same_as(&self, other: &Self) -> bool {
         self.face == other.face
             && self.orientation == other.orientation
@@ -231,7 +231,7 @@ enum Extent {
     Nothing,
 }
 
-fn grouped(faces: Vec<Listed>) -> Vec<Group> {
+fn grouped(faces: Vec<ListedFace>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for f in faces {
         poll();

@@ -70,13 +70,13 @@ fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
 
 /// The elements along the lines on which they overlap least, by operand.
 struct Sweep {
-    operands: Vec<Swath>,
+    operands: Vec<SortedElements>,
     size: usize,
     crowding: f64,
 }
 
 /// An operand's elements, sorted along the line on which all overlap least.
-struct Swath {
+struct SortedElements {
     /// Extents along that line.
     first: Vec<Span>,
     /// Extents along the next best line.
@@ -107,7 +107,7 @@ impl Sweep {
         let rim = |i: &usize| rims(swept[*i].corners.as_ref(), &plane, size);
         let swath = |own: &[usize]| {
             let ordered = |line: &Line| own.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
-            Swath {
+            SortedElements {
                 first: ordered(&first),
                 second: ordered(&second),
                 others: lines.iter().map(ordered).collect(),
@@ -142,7 +142,7 @@ impl Sweep {
     }
 }
 
-impl Swath {
+impl SortedElements {
     /// Finds for each element those of another operand that begin after it, or also at the same place if
     /// `level` is set.
     fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {

@@ -9,18 +9,18 @@ use crate::python::arrays::array;
 use crate::python::hyperplanes::Row;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
-/// A caller's wish how to build, before the dimension is known.
+/// A caller's choice of how to build, before the dimension is known.
 #[derive(Clone, Debug)]
-pub enum Wish {
+pub enum BuildMethod {
     Policy(Policy, Option<usize>, i64),
     Lines(Sample),
     Given(Vec<NodeCut>),
 }
 
-/// A wish, and hyperplanes of the caller's own that come first.
+/// How to build, and hyperplanes of the caller's own that come first.
 #[derive(Clone, Debug)]
-pub struct Recipe {
-    pub wish: Wish,
+pub struct BuildOptions {
+    pub method: BuildMethod,
     pub own: Vec<Row>,
 }
 

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
-use crate::python::calls::errors::{blamed, to_python};
+use crate::python::calls::errors::{to_python, with_report};
 use crate::python::calls::in_use::InUse;
 use crate::python::calls::run::{run, MIN_ELEMENTS_FOR_POOL};
 use crate::query::ray::answer::{Hit, Kind};
@@ -338,7 +338,7 @@ impl RayScene {
     ) -> PyResult<T> {
         let _call = self.calls.enter(py)?;
         run(py, threads, size, work).map_err(|e| {
-            blamed(py, e, "RayScene", || {
+            with_report(py, e, "RayScene", || {
                 let corners: Vec<f64> = with_scene!(&self.facets, scene => {
                     scene.facets().iter().flatten().flatten().copied().collect()
                 });

@@ -103,7 +103,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         };
         let (start, crossed) = (self.tree.fragments.len(), self.tree.crossings.len());
         let [minus, plus] = self.distribute(open.pieces, &hyperplane, node);
-        self.watcher.tell(|| Division {
+        self.watcher.notify(|| Division {
             node,
             place: open.place,
             depth: open.depth,
@@ -116,7 +116,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             split: crossing(&self.tree.crossings[crossed..]),
             coplanar: coplanar(&self.tree.fragments[start..]),
         });
-        self.hang(open.place, node);
+        self.link(open.place, node);
         self.tree.nodes.push(Node {
             hyperplane,
             cut,
@@ -148,7 +148,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 
     /// Links a node to the one above.
-    fn hang(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
+    fn link(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
         let Some((above, half)) = place else {
             return;
         };

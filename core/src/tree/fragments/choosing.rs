@@ -180,7 +180,7 @@ fn asked<S: Affine>(
         })
         .collect();
     for candidate in &candidates {
-        watcher.tell(|| *candidate);
+        watcher.notify(|| *candidate);
     }
     match (ask.answer)(open.depth, pieces.len(), &candidates)? {
         Answer::Candidate(place) => {

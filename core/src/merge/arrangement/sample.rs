@@ -22,7 +22,7 @@ const CROWDED_FROM: usize = 128;
 ///
 /// # Errors
 /// `AllOver` if one of them touches another face, `Crowded` if boxes do not separate faces.
-pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
+pub(super) fn sample(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
     let [first, second] = within;
     if first.faces.len().min(second.faces.len()) < SAMPLED_FROM {
         return Ok(());
