@@ -126,7 +126,7 @@ impl Call {
     pub fn run_here<T>(&self, hooks: CallerHooks, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let asked = Instant::now();
         let caller = Caller { hooks, asked };
-        let _before = Restored::new(&CALLER, Some(caller));
+        let _before = RestoredOnDrop::new(&CALLER, Some(caller));
         self.run(work)
     }
 }
@@ -170,7 +170,7 @@ impl Task {
         if self.is_stopped() {
             end();
         }
-        let _before = Restored::new(&CURRENT, self);
+        let _before = RestoredOnDrop::new(&CURRENT, self);
         work()
     }
 
@@ -183,19 +183,19 @@ impl Task {
 }
 
 /// A thread's value that returns when this is dropped.
-struct Restored<T: Copy + 'static> {
+struct RestoredOnDrop<T: Copy + 'static> {
     place: &'static std::thread::LocalKey<Cell<T>>,
     value: T,
 }
 
-impl<T: Copy> Restored<T> {
+impl<T: Copy> RestoredOnDrop<T> {
     fn new(place: &'static std::thread::LocalKey<Cell<T>>, value: T) -> Self {
         let value = place.replace(value);
         Self { place, value }
     }
 }
 
-impl<T: Copy> Drop for Restored<T> {
+impl<T: Copy> Drop for RestoredOnDrop<T> {
     fn drop(&mut self) {
         self.place.set(self.value);
     }

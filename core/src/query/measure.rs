@@ -77,16 +77,16 @@ pub fn volume_rounded(solid: &Solid) -> Option<f64> {
 
 /// A flux as a volume in model units, if no number gets too long.
 fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
-    const LONGEST: u64 = 25;
+    const MAX_EXPONENT: u64 = 25;
     let size = exponent.unsigned_abs();
-    let power = (0..3 * size.min(LONGEST)).fold(Int::<4>::ONE, |p, _| p.mul_i64(10));
+    let power = (0..3 * size.min(MAX_EXPONENT)).fold(Int::<4>::ONE, |p, _| p.mul_i64(10));
     let units = Int::<3>::from_limbs([0, 0, 6 << (FLUX_PLACES - 128)]);
     let ratio = if exponent < 0 {
         ratio_to_f64(flux, &units.mul::<4, 7>(&power))
     } else {
         ratio_to_f64(&flux.mul::<4, 10>(&power), &units)
     };
-    (size <= LONGEST).then_some(ratio)
+    (size <= MAX_EXPONENT).then_some(ratio)
 }
 
 /// Binary places that [`volume_near`] keeps of each cut triangle's share, in cubic steps.

@@ -306,7 +306,7 @@ impl Rounded {
         let core = self.stars(&corners.collect::<Vec<VertexId>>());
         let near = triangles_near(&self.faces(), &core, |_| 0);
         let some = merged(&core, &near.into_iter().map(|o| o.1).collect::<Vec<u32>>());
-        let part = Part::of(self, &some);
+        let part = SubMesh::of(self, &some);
         let local = |t: &u32| as_number(some.binary_search(t).unwrap_or(0));
         let faults = Faults {
             crossings: found
@@ -328,7 +328,7 @@ impl Rounded {
     }
 
     /// Copies a mended part back into the mesh; returns the triangles changed.
-    fn take_back(&mut self, mending: &Mending, part: &Part, some: &[u32]) -> Vec<u32> {
+    fn take_back(&mut self, mending: &Mending, part: &SubMesh, some: &[u32]) -> Vec<u32> {
         let mut globals = part.globals.clone();
         let first = self.vertices.len() - globals.len();
         for (v, place) in mending.vertices.iter().enumerate() {
@@ -355,13 +355,13 @@ impl Rounded {
 }
 
 /// Some triangles with vertices of their own.
-struct Part {
+struct SubMesh {
     /// The vertices by their numbers in the whole mesh.
     globals: Vec<VertexId>,
     triangles: Vec<[VertexId; 3]>,
 }
 
-impl Part {
+impl SubMesh {
     fn of(mesh: &Rounded, some: &[u32]) -> Self {
         let mut numbers: HashMap<VertexId, VertexId> = HashMap::default();
         let mut globals = Vec::new();

@@ -45,7 +45,7 @@ pub fn walk<const D: usize>(
     depth: impl Fn(usize) -> f64,
     mut visit: impl FnMut(usize, &Block<D>) -> f64,
 ) {
-    let (frame, width) = (scene.frame(), scene.grain() * MAX_BUNDLE_WIDTH);
+    let (frame, width) = (scene.frame(), scene.mean_facet_size() * MAX_BUNDLE_WIDTH);
     for (number, rays) in rays.chunks(RAYS_PER_BUNDLE).enumerate() {
         let first = number * RAYS_PER_BUNDLE;
         if rays.len() > 1 {

@@ -48,18 +48,18 @@ pub fn from_preorder<S: Space>(
     frame: S::Frame,
 ) -> Result<PartitionTree<S>> {
     let plus = plus_children(entries)?;
-    let mut maker = Maker {
+    let mut reader = PreorderReader {
         entries,
         plus: &plus,
         region: Region::new(frame),
         steps: vec![Step::Visit(NodeId::ROOT, None)],
         done: Vec::new(),
     };
-    while let Some(step) = maker.steps.pop() {
+    while let Some(step) = reader.steps.pop() {
         poll();
-        maker.advance(step)?;
+        reader.advance(step)?;
     }
-    maker.done.pop().ok_or_else(bad_list)
+    reader.done.pop().ok_or_else(bad_list)
 }
 
 fn bad_list() -> Error {
@@ -90,7 +90,7 @@ fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<NodeId>> {
     }
 }
 
-struct Maker<'a, S: Space> {
+struct PreorderReader<'a, S: Space> {
     entries: &'a [Entry<S::Hyperplane>],
     plus: &'a [NodeId],
     region: Region<S>,
@@ -106,7 +106,7 @@ enum Step<S: Space> {
     Join(Arc<SubHyperplane<S>>),
 }
 
-impl<S: Space> Maker<'_, S> {
+impl<S: Space> PreorderReader<'_, S> {
     fn advance(&mut self, step: Step<S>) -> Result<()> {
         match step {
             Step::Join(sub_hyperplane) => {
