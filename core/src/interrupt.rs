@@ -5,7 +5,7 @@
 //! no error of its own. What calls share is never left half made: values that are kept are put in
 //! their place only when they are complete.
 //!
-//! Polls are counted and the state is looked at once in [`BUDGET`] of them, so that a poll costs
+//! Polls are counted and the state is looked at once in [`UNITS_BETWEEN_LOOKS`] of them, so that a poll costs
 //! about as much as an addition.
 //!
 //! # Source
@@ -22,13 +22,13 @@ use crate::error::{Error, ErrorKind, Result};
 
 /// Units of work between two looks. A unit takes between 10 ns and some microseconds (an element of
 /// a pass; a pair of elements; an exact question), so looks are 10 µs to some milliseconds apart.
-const BUDGET: usize = 1 << 10;
+const UNITS_BETWEEN_LOOKS: usize = 1 << 10;
 
 /// The time between two questions to a caller: two threads work less than a tenth of a second in it.
 pub const ASK_EVERY: Duration = Duration::from_millis(30);
 
 /// The number of no call.
-const NOBODY: u64 = 0;
+const NO_CALL: u64 = 0;
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
@@ -38,8 +38,8 @@ static STOPPING: AtomicUsize = AtomicUsize::new(0);
 static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());
 
 thread_local! {
-    static LEFT: Cell<usize> = const { Cell::new(BUDGET) };
-    static CURRENT: Cell<Task> = const { Cell::new(Task { call: NOBODY }) };
+    static UNITS_LEFT: Cell<usize> = const { Cell::new(UNITS_BETWEEN_LOOKS) };
+    static CURRENT: Cell<Task> = const { Cell::new(Task { call: NO_CALL }) };
     static CALLER: Cell<Option<Caller>> = const { Cell::new(None) };
 }
 
@@ -75,7 +75,7 @@ pub type Share<'a> = &'a mut (dyn FnMut() + Send);
 
 /// The abilities of a caller who works himself.
 #[derive(Clone, Copy)]
-pub struct Means {
+pub struct CallerHooks {
     /// Return whether to stop; the work cannot know by itself.
     pub wants_to_stop: fn() -> bool,
     /// Have threads of a pool do a share of the work for a task's call, and wait; do nothing if the
@@ -86,7 +86,7 @@ pub struct Means {
 /// The caller of work on this thread.
 #[derive(Clone, Copy)]
 struct Caller {
-    means: Means,
+    hooks: CallerHooks,
     asked: Instant,
 }
 
@@ -123,10 +123,10 @@ impl Call {
     ///
     /// # Errors
     /// Those of the work; `Cancelled`.
-    pub fn run_here<T>(&self, means: Means, work: impl FnOnce() -> Result<T>) -> Result<T> {
+    pub fn run_here<T>(&self, hooks: CallerHooks, work: impl FnOnce() -> Result<T>) -> Result<T> {
         let asked = Instant::now();
-        let caller = Caller { means, asked };
-        let _before = Restored::new(&CALLER, Some(caller));
+        let caller = Caller { hooks, asked };
+        let _before = RestoredOnDrop::new(&CALLER, Some(caller));
         self.run(work)
     }
 }
@@ -170,7 +170,7 @@ impl Task {
         if self.is_stopped() {
             end();
         }
-        let _before = Restored::new(&CURRENT, self);
+        let _before = RestoredOnDrop::new(&CURRENT, self);
         work()
     }
 
@@ -183,19 +183,19 @@ impl Task {
 }
 
 /// A thread's value that returns when this is dropped.
-struct Restored<T: Copy + 'static> {
+struct RestoredOnDrop<T: Copy + 'static> {
     place: &'static std::thread::LocalKey<Cell<T>>,
     value: T,
 }
 
-impl<T: Copy> Restored<T> {
+impl<T: Copy> RestoredOnDrop<T> {
     fn new(place: &'static std::thread::LocalKey<Cell<T>>, value: T) -> Self {
         let value = place.replace(value);
         Self { place, value }
     }
 }
 
-impl<T: Copy> Drop for Restored<T> {
+impl<T: Copy> Drop for RestoredOnDrop<T> {
     fn drop(&mut self) {
         self.place.set(self.value);
     }
@@ -216,16 +216,16 @@ pub fn poll() {
 /// Notes so many units of work; ends the call if it has been stopped.
 #[inline]
 pub fn spend(units: usize) {
-    match LEFT.get().checked_sub(units) {
-        Some(left) => LEFT.set(left),
-        None => look(),
+    match UNITS_LEFT.get().checked_sub(units) {
+        Some(left) => UNITS_LEFT.set(left),
+        None => check_stopped(),
     }
 }
 
 #[cold]
 #[inline(never)]
-fn look() {
-    LEFT.set(BUDGET);
+fn check_stopped() {
+    UNITS_LEFT.set(UNITS_BETWEEN_LOOKS);
     if Task::current().is_stopped() || caller_wants_to_stop() {
         end();
     }
@@ -249,7 +249,7 @@ fn caller_wants_to_stop() -> bool {
         asked: now,
         ..caller
     }));
-    (caller.means.wants_to_stop)()
+    (caller.hooks.wants_to_stop)()
 }
 
 /// Do a share of the work in a pool if the call's caller works himself and has one.
@@ -262,7 +262,7 @@ pub fn handed_over<W: Send, T: Send>(needs: W, work: impl Fn(W) -> T + Sync) -> 
     };
     let (mut needs, mut value) = (Some(needs), None);
     let mut share = || value = needs.take().map(&work);
-    (caller.means.hand_over)(Task::current(), &mut share);
+    (caller.hooks.hand_over)(Task::current(), &mut share);
     match (value, needs) {
         (Some(value), _) => Ok(value),
         (None, Some(needs)) => Err(needs),
@@ -320,7 +320,7 @@ mod tests {
         let (stopped, other) = (Call::new(), Call::new());
         stopped.stop();
         let passes = || {
-            spend(2 * BUDGET);
+            spend(2 * UNITS_BETWEEN_LOOKS);
             Ok(())
         };
         assert!(other.run(passes).is_ok());
@@ -330,13 +330,13 @@ mod tests {
     }
 
     /// A caller who does shares himself, and wants to stop.
-    const IMPATIENT: Means = Means {
+    const IMPATIENT: CallerHooks = CallerHooks {
         wants_to_stop: || true,
         hand_over: |task, share| task.run(share),
     };
 
     /// A caller whose system starts no threads.
-    const ALONE: Means = Means {
+    const ALONE: CallerHooks = CallerHooks {
         wants_to_stop: || false,
         hand_over: |_, _| (),
     };
@@ -348,9 +348,9 @@ mod tests {
 
     #[test]
     fn shares_are_handed_over_once_or_given_back() {
-        let shared = |means| {
+        let shared = |hooks| {
             let work = || Ok(handed_over(20, |n| n + 1));
-            Call::new().run_here(means, work).expect("not stopped")
+            Call::new().run_here(hooks, work).expect("not stopped")
         };
         assert_eq!([shared(IMPATIENT), shared(ALONE)], [Ok(21), Err(20)]);
         assert_eq!(handed_over(20, |n| n + 1), Err(20), "nobody called");

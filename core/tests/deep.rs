@@ -10,7 +10,7 @@ use bspcsg::geometry::spaces::space::Space;
 use bspcsg::merge::{merge, split_tree, SetOp};
 use bspcsg::tree::partition::{
     autopartition, boundary, check, classify, owned_boundary, stats, winding_tree, Facet, Label,
-    Location, PartitionTree, PivotPolicy, Sheet,
+    Location, PartitionTree, PivotPolicy, SubHyperplane,
 };
 
 const DEPTH: i64 = 100_000;
@@ -41,7 +41,7 @@ fn chain<S: Space<Frame: Default>>(
             source: 0,
         }];
         let below = PartitionTree::Leaf(next.complement());
-        PartitionTree::cut(Arc::new(Sheet { span, facets }), below, above)
+        PartitionTree::cut(Arc::new(SubHyperplane { span, facets }), below, above)
     })
 }
 

@@ -7,7 +7,7 @@ use bspcsg::arith::Int;
 use bspcsg::error::ErrorKind;
 use bspcsg::geometry::plane::{Lattice, Plane};
 use bspcsg::geometry::spaces::motion::Motion;
-use bspcsg::merge::descent::choice::LEAF;
+use bspcsg::merge::descent::choice::MAX_ELEMENTS_PER_LEAF;
 use bspcsg::merge::expression::Term;
 use bspcsg::merge::rule::Rule;
 use bspcsg::merge::SetOp;
@@ -281,7 +281,7 @@ fn leaves_of_different_winding_numbers_stay_apart() {
     let holes = small(1, 1).with(small(1, 9)).inverted();
     let body = twice.with(holes);
     let mut operands = vec![body.unchecked()];
-    operands.extend((0..LEAF / 4).map(|_| small(9, 1).solid()));
+    operands.extend((0..MAX_ELEMENTS_PER_LEAF / 4).map(|_| small(9, 1).solid()));
     let copies = u32::try_from(operands.len()).expect("few");
     let lines = vec![
         Term::Or((1..copies).collect()),

@@ -2,12 +2,12 @@
 
 use std::panic::take_hook;
 
-use bspcsg::error::panics::{caught, listen};
+use bspcsg::error::panics::{caught, record_panics};
 use bspcsg::error::{Error, ErrorKind, Result};
 
 /// Catches what one piece of work does, with nothing printed.
 fn quietly<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
-    listen();
+    record_panics();
     let result = caught(work);
     let _ = take_hook();
     result

@@ -5,7 +5,7 @@
 use bspcsg::geometry::side::{Half, Side};
 use bspcsg::geometry::spaces::affine::{Affine, Viewpoint};
 use bspcsg::geometry::spaces::dim2::Dim2;
-use bspcsg::merge::generic::trace::{Because, Decision, Journal, MergeStep};
+use bspcsg::merge::generic::trace::{Decision, DecisionReason, Journal, MergeStep};
 use bspcsg::merge::{merge, merge_watched, SetOp, SplitCase};
 use bspcsg::mesh::facets::Facet;
 use bspcsg::mesh::grid::Pitch;
@@ -227,7 +227,7 @@ impl<I: Iterator<Item = MergeStep>> Replay<I> {
             Decision::First(_) => a,
             Decision::FirstComplement(_) => a.complement(),
             Decision::Second(because) => {
-                assert_eq!(because, Because::FirstIsLeaf);
+                assert_eq!(because, DecisionReason::FirstIsLeaf);
                 b
             }
             Decision::SecondComplement(_) => b.complement(),

@@ -3,7 +3,7 @@
 use super::convert::low_limb;
 use super::limbs::{
     bit_length, inverse_mod_limb, remainder_long, remainder_short, subtract_masked,
-    subtract_multiple, unsigned_product, SPARE,
+    subtract_multiple, unsigned_product, MAX_TRUNCATED_LIMBS,
 };
 use super::modular;
 use super::round;
@@ -202,7 +202,7 @@ impl<const N: usize> Int<N> {
         reason = "the width of the product is the caller's choice"
     )]
     pub fn mul<const B: usize, const R: usize>(self, other: &Int<B>) -> Int<R> {
-        const { assert!(R + SPARE >= N + B) };
+        const { assert!(R + MAX_TRUNCATED_LIMBS >= N + B) };
         let (mut product, mut top) = unsigned_product::<N, B, R>(&self.limbs, &other.limbs);
         subtract_masked(&mut product, &mut top, N, &other.limbs, self.sign_limb());
         subtract_masked(&mut product, &mut top, B, &self.limbs, other.sign_limb());

@@ -6,16 +6,17 @@
 use super::convert::{as_number, low_limb};
 
 /// The most limbs by which a product may be truncated; these are computed to check that they are empty.
-pub(super) const SPARE: usize = 2;
+pub(super) const MAX_TRUNCATED_LIMBS: usize = 2;
 
-/// The low `R >= A + B - SPARE` limbs of the product of two unsigned numbers, and the limbs above.
+/// The low `R >= A + B - MAX_TRUNCATED_LIMBS` limbs of the product of two unsigned numbers, and the
+/// limbs above.
 #[inline]
 pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
     a: &[u64; A],
     b: &[u64; B],
-) -> ([u64; R], [u64; SPARE]) {
+) -> ([u64; R], [u64; MAX_TRUNCATED_LIMBS]) {
     let mut product = [0; R];
-    let mut top = [0; SPARE];
+    let mut top = [0; MAX_TRUNCATED_LIMBS];
     for (i, &a) in a.iter().enumerate() {
         let mut carry = 0;
         for (j, &b) in b.iter().enumerate() {
@@ -35,7 +36,7 @@ pub(super) fn unsigned_product<const A: usize, const B: usize, const R: usize>(
 )]
 fn limb_of<'a, const R: usize>(
     number: &'a mut [u64; R],
-    top: &'a mut [u64; SPARE],
+    top: &'a mut [u64; MAX_TRUNCATED_LIMBS],
     place: usize,
 ) -> &'a mut u64 {
     if place < R {
@@ -62,7 +63,7 @@ pub(super) const fn multiply_add(a: u64, b: u64, c: u64, d: u64) -> (u64, u64) {
 #[inline]
 pub(super) fn subtract_masked<const R: usize, const B: usize>(
     number: &mut [u64; R],
-    top: &mut [u64; SPARE],
+    top: &mut [u64; MAX_TRUNCATED_LIMBS],
     start: usize,
     subtrahend: &[u64; B],
     mask: u64,

@@ -8,18 +8,18 @@ use std::sync::Mutex;
 use super::{Error, Result};
 
 /// The number of panics that are remembered for those who catch them on another thread.
-const RECENT: usize = 8;
+const MAX_PANICS_REMEMBERED: usize = 8;
 
 /// A panic: what it said, and where it happened.
-struct Seen {
+struct RecordedPanic {
     message: String,
     place: String,
 }
 
-static SEEN: Mutex<VecDeque<Seen>> = Mutex::new(VecDeque::new());
+static RECORDED: Mutex<VecDeque<RecordedPanic>> = Mutex::new(VecDeque::new());
 
 /// Remembers where panics happen instead of printing them: who catches them says it.
-pub fn listen() {
+pub fn record_panics() {
     set_hook(Box::new(remember));
 }
 
@@ -55,14 +55,14 @@ fn remember(info: &PanicHookInfo<'_>) {
     let place = info
         .location()
         .map_or_else(String::new, ToString::to_string);
-    if let Ok(mut seen) = SEEN.try_lock() {
-        seen.truncate(RECENT - 1);
-        seen.push_front(Seen { message, place });
+    if let Ok(mut seen) = RECORDED.try_lock() {
+        seen.truncate(MAX_PANICS_REMEMBERED - 1);
+        seen.push_front(RecordedPanic { message, place });
     }
 }
 
 fn place_of(message: &str) -> Option<String> {
-    let seen = SEEN.try_lock().ok()?;
+    let seen = RECORDED.try_lock().ok()?;
     let found = seen.iter().find(|seen| seen.message == message)?;
     Some(found.place.clone())
 }

@@ -9,15 +9,16 @@ use std::cmp::Ordering;
 use crate::arith::bounds::{ANGLES_LIMBS, ANGLE_LIMBS, CROSS_LIMBS, NORMAL_LIMBS};
 use crate::arith::{Filtered, Int, Sign};
 use crate::geometry::plane::Lattice;
-use crate::geometry::vertex::{Homogeneous, Vertex, NEAR};
+use crate::geometry::vertex::{Homogeneous, Vertex, MAX_COORDINATE_ERROR};
 
-/// The ends of an edge and the two apexes opposite it, in doubles accurate enough for [`NEAR`].
+/// The ends of an edge and the two apexes opposite it, in doubles accurate enough for
+/// [`MAX_COORDINATE_ERROR`].
 pub(super) type Quad = [[f64; 2]; 4];
 
 /// Compare the sum of two opposite angles to 180 degrees, where doubles decide it.
 pub(super) fn rough([a, b, c, d]: Quad) -> Filtered<Ordering> {
     let larger = |p: [f64; 2]| p[0].abs().max(p[1].abs());
-    let doubt = NEAR * larger(a).max(larger(b)).max(larger(c)).max(larger(d));
+    let doubt = MAX_COORDINATE_ERROR * larger(a).max(larger(b)).max(larger(c)).max(larger(d));
     let (first, second) = (Rough::at(c, a, b, doubt), Rough::at(d, b, a, doubt));
     let (left, right) = (first.cos * second.sin, second.cos * first.sin);
     let spread = |one: &Rough, other: &Rough| one.cos.abs().max(one.sin.abs()) * other.doubt;

@@ -60,13 +60,13 @@ impl Overlap {
         let mut faces: Vec<u64> = own.map(|f| u64::from(f.id().0)).collect();
         faces.sort_unstable();
         faces.dedup();
-        let told = if solid.is_reduced() {
+        let note = if solid.is_reduced() {
             ", though it was declared trusted"
         } else {
             ""
         };
         let text = format!(
-            "mesh {} of those that the solid was made of (source {}) overlaps itself{told}: {}",
+            "mesh {} of those that the solid was made of (source {}) overlaps itself{note}: {}",
             slot.0,
             source.id(),
             self.sign

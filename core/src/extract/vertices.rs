@@ -8,7 +8,7 @@ use crate::arith::convert::as_double;
 use crate::arith::{Filtered, Sign};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::points;
-use crate::geometry::vertex::{Vertex, NEAR};
+use crate::geometry::vertex::{Vertex, MAX_COORDINATE_ERROR};
 use crate::geometry::vertices::VertexTable;
 
 /// The table's points as seen along the main axis of a plane's normal, from its plus side.
@@ -88,7 +88,7 @@ impl Planar for Projection<'_> {
 impl Projection<'_> {
     fn compare_by(&self, a: u32, b: u32, axis: usize) -> Ordering {
         let (p, q) = (self.table.place(a)[axis], self.table.place(b)[axis]);
-        if (p - q).abs() > (p.abs() + q.abs()) * NEAR {
+        if (p - q).abs() > (p.abs() + q.abs()) * MAX_COORDINATE_ERROR {
             return p.total_cmp(&q);
         }
         self.table.point(a).compare(self.table.point(b), axis)
@@ -101,7 +101,7 @@ impl Projection<'_> {
         let (bu, bv) = (b[0] - a[0], b[1] - a[1]);
         let (cu, cv) = (c[0] - a[0], c[1] - a[1]);
         let larger = |p: [f64; 2]| p[0].abs().max(p[1].abs());
-        let doubt = NEAR * larger(a).max(larger(b)).max(larger(c));
+        let doubt = MAX_COORDINATE_ERROR * larger(a).max(larger(b)).max(larger(c));
         let size = bu.abs() + bv.abs() + cu.abs() + cv.abs();
         let bound = 2.0 * doubt * (size + 2.0 * doubt)
             + 4.0 * f64::EPSILON * (bu * cv).abs().max((bv * cu).abs());

@@ -59,7 +59,7 @@ pub fn are_apart(p: &NearTriangle, q: &NearTriangle) -> bool {
     if is_beside(of_q) {
         return true;
     }
-    match (alone(of_p), alone(of_q)) {
+    match (lone_corner(of_p), lone_corner(of_q)) {
         (Some(i), Some(k)) => stretches_are_apart(&p.corners, i, &q.corners, k),
         _ => false,
     }
@@ -71,7 +71,7 @@ fn is_beside(sides: Sides) -> bool {
 }
 
 /// The corner that is alone on its side; `None` if that is not certain.
-fn alone(sides: Sides) -> Option<usize> {
+fn lone_corner(sides: Sides) -> Option<usize> {
     let [Filtered::Certain(a), Filtered::Certain(b), Filtered::Certain(c)] = sides else {
         return None;
     };

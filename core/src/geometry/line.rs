@@ -143,7 +143,7 @@ impl<const P: u64> Pluecker<P> {
             direction: cross::<P>(n, m),
             moment: each_axis(|i| minor::<P>(a.offset, m[i], b.offset, n[i])),
         };
-        (line.lead() != 0).then_some(line)
+        (line.first_nonzero() != 0).then_some(line)
     }
 
     /// The line with coordinates that have no common divisor.
@@ -163,7 +163,7 @@ impl<const P: u64> Pluecker<P> {
     }
 
     /// The first coordinate that is not zero.
-    fn lead(&self) -> u64 {
+    fn first_nonzero(&self) -> u64 {
         let mut all = self.direction.iter().chain(&self.moment);
         all.find(|c| **c != 0).copied().unwrap_or(0)
     }
@@ -180,7 +180,7 @@ impl<const P: u64> Pluecker<P> {
         let before: SmallVec<[(Self, u64); 8]> = lines
             .map(|line| {
                 let so_far = product;
-                product = mul::<P>(product, line.lead());
+                product = mul::<P>(product, line.first_nonzero());
                 (line, so_far)
             })
             .collect();
@@ -188,7 +188,7 @@ impl<const P: u64> Pluecker<P> {
         let mut scaled: SmallVec<[[u64; 6]; 8]> = SmallVec::with_capacity(before.len());
         for (line, so_far) in before.iter().rev() {
             scaled.push(line.scaled(mul::<P>(inverse, *so_far)));
-            inverse = mul::<P>(inverse, line.lead());
+            inverse = mul::<P>(inverse, line.first_nonzero());
         }
         scaled.reverse();
         scaled
@@ -252,8 +252,8 @@ impl LineKey {
     /// The key of a line.
     pub fn of(line: &Line) -> Self {
         Self {
-            first: line.first.scaled(inv_mod(line.first.lead(), P1)),
-            second: line.second.scaled(inv_mod(line.second.lead(), P2)),
+            first: line.first.scaled(inv_mod(line.first.first_nonzero(), P1)),
+            second: line.second.scaled(inv_mod(line.second.first_nonzero(), P2)),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::axes::each_axis;
 use super::doubles::Point;
 use super::side::Side;
-use super::vertex::{Homogeneous, Vertex, NEAR};
+use super::vertex::{Homogeneous, Vertex, MAX_COORDINATE_ERROR};
 use crate::arith::bounds::{ANGLE_LIMBS, CROSS_LIMBS, ORIENTATION_LIMBS, SIDE_LIMBS};
 use crate::arith::{Filtered, Int, Sign};
 
@@ -52,9 +52,10 @@ pub fn side([a, b, c]: [&Vertex; 3], d: &Vertex) -> Side {
 
 /// The side, where the points' approximations decide it.
 ///
-/// If coordinates are below m in magnitude, their differences are off by δ = [`NEAR`] m at most; let s
-/// bound the differences with that. A product of three is off by 3 s² δ, and there are six of them;
-/// rounding adds less than eight units in the last place of each.
+/// If coordinates are below m in magnitude, their differences are off by δ =
+/// [`MAX_COORDINATE_ERROR`] m at most; let s bound the differences with that. A product of three is
+/// off by 3 s² δ, and there are six of them; rounding adds less than eight units in the last place
+/// of each.
 pub fn clear_side([a, b, c, d]: [Point; 4]) -> Filtered<Side> {
     let from = |p: &Point| each_axis(|i| p[i] - a[i]);
     let [u, v, w] = [&b, &c, &d].map(from);
@@ -64,7 +65,7 @@ pub fn clear_side([a, b, c, d]: [Point; 4]) -> Filtered<Side> {
             .iter()
             .fold(0.0f64, |m, x| m.max(x.abs()))
     };
-    let off = NEAR * largest(&[a, b, c, d]);
+    let off = MAX_COORDINATE_ERROR * largest(&[a, b, c, d]);
     let size = largest(&[u, v, w]) + off;
     let doubt = size * size * (18.0 * off + 48.0 * f64::EPSILON * size);
     let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];

@@ -15,7 +15,7 @@ use crate::arith::{Filtered, Int, P1};
 
 /// The largest relative difference of two doubles for one coordinate: twice three units of 2^-52 in the
 /// last place, and room for the rounding of the comparison.
-pub const NEAR: f64 = 8.0 * f64::EPSILON;
+pub const MAX_COORDINATE_ERROR: f64 = 8.0 * f64::EPSILON;
 
 /// An exact point (x/w, y/w, z/w) with w > 0.
 ///

@@ -8,7 +8,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::doubles::folded;
 use crate::geometry::plane::Lattice;
-use crate::geometry::vertex::{Vertex, NEAR};
+use crate::geometry::vertex::{Vertex, MAX_COORDINATE_ERROR};
 
 /// Numbered points; equal points have equal numbers.
 #[derive(Debug, Default)]
@@ -101,7 +101,9 @@ fn lattice_place(vertex: &Vertex, place: &[f64; 3]) -> Option<Lattice> {
         return None;
     }
     let nearest = place.map(|c| as_whole(c.round()));
-    let near = |i: usize| (place[i] - as_double(nearest[i])).abs() <= place[i].abs() * NEAR;
+    let near = |i: usize| {
+        (place[i] - as_double(nearest[i])).abs() <= place[i].abs() * MAX_COORDINATE_ERROR
+    };
     ((0..3).all(near) && vertex.is_at(&nearest)).then_some(nearest)
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::arrangement::{arranged, is_simple_mesh, united, United, POOL};
+use super::arrangement::{arranged, is_simple_mesh, united, United, MIN_FACES_FOR_POOL};
 use super::descent::counters::Counters;
 use super::descent::descend::Descent;
 use super::expression::{Expression, Term};
@@ -134,7 +134,7 @@ fn fresh_pair(
         .map(|s| s.face_count())
         .sum();
     let run = |profile| arranged(expression, operands, &sources, profile);
-    let found = if faces >= POOL {
+    let found = if faces >= MIN_FACES_FOR_POOL {
         handed_over(profile, run).unwrap_or_else(run)
     } else {
         run(profile)
@@ -365,12 +365,12 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::*;
-    use crate::interrupt::{Call, Means};
+    use crate::interrupt::{Call, CallerHooks};
     use crate::merge::scenes::{both, cuboid, made_of};
 
     static SHARES: AtomicUsize = AtomicUsize::new(0);
 
-    const MEANS: Means = Means {
+    const HOOKS: CallerHooks = CallerHooks {
         wants_to_stop: || false,
         hand_over: |task, share| {
             SHARES.fetch_add(1, Ordering::Relaxed);
@@ -383,7 +383,7 @@ mod tests {
         let shared = |solids: &[Solid; 2]| {
             let before = SHARES.load(Ordering::Relaxed);
             let work = || evaluate(&both(Term::Or), solids);
-            let (_, counters) = Call::new().run_here(MEANS, work).expect("not stopped");
+            let (_, counters) = Call::new().run_here(HOOKS, work).expect("not stopped");
             (counters.named(), SHARES.load(Ordering::Relaxed) - before)
         };
         let step = made_of(&[cuboid([1; 3], [9; 3]), cuboid([2; 3], [12; 3])], Term::Or);

@@ -4,14 +4,14 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::interrupt::poll;
-use crate::merge::descent::choice::LEAF;
+use crate::merge::descent::choice::MAX_ELEMENTS_PER_LEAF;
 use crate::merge::kernels::trees::LeafTree;
 use crate::merge::lists::list::{List, Sources};
 use crate::tree::node::{Branch, Node};
 use crate::tree::solid::Solid;
 
 /// The most elements for which a local tree is built where halving no longer separates them.
-const STUCK: usize = 256;
+const MAX_ELEMENTS_STUCK: usize = 256;
 
 /// Return whether a small cell around one of the places shows that a solid is not the reduced
 /// boundary; may return false negatives.
@@ -52,9 +52,14 @@ fn overlaps_in(sources: &Sources, cell: Cell, list: List, places: Vec<Lattice>) 
         if places.is_empty() || list.is_empty() {
             continue;
         }
-        let is_stuck = || list.len() <= STUCK && list.reaching_out(&cell) * 8 > list.len() * 7;
-        let Some(cut) = cell.cut().filter(|_| list.len() > LEAF && !is_stuck()) else {
-            if list.len() <= STUCK && !LeafTree::new(&list, &cell, sources).is_simple() {
+        let is_stuck =
+            || list.len() <= MAX_ELEMENTS_STUCK && list.reaching_out(&cell) * 8 > list.len() * 7;
+        let Some(cut) = cell
+            .cut()
+            .filter(|_| list.len() > MAX_ELEMENTS_PER_LEAF && !is_stuck())
+        else {
+            if list.len() <= MAX_ELEMENTS_STUCK && !LeafTree::new(&list, &cell, sources).is_simple()
+            {
                 return true;
             }
             continue;

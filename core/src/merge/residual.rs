@@ -20,7 +20,7 @@ pub enum Residual {
 
 /// A simplified line: a value, or a line of the new expression and whether to negate it.
 #[derive(Clone, Copy)]
-enum Known {
+enum FoldedLine {
     Value(bool),
     Line(u32, bool),
 }
@@ -43,8 +43,8 @@ impl Expression {
         for term in &self.terms {
             let line = match term {
                 Term::Operand(k) => match known(*k) {
-                    Some(v) => Known::Value(v),
-                    None => Known::Line(add(&mut folding, *k), false),
+                    Some(v) => FoldedLine::Value(v),
+                    None => FoldedLine::Line(add(&mut folding, *k), false),
                 },
                 Term::Not(a) => folding.folded[*a as usize].negated(),
                 Term::And(list) => folding.list(list, false),
@@ -132,7 +132,7 @@ impl Twin {
     }
 }
 
-impl Known {
+impl FoldedLine {
     fn negated(self) -> Self {
         match self {
             Self::Value(v) => Self::Value(!v),
@@ -144,7 +144,7 @@ impl Known {
 /// The state of folding an expression.
 struct Folding {
     /// The lines so far, folded.
-    folded: Vec<Known>,
+    folded: Vec<FoldedLine>,
     /// The new lines.
     terms: Vec<Term>,
     /// For each new line, its equals.
@@ -185,13 +185,13 @@ impl Folding {
     }
 
     /// Folds a union (`absorbing` is true) or an intersection (`absorbing` is false).
-    fn list(&mut self, list: &[u32], absorbing: bool) -> Known {
+    fn list(&mut self, list: &[u32], absorbing: bool) -> FoldedLine {
         let Some(open) = self.open(list, absorbing) else {
-            return Known::Value(absorbing);
+            return FoldedLine::Value(absorbing);
         };
         match open.as_slice() {
-            [] => Known::Value(!absorbing),
-            [(line, negate)] => Known::Line(*line, *negate),
+            [] => FoldedLine::Value(!absorbing),
+            [(line, negate)] => FoldedLine::Line(*line, *negate),
             _ => {
                 let signed = |(line, negate): (u32, bool)| self.signed(line, negate);
                 let lines = open.into_iter().map(signed).collect();
@@ -200,7 +200,7 @@ impl Folding {
                 } else {
                     Term::And(lines)
                 };
-                Known::Line(self.append(term), false)
+                FoldedLine::Line(self.append(term), false)
             }
         }
     }
@@ -212,8 +212,8 @@ impl Folding {
         let mut is_decided = false;
         for i in list {
             match self.folded[*i as usize] {
-                Known::Value(v) => is_decided |= v == absorbing,
-                Known::Line(line, negate) => {
+                FoldedLine::Value(v) => is_decided |= v == absorbing,
+                FoldedLine::Line(line, negate) => {
                     let twin = self.twin(line);
                     let named = &mut self.lines[twin].is_named;
                     is_decided |= named[usize::from(!negate)];
@@ -234,13 +234,13 @@ impl Folding {
     }
 
     /// Folds a symmetric difference, in which equal lines cancel each other.
-    fn xor(&mut self, list: &[u32]) -> Known {
+    fn xor(&mut self, list: &[u32]) -> FoldedLine {
         let mut parity = false;
         let mut lines: Vec<u32> = Vec::new();
         for i in list {
             match self.folded[*i as usize] {
-                Known::Value(v) => parity ^= v,
-                Known::Line(line, negate) => {
+                FoldedLine::Value(v) => parity ^= v,
+                FoldedLine::Line(line, negate) => {
                     parity ^= negate;
                     *self.is_odd(line) ^= true;
                     lines.push(line);
@@ -255,9 +255,9 @@ impl Folding {
         }
         open.reverse();
         match open.as_slice() {
-            [] => Known::Value(parity),
-            [line] => Known::Line(*line, parity),
-            _ => Known::Line(self.append(Term::Xor(open)), parity),
+            [] => FoldedLine::Value(parity),
+            [line] => FoldedLine::Line(*line, parity),
+            _ => FoldedLine::Line(self.append(Term::Xor(open)), parity),
         }
     }
 
@@ -279,8 +279,8 @@ impl Folding {
     fn close(self) -> Residual {
         match self.folded.last() {
             None => Residual::Constant(false),
-            Some(Known::Value(v)) => Residual::Constant(*v),
-            Some(Known::Line(line, negate)) => close(self.terms, *line, *negate),
+            Some(FoldedLine::Value(v)) => Residual::Constant(*v),
+            Some(FoldedLine::Line(line, negate)) => close(self.terms, *line, *negate),
         }
     }
 }

@@ -11,11 +11,11 @@ use crate::mesh::source::Source;
 use crate::tree::solid::Solid;
 
 /// The number of rows in a mesh's sample; meshes with equal samples are compared completely.
-const SAMPLE: usize = 32;
+const ROWS_SAMPLED: usize = 32;
 
 /// The most different meshes with one sample to compare others with. So all comparisons together cost at
 /// most this many passes over the operands.
-const KINDS: usize = 4;
+const MAX_MESHES_PER_SAMPLE: usize = 4;
 
 /// The expression without lists that name two operands with equal meshes; `None` if no two operands are
 /// equal.
@@ -38,7 +38,7 @@ fn firsts(solids: &[Solid]) -> Option<Vec<u32>> {
             found = true;
             return *first;
         }
-        if others.len() < KINDS {
+        if others.len() < MAX_MESHES_PER_SAMPLE {
             others.push((number, solid));
         }
         number
@@ -58,7 +58,8 @@ fn sample(solid: &Solid) -> Option<u64> {
 }
 
 fn sampled<T>(rows: &[T]) -> impl Iterator<Item = &T> {
-    rows.iter().step_by(rows.len().div_ceil(SAMPLE).max(1))
+    rows.iter()
+        .step_by(rows.len().div_ceil(ROWS_SAMPLED).max(1))
 }
 
 fn are_twins(a: &Solid, b: &Solid) -> bool {

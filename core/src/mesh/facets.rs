@@ -20,7 +20,7 @@ pub struct Facet {
 }
 
 /// The most corners of a facet: outlines are examined in quadratic time.
-const MOST_CORNERS: usize = 1 << 14;
+const MAX_CORNERS_PER_FACET: usize = 1 << 14;
 
 /// The pitch for coordinates of this size and extent.
 ///
@@ -167,7 +167,7 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
 }
 
 fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> {
-    if given.len() < 3 || given.len() > MOST_CORNERS {
+    if given.len() < 3 || given.len() > MAX_CORNERS_PER_FACET {
         let text = "needs from 3 to 16384 corners";
         return Err(fault(ErrorKind::Shape, source, text));
     }

@@ -36,7 +36,7 @@ pub struct Finding {
 }
 
 /// The number of places that a finding names.
-const PLACES: usize = 8;
+const MAX_PLACES_NAMED: usize = 8;
 
 impl Finding {
     /// A finding about numbered places; keeps the first few.
@@ -50,7 +50,7 @@ impl Finding {
             code,
             severity,
             count: places.len() as u64,
-            place: places.iter().copied().take(PLACES).collect(),
+            place: places.iter().copied().take(MAX_PLACES_NAMED).collect(),
             message: message.into(),
         }
     }

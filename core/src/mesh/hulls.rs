@@ -29,7 +29,7 @@ pub struct Hull {
 /// The sine of the angle by which faces may turn inwards against each other. Rounding has turned no
 /// ordinary face inwards so far, and leaves no point before a face by more than this part of the hull's
 /// size.
-const FOLD: f64 = 1e-7;
+const MAX_FOLD_SINE: f64 = 1e-7;
 
 /// The hull of points, exact for their places on the lattice; empty if they lie in a plane but for
 /// rounding.
@@ -105,7 +105,7 @@ fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
         .iter()
         .fold(0.0, |most: f64, x| most.max(x.abs()));
     if moved > 0.0 {
-        moved + COMPUTED * f64::EPSILON * largest
+        moved + TURNED_POINT_ROUNDING * f64::EPSILON * largest
     } else {
         0.0
     }
@@ -113,7 +113,7 @@ fn moved_by(points: &[Point], steps: &[Point], pitch: Pitch) -> f64 {
 
 /// Rounding of a point that a matrix has turned, in spacings of doubles at the largest coordinate: a half
 /// for each of three products and three sums, along two axes or all three.
-const COMPUTED: f64 = 4.0;
+const TURNED_POINT_ROUNDING: f64 = 4.0;
 
 /// Faces by the index of their corners among the used points.
 fn numbered(faces: &[[usize; 3]], used: &[usize]) -> Vec<[VertexId; 3]> {
@@ -159,7 +159,7 @@ fn turns_inwards(facing: &Facing, other: &Triangle) -> bool {
     let bend = cross(&ways[0], &ways[1]);
     let sizes = dot(&ways[0], &ways[0]) * dot(&ways[1], &ways[1]);
     let is_before = |p: &Point| facing.side(p) == Side::Plus;
-    (dot(&ways[0], &ways[1]) < 0.0 || dot(&bend, &bend) > FOLD * FOLD * sizes)
+    (dot(&ways[0], &ways[1]) < 0.0 || dot(&bend, &bend) > MAX_FOLD_SINE * MAX_FOLD_SINE * sizes)
         && other.iter().any(is_before)
 }
 

@@ -11,10 +11,10 @@ use crate::geometry::spaces::motion::Motion;
 /// No call blocks for ever. In a forked process a thread that no longer exists may hold the lock; whoever
 /// does not get it uses an image of its own.
 #[derive(Debug)]
-pub struct Images<T>(Mutex<Known<T>>);
+pub struct Images<T>(Mutex<ImageTable<T>>);
 
 #[derive(Debug)]
-struct Known<T> {
+struct ImageTable<T> {
     images: HashMap<Motion, Weak<T>>,
     /// Beyond this many images, drop those no longer in use. It is twice the number kept last time, so that
     /// each image costs two looks.
@@ -23,12 +23,12 @@ struct Known<T> {
 
 /// Yields before the lock counts as held for ever. A thread holds it while it looks up an image, and at
 /// times while it drops old ones; a process forked meanwhile never gets it.
-const TURNS: usize = 1000;
+const MAX_YIELDS: usize = 1000;
 
 impl<T> Default for Images<T> {
     fn default() -> Self {
         let images = HashMap::default();
-        Self(Mutex::new(Known { images, full: 1 }))
+        Self(Mutex::new(ImageTable { images, full: 1 }))
     }
 }
 
@@ -54,8 +54,8 @@ impl<T> Images<T> {
         image
     }
 
-    fn free(&self) -> Option<MutexGuard<'_, Known<T>>> {
-        for _ in 0..TURNS {
+    fn free(&self) -> Option<MutexGuard<'_, ImageTable<T>>> {
+        for _ in 0..MAX_YIELDS {
             match self.0.try_lock() {
                 Ok(known) => return Some(known),
                 Err(TryLockError::Poisoned(known)) => return Some(known.into_inner()),

@@ -17,7 +17,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::VertexId;
 
 /// Sizes of numbers that a message shows without an exponent.
-const PLAIN: std::ops::Range<f64> = 1e-4..1e6;
+const WITHOUT_EXPONENT: std::ops::Range<f64> = 1e-4..1e6;
 
 /// Snaps a closed triangle mesh to the lattice.
 ///
@@ -333,7 +333,7 @@ fn place([x, y, z]: &[f64; 3]) -> String {
 fn rounded(number: f64) -> String {
     let digits = format!("{number:.5e}");
     let short: f64 = digits.parse().unwrap_or(number);
-    if short == 0.0 || PLAIN.contains(&short.abs()) {
+    if short == 0.0 || WITHOUT_EXPONENT.contains(&short.abs()) {
         format!("{short}")
     } else {
         format!("{short:e}")

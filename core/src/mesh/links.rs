@@ -8,19 +8,19 @@ use super::tasks::each_chunk;
 use crate::arith::convert::as_number;
 use crate::interrupt::poll;
 
-/// The most edges in a [`Short`] link; around most vertices of most meshes there are six.
-const ROOM: usize = 8;
+/// The most edges in a [`ShortLink`]; around most vertices of most meshes there are six.
+const MAX_SHORT_LINK_EDGES: usize = 8;
 
 /// The starts, then the ends of a link's edges; zero where there is none.
 ///
 /// A corner's label is its low fifteen bits under a set top bit.
-type Short = [u16; 2 * ROOM];
+type ShortLink = [u16; 2 * MAX_SHORT_LINK_EDGES];
 
 /// The vertices of a closed surface whose link is not one cycle, sorted.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
     let doubtful = doubtful(faces, vertex_count, |vertex| Some(vertex.place()));
     let vertices = doubtful.into_iter().map(VertexId).collect();
-    without_cycle(&Asked::new(vertices, vertex_count), faces)
+    without_cycle(&VertexSubset::new(vertices, vertex_count), faces)
 }
 
 /// The given vertices of a closed surface whose link is not one cycle, sorted.
@@ -34,14 +34,14 @@ pub fn irregular_among(
     if vertices.is_empty() {
         return Vec::new();
     }
-    let asked = Asked::new(vertices, vertex_count);
-    let doubtful = doubtful(faces, asked.vertices.len(), |vertex| asked.place(vertex));
-    let vertices = doubtful.into_iter().map(|at| asked.vertices[at as usize]);
-    without_cycle(&Asked::new(vertices.collect(), vertex_count), faces)
+    let subset = VertexSubset::new(vertices, vertex_count);
+    let doubtful = doubtful(faces, subset.vertices.len(), |vertex| subset.place(vertex));
+    let vertices = doubtful.into_iter().map(|at| subset.vertices[at as usize]);
+    without_cycle(&VertexSubset::new(vertices.collect(), vertex_count), faces)
 }
 
 /// Some vertices of a mesh, and the index of each among them.
-struct Asked {
+struct VertexSubset {
     /// Ascending.
     vertices: Vec<VertexId>,
     /// A bit for each vertex of the mesh.
@@ -50,7 +50,7 @@ struct Asked {
     before: Vec<u32>,
 }
 
-impl Asked {
+impl VertexSubset {
     fn new(vertices: Vec<VertexId>, vertex_count: usize) -> Self {
         let mut words = vec![0u64; vertex_count.div_ceil(64)];
         for vertex in &vertices {
@@ -84,15 +84,15 @@ impl Asked {
 }
 
 /// The given vertices whose link is not one cycle; sorts the corners at them.
-fn without_cycle(asked: &Asked, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
-    if asked.vertices.is_empty() {
+fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId> {
+    if subset.vertices.is_empty() {
         return Vec::new();
     }
     let at_asked = |_, faces: &[[VertexId; 3]]| {
         let corners = faces
             .iter()
             .flat_map(|&[a, b, c]| [[a, b, c], [b, c, a], [c, a, b]]);
-        corners.filter(|c| asked.has(c[0])).collect::<Vec<_>>()
+        corners.filter(|c| subset.has(c[0])).collect::<Vec<_>>()
     };
     let mut corners = each_chunk(faces, at_asked).concat();
     corners.sort_unstable();
@@ -111,7 +111,7 @@ fn doubtful(
     count: usize,
     place: impl Fn(VertexId) -> Option<usize>,
 ) -> Vec<u32> {
-    let mut links: Vec<Short> = vec![[0; 2 * ROOM]; count];
+    let mut links: Vec<ShortLink> = vec![[0; 2 * MAX_SHORT_LINK_EDGES]; count];
     let mut counts = vec![0u8; count];
     for &[a, b, c] in faces {
         poll();
@@ -121,17 +121,17 @@ fn doubtful(
             };
             let count = &mut counts[place];
             let at = usize::from(*count);
-            if at < ROOM {
+            if at < MAX_SHORT_LINK_EDGES {
                 let link = &mut links[place];
                 link[at] = label(from);
-                link[ROOM + at] = label(to);
+                link[MAX_SHORT_LINK_EDGES + at] = label(to);
             }
             *count = count.saturating_add(1);
         }
     }
-    let doubtful = |first: usize, links: &[Short]| {
+    let doubtful = |first: usize, links: &[ShortLink]| {
         let rows = (as_number(first)..).zip(links.iter().zip(&counts[first..]));
-        let doubt = |(place, (link, count)): (u32, (&Short, &u8))| {
+        let doubt = |(place, (link, count)): (u32, (&ShortLink, &u8))| {
             (*count > 0 && !is_short_cycle(link, usize::from(*count))).then_some(place)
         };
         rows.filter_map(doubt).collect::<Vec<u32>>()
@@ -149,11 +149,11 @@ fn label(vertex: VertexId) -> u16 {
 /// The walk maps label to label. If it first returns after `count` steps, it saw `count` labels, all
 /// different. All are labels of starts, since the walk stays at zero once it leaves these. So the labels of
 /// the starts differ, and with them the corners: no two share a label.
-fn is_short_cycle(link: &Short, count: usize) -> bool {
-    if count > ROOM {
+fn is_short_cycle(link: &ShortLink, count: usize) -> bool {
+    if count > MAX_SHORT_LINK_EDGES {
         return false;
     }
-    let mut label = link[ROOM];
+    let mut label = link[MAX_SHORT_LINK_EDGES];
     for _ in 1..count {
         if label == link[0] {
             return false;
@@ -164,10 +164,10 @@ fn is_short_cycle(link: &Short, count: usize) -> bool {
 }
 
 /// The label after another; if several edges start with that label, the bitwise or of their ends.
-fn after(link: &Short, label: u16) -> u16 {
-    (0..ROOM).fold(0, |found, i| {
+fn after(link: &ShortLink, label: u16) -> u16 {
+    (0..MAX_SHORT_LINK_EDGES).fold(0, |found, i| {
         let mask = if link[i] == label { u16::MAX } else { 0 };
-        found | (link[ROOM + i] & mask)
+        found | (link[MAX_SHORT_LINK_EDGES + i] & mask)
     })
 }
 

@@ -9,11 +9,11 @@ use crate::interrupt::poll;
 
 /// The error of a tetrahedron's volume relative to the product of three edges' lengths along axes: each of
 /// the six products in six volumes has three rounded differences, two products and three sums.
-const ROUNDING: f64 = 8.0 / 6.0 * f64::EPSILON;
+const VOLUME_ROUNDING: f64 = 8.0 / 6.0 * f64::EPSILON;
 
 /// The largest part of a volume that may be rounding: 2^-32. A body that fills its box has about 2^-48, a
 /// sheet as much more as it is thinner.
-const MOST_LOST: f64 = f64::EPSILON * 1_048_576.0;
+const MAX_ROUNDING_SHARE: f64 = f64::EPSILON * 1_048_576.0;
 
 /// The sums over all faces.
 #[derive(Debug)]
@@ -42,7 +42,7 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
         size += length(less(&b, &a)) * length(less(&c, &a)) * length(from_middle);
     }
     let volume = volume.rounded();
-    let drowns = size.is_finite() && ROUNDING * size > MOST_LOST * volume.abs();
+    let drowns = size.is_finite() && VOLUME_ROUNDING * size > MAX_ROUNDING_SHARE * volume.abs();
     Measures {
         volume: if drowns {
             moments(vertices, faces, middle).volume

@@ -10,7 +10,7 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// Below this magnitude the sum with [`ROUNDER`] stays among these integers.
 #[allow(clippy::cast_precision_loss, reason = "a small constant")]
-const EXACT: f64 = (1u64 << 51) as f64;
+const ROUNDER_LIMIT: f64 = (1u64 << 51) as f64;
 
 /// The lattice points nearest to points in model units.
 ///
@@ -58,7 +58,7 @@ fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool 
         let product = point * power;
         let sum = product + ROUNDER;
         let rest = product - (sum - ROUNDER);
-        clear &= product.abs() < EXACT;
+        clear &= product.abs() < ROUNDER_LIMIT;
         clear &= rest.abs() + product.abs() * f64::EPSILON < 0.5;
         *place = sum
             .to_bits()
@@ -70,7 +70,7 @@ fn snap_clear(points: &[[f64; 3]], power: f64, lattice: &mut [Lattice]) -> bool 
 
 #[cfg(test)]
 mod tests {
-    use super::{snap_all, EXACT};
+    use super::{snap_all, ROUNDER_LIMIT};
     use crate::arith::convert::as_double;
     use crate::mesh::grid::{snap_point, Pitch};
     use proptest::prelude::*;
@@ -109,9 +109,9 @@ mod tests {
     #[test]
     fn the_first_row_that_does_not_fit_is_named() {
         let pitch = Pitch::DEFAULT;
-        let rows = [[0.0; 3], [EXACT, 0.0, 0.0], [f64::NAN; 3]];
+        let rows = [[0.0; 3], [ROUNDER_LIMIT, 0.0, 0.0], [f64::NAN; 3]];
         assert_eq!(snap_all(&rows, pitch).unwrap_err().place(), [1]);
-        let rows = [[1.0, 0.0, f64::NAN], [EXACT, 0.0, 0.0]];
+        let rows = [[1.0, 0.0, f64::NAN], [ROUNDER_LIMIT, 0.0, 0.0]];
         assert_eq!(snap_all(&rows, pitch).unwrap_err().place(), [0]);
     }
 }

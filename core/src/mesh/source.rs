@@ -46,7 +46,7 @@ pub enum Shape {
 
 /// Examine only the used vertices if they are fewer than one in this many. Otherwise examine all, and keep
 /// the answer for the next operation.
-const ALONE_IF_ONE_IN: usize = 4;
+const USED_ONLY_IF_ONE_IN: usize = 4;
 
 /// The code of the finding that vertices were welded.
 pub(super) const WELDED: &str = "welded";
@@ -207,7 +207,7 @@ impl Source {
     ) -> Vec<VertexId> {
         let known = self.irregular.get().is_some() || !self.open_vertices().is_empty();
         match self.mesh() {
-            Some(mesh) if !known && used < mesh.vertices.len() / ALONE_IF_ONE_IN => {
+            Some(mesh) if !known && used < mesh.vertices.len() / USED_ONLY_IF_ONE_IN => {
                 let all = VertexId::all().take(mesh.vertices.len());
                 let used = all.filter(|v| is_used(*v)).collect();
                 links::irregular_among(used, &mesh.faces, mesh.vertices.len())

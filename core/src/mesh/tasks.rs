@@ -115,7 +115,7 @@ pub fn both<A: Send, B: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::interrupt::{Call, Means};
+    use crate::interrupt::{Call, CallerHooks};
 
     #[test]
     fn chunks_are_the_same_in_a_pool_and_outside() {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     /// A caller that runs all shares itself.
-    const ALONE: Means = Means {
+    const ALONE: CallerHooks = CallerHooks {
         wants_to_stop: || false,
         hand_over: |task, share| task.run(share),
     };

@@ -24,17 +24,17 @@ use crate::mesh::topology::NONE;
 
 /// A needle is at least this many times as long as high. The boxes of other triangles meet few others, and
 /// comparing these is faster than finding terrains.
-const NEEDLE: f64 = 16.0;
+const MIN_NEEDLE_RATIO: f64 = 16.0;
 
 /// The most needles that are compared pairwise, without terrains.
 const MAX_NEEDLES_COMPARED: usize = 256;
 
 /// Pieces of fewer triangles are not worth a sweep.
-const LEAST: usize = 4;
+const MIN_TRIANGLES_SWEPT: usize = 4;
 
 /// The tangent of the largest angle between normals of mates in one piece: more than in any round body,
 /// less than at a corner meant as one.
-const BENT: f64 = 0.5;
+const MAX_BEND_TANGENT: f64 = 0.5;
 
 /// For each of some triangles, the number of its terrain; `NONE` where none is proved, and for all but
 /// needles.
@@ -68,7 +68,7 @@ fn needles_terrains(faces: &Faces, needles: &[u32]) -> Vec<u32> {
             let number = as_number(numbers.len());
             let view = View::of(&search.corners(first));
             let piece = search.piece_around(first, view, number);
-            let is_terrain = piece.len() >= LEAST && {
+            let is_terrain = piece.len() >= MIN_TRIANGLES_SWEPT && {
                 let outline = search.outline(&piece, view);
                 winds_at_most_once(&outline)
             };
@@ -85,7 +85,7 @@ pub fn is_needle(triangle: &Triangle) -> bool {
     let square = |p: &Point, q: &Point| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum();
     let longest = f64::max(f64::max(square(a, b), square(b, c)), square(c, a));
     let n = normal(triangle);
-    longest * longest > NEEDLE * NEEDLE * dot(&n, &n)
+    longest * longest > MIN_NEEDLE_RATIO * MIN_NEEDLE_RATIO * dot(&n, &n)
 }
 
 /// Needles, by their index among these.
@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
 /// Return whether the surface between these two normals is hardly bent.
 fn is_smooth(a: &Point, b: &Point) -> bool {
     let (along, across) = (dot(a, b), cross(a, b));
-    along > 0.0 && dot(&across, &across) <= BENT * BENT * along * along
+    along > 0.0 && dot(&across, &across) <= MAX_BEND_TANGENT * MAX_BEND_TANGENT * along * along
 }
 
 #[cfg(test)]

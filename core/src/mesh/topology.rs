@@ -105,7 +105,7 @@ pub fn ends(faces: &[[VertexId; 3]], half: u32) -> (VertexId, VertexId) {
 
 /// A half-edge that leaves a vertex.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
-struct Leaving {
+struct OutgoingHalfEdge {
     head: VertexId,
     number: u32,
 }
@@ -113,7 +113,7 @@ struct Leaving {
 /// Half-edges by their start vertex, in compressed rows; each row is sorted by end vertex.
 struct Outgoing {
     starts: Vec<u32>,
-    halves: Vec<Leaving>,
+    halves: Vec<OutgoingHalfEdge>,
 }
 
 impl Outgoing {
@@ -126,12 +126,12 @@ impl Outgoing {
             starts[i + 1] += starts[i];
         }
         let mut next = starts.clone();
-        let mut halves = vec![Leaving::default(); 3 * faces.len()];
+        let mut halves = vec![OutgoingHalfEdge::default(); 3 * faces.len()];
         for (number, vertex) in (0u32..).zip(faces.iter().flatten()) {
             poll();
             let slot = &mut next[vertex.place()];
             let head = ends(faces, number).1;
-            halves[*slot as usize] = Leaving { head, number };
+            halves[*slot as usize] = OutgoingHalfEdge { head, number };
             *slot += 1;
         }
         for row in starts.windows(2) {
@@ -141,13 +141,13 @@ impl Outgoing {
         Self { starts, halves }
     }
 
-    fn of(&self, vertex: VertexId) -> &[Leaving] {
+    fn of(&self, vertex: VertexId) -> &[OutgoingHalfEdge] {
         let row = &self.starts[vertex.place()..vertex.place() + 2];
         &self.halves[row[0] as usize..row[1] as usize]
     }
 
     /// The half-edges from one vertex to another.
-    fn between(&self, tail: VertexId, head: VertexId) -> &[Leaving] {
+    fn between(&self, tail: VertexId, head: VertexId) -> &[OutgoingHalfEdge] {
         let row = self.of(tail);
         let first = row.partition_point(|half| half.head < head);
         let past = row[first..].iter().take_while(|half| half.head == head);

@@ -26,23 +26,23 @@ pub struct Welded {
 /// assert_eq!(welded(&[a, b, a]).same, [0, 1, 0].map(VertexId));
 /// ```
 pub fn welded(points: &[[f64; 3]]) -> Welded {
-    let mut different = Different::default();
+    let mut table = PointTable::default();
     let same = points
         .iter()
         .map(|[x, y, z]| {
             poll();
-            different.number_of([x + 0.0, y + 0.0, z + 0.0])
+            table.number_of([x + 0.0, y + 0.0, z + 0.0])
         })
         .collect();
     Welded {
-        points: different.points,
+        points: table.points,
         same,
     }
 }
 
 /// Points without repetition, and a table that finds them by their bits.
 #[derive(Debug, Default)]
-struct Different {
+struct PointTable {
     points: Vec<[f64; 3]>,
     /// Their number is a power of two; at most half are taken.
     slots: Vec<Slot>,
@@ -58,16 +58,16 @@ struct Slot {
 }
 
 /// Slots of a table with its first point.
-const FIRST_SLOTS: usize = 64;
+const INITIAL_SLOTS: usize = 64;
 
-impl Different {
+impl PointTable {
     /// The number of a point; a new one if no equal point is known.
     fn number_of(&mut self, point: [f64; 3]) -> VertexId {
         if self.slots.len() <= 2 * self.points.len() {
             self.grow();
         }
         let hash = hash_of(&point);
-        let mut place = self.home(hash);
+        let mut place = self.home_slot(hash);
         while self.slots[place].next != 0 {
             let number = VertexId(self.slots[place].next - 1);
             if self.slots[place].hash == hash && are_same(&self.points[number.place()], &point) {
@@ -83,10 +83,10 @@ impl Different {
 
     /// Makes room for twice as many points.
     fn grow(&mut self) {
-        let larger = (2 * self.slots.len()).max(FIRST_SLOTS);
+        let larger = (2 * self.slots.len()).max(INITIAL_SLOTS);
         let slots = std::mem::replace(&mut self.slots, vec![Slot::default(); larger]);
         for slot in slots.into_iter().filter(|slot| slot.next != 0) {
-            let mut place = self.home(slot.hash);
+            let mut place = self.home_slot(slot.hash);
             while self.slots[place].next != 0 {
                 place = self.after(place);
             }
@@ -95,7 +95,7 @@ impl Different {
     }
 
     /// The slot at which the search for a hash begins.
-    fn home(&self, hash: u32) -> usize {
+    fn home_slot(&self, hash: u32) -> usize {
         hash as usize & (self.slots.len() - 1)
     }
 
@@ -133,7 +133,7 @@ fn folded(a: u64, b: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{welded, Different, VertexId};
+    use super::{welded, PointTable, VertexId};
 
     /// Points on a grid of single precision: their bits differ little, and end in zeros.
     fn grid(side: u8) -> Vec<[f64; 3]> {
@@ -160,17 +160,17 @@ mod tests {
 
     #[test]
     fn points_of_single_precision_spread_over_the_table() {
-        let mut different = Different::default();
+        let mut table = PointTable::default();
         for point in grid(24) {
-            different.number_of(point);
+            table.number_of(point);
         }
-        let slots = &different.slots;
+        let slots = &table.slots;
         let away = |place: usize| {
-            let home = different.home(slots[place].hash);
-            (place + slots.len() - home) % slots.len()
+            let home_slot = table.home_slot(slots[place].hash);
+            (place + slots.len() - home_slot) % slots.len()
         };
         let taken: Vec<_> = (0..slots.len()).filter(|&k| slots[k].next != 0).collect();
-        // With half of the slots taken, a random hash ends half a slot from home on average.
+        // With half of the slots taken, a random hash ends half a slot from its home on average.
         assert!(taken.iter().map(|&place| away(place)).sum::<usize>() < taken.len());
     }
 

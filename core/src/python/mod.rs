@@ -73,7 +73,7 @@ fn normal_bits(dimension: usize) -> u32 {
 #[pymodule(gil_used = true)]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    panics::listen();
+    panics::record_panics();
     forking::watch(module)?;
     ending::watch(module)?;
     module.add("CoreError", module.py().get_type::<errors::CoreError>())?;

@@ -90,10 +90,10 @@ fn same_words(bytes: &[u8], expected: &[u64], word: impl Fn([u8; 8]) -> u64) -> 
 }
 
 /// Bytes of a triangle in a binary PLY.
-const FACE: usize = 13;
+const PLY_TRIANGLE_BYTES: usize = 13;
 
 fn same_triangles(faces: &[u8], triangles: &[[i64; 3]]) -> bool {
-    let (faces, rest) = faces.as_chunks::<FACE>();
+    let (faces, rest) = faces.as_chunks::<PLY_TRIANGLE_BYTES>();
     if !rest.is_empty() || faces.len() != triangles.len() {
         return false;
     }
@@ -119,7 +119,7 @@ trait Decimal: FromStr + Send {
 }
 
 /// Largest number of digits that cannot pass 2^53, below which every whole number is a double.
-const SHORT: usize = 15;
+const MAX_EXACT_DIGITS: usize = 15;
 
 impl Decimal for i64 {
     fn of_digits(digits: &[u8]) -> i64 {
@@ -169,7 +169,7 @@ fn length_of_number(text: &[u8]) -> usize {
 }
 
 fn value<T: Decimal>(number: &[u8]) -> Option<T> {
-    if (1..=SHORT).contains(&number.len()) && number.iter().all(u8::is_ascii_digit) {
+    if (1..=MAX_EXACT_DIGITS).contains(&number.len()) && number.iter().all(u8::is_ascii_digit) {
         return Some(T::of_digits(number));
     }
     std::str::from_utf8(number).ok()?.parse().ok()

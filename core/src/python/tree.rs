@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 
 use super::arrays::{array, rows, wide};
-use super::calls::errors::{blamed, to_python};
-use super::calls::run::{here, run, SMALL};
+use super::calls::errors::{to_python, with_report};
+use super::calls::run::{here, run, MIN_ELEMENTS_FOR_POOL};
 use super::hyperplanes::{coefficients, row_of, Row};
 use crate::error::panics::caught;
 use crate::error::{Error, ErrorKind, Result};
@@ -101,7 +101,7 @@ impl Tree {
     ) -> PyResult<T> {
         let explained = || caught(work).map_err(|e| explained(&self.solid, e));
         run(py, threads, size, explained).map_err(|e| {
-            blamed(py, e, &format!("Tree.{method}"), || {
+            with_report(py, e, &format!("Tree.{method}"), || {
                 let inputs = PyDict::new(py);
                 let operand = Bound::new(py, Self::of(self.solid.clone()))?;
                 inputs.set_item("operand-0", operand)?;
@@ -116,7 +116,7 @@ impl Tree {
     }
 
     fn size(&self) -> usize {
-        work(std::slice::from_ref(&self.solid), SMALL)
+        work(std::slice::from_ref(&self.solid), MIN_ELEMENTS_FOR_POOL)
     }
 
     fn rounded(&self, py: Python<'_>, threads: usize) -> PyResult<&Rounded> {
@@ -169,7 +169,7 @@ impl Tree {
         let faces = rows(&faces, "faces").map_err(fail)?;
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
         let source = run(py, 0, faces.len(), || import(&vertices, &faces, pitch)).map_err(|e| {
-            blamed(py, e, "Tree.from_mesh", || {
+            with_report(py, e, "Tree.from_mesh", || {
                 let inputs = PyDict::new(py);
                 inputs.set_item("vertices", array(py, vertices.to_vec())?)?;
                 inputs.set_item("faces", array(py, faces.to_vec())?)?;
@@ -229,11 +229,11 @@ impl Tree {
             .and_then(Expression::new)
             .map_err(|e| to_python(py, &e))?;
         let solids: Vec<Solid> = operands.iter().map(|o| o.solid.clone()).collect();
-        let (solid, counters) = run(py, threads, work(&solids, SMALL), || {
+        let (solid, counters) = run(py, threads, work(&solids, MIN_ELEMENTS_FOR_POOL), || {
             evaluate(&expression, &solids)
         })
         .map_err(|e| {
-            blamed(py, e, "Tree.evaluate", || {
+            with_report(py, e, "Tree.evaluate", || {
                 let inputs = PyDict::new(py);
                 inputs.set_item("program", &program)?;
                 for (k, solid) in solids.iter().enumerate() {

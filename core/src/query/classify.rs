@@ -23,7 +23,7 @@ pub enum Location {
 }
 
 /// Lists with at most this many elements are searched with a local tree.
-const LEAF: usize = 20;
+const MAX_ELEMENTS_SEARCHED: usize = 20;
 
 /// Locate each lattice point; the solid must be reduced for "on" to mean its boundary.
 ///
@@ -131,7 +131,8 @@ impl Search<'_> {
                 self.label(&points, list.corner);
                 continue;
             }
-            let small = list.len() <= LEAF || list.reaching_out(&cell) * 8 > list.len() * 7;
+            let small = list.len() <= MAX_ELEMENTS_SEARCHED
+                || list.reaching_out(&cell) * 8 > list.len() * 7;
             match cell.cut().filter(|_| !small) {
                 Some(cut) => {
                     let (below, above) = self.split(points, |p| p[cut.axis] < cut.at);

@@ -77,20 +77,20 @@ pub fn volume_rounded(solid: &Solid) -> Option<f64> {
 
 /// A flux as a volume in model units, if no number gets too long.
 fn flux_in_units(flux: &Int<6>, exponent: i64) -> Option<f64> {
-    const LONGEST: u64 = 25;
+    const MAX_EXPONENT: u64 = 25;
     let size = exponent.unsigned_abs();
-    let power = (0..3 * size.min(LONGEST)).fold(Int::<4>::ONE, |p, _| p.mul_i64(10));
+    let power = (0..3 * size.min(MAX_EXPONENT)).fold(Int::<4>::ONE, |p, _| p.mul_i64(10));
     let units = Int::<3>::from_limbs([0, 0, 6 << (FLUX_PLACES - 128)]);
     let ratio = if exponent < 0 {
         ratio_to_f64(flux, &units.mul::<4, 7>(&power))
     } else {
         ratio_to_f64(&flux.mul::<4, 10>(&power), &units)
     };
-    (size <= LONGEST).then_some(ratio)
+    (size <= MAX_EXPONENT).then_some(ratio)
 }
 
 /// Binary places that [`volume_near`] keeps of each cut triangle's share, in cubic steps.
-const PLACES: usize = 128;
+const BINARY_PLACES: usize = 128;
 
 /// The volume in cubic model units to within 2^-128 cubic steps for each cut triangle.
 ///
@@ -103,9 +103,9 @@ const PLACES: usize = 128;
 pub fn volume_near(solid: &Solid) -> Result<Fraction> {
     let mesh = assemble(solid)?;
     let shares = Shares::of(solid, &mesh);
-    let rounded: BigInt = shares.near(PLACES).sum();
-    let sum = (shares.whole << PLACES) + rounded;
-    let denominator = BigInt::from(6) << PLACES;
+    let rounded: BigInt = shares.near(BINARY_PLACES).sum();
+    let sum = (shares.whole << BINARY_PLACES) + rounded;
+    let denominator = BigInt::from(6) << BINARY_PLACES;
     Ok(in_units(sum, denominator, solid.pitch().exponent()))
 }
 
@@ -126,10 +126,10 @@ pub fn volume_residues(solid: &Solid) -> Result<Option<[u64; 2]>> {
 
 /// Fractions longer than this many bits are not reduced: finding the divisor would cost more than
 /// it saves.
-const REDUCED: u64 = 4096;
+const MAX_BITS_REDUCED: u64 = 4096;
 
 fn reduced(numerator: BigInt, denominator: BigInt) -> (BigInt, BigInt) {
-    if denominator.bits() > REDUCED {
+    if denominator.bits() > MAX_BITS_REDUCED {
         return (numerator, denominator);
     }
     lowest(numerator, denominator)

@@ -164,14 +164,14 @@ impl Stretch {
     }
 }
 
-enum Open {
+enum StackEntry {
     /// A child, perhaps empty, at this place.
     Child(Option<NodeId>, Option<(NodeId, Half)>, Stretch),
     /// The facets in a node's hyperplane.
     Cut(NodeId, Stretch),
 }
 
-impl Open {
+impl StackEntry {
     fn stretch(&self) -> &Stretch {
         match self {
             Self::Child(_, _, stretch) | Self::Cut(_, stretch) => stretch,
@@ -196,7 +196,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
             to: None,
         };
         let root = (!self.tree.nodes().is_empty()).then_some(NodeId::ROOT);
-        let mut open = vec![Open::Child(root, None, whole)];
+        let mut open = vec![StackEntry::Child(root, None, whole)];
         while let Some(next) = open.pop() {
             poll();
             let stretch = next.stretch();
@@ -205,9 +205,9 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
                 continue;
             }
             match next {
-                Open::Child(None, place, stretch) => self.stab(place, &stretch),
-                Open::Child(Some(node), _, stretch) => self.visit(node, stretch, &mut open),
-                Open::Cut(node, _) => self.test(node),
+                StackEntry::Child(None, place, stretch) => self.stab(place, &stretch),
+                StackEntry::Child(Some(node), _, stretch) => self.visit(node, stretch, &mut open),
+                StackEntry::Cut(node, _) => self.test(node),
             }
         }
     }
@@ -215,20 +215,20 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
     fn stab(&mut self, place: Option<(NodeId, Half)>, stretch: &Stretch) {
         self.path.leaves += 1;
         let (pitch, exponent) = (self.pitch, self.ray.exponent());
-        self.watcher.tell(|| RayEvent::Leaf {
+        self.watcher.notify(|| RayEvent::Leaf {
             place,
             from: parameter(pitch, &stretch.from, exponent),
             to: stretch.to.map(|to| parameter(pitch, &to, exponent)),
         });
     }
 
-    fn visit(&mut self, number: NodeId, stretch: Stretch, open: &mut Vec<Open>) {
+    fn visit(&mut self, number: NodeId, stretch: Stretch, open: &mut Vec<StackEntry>) {
         self.path.nodes += 1;
         let node = &self.tree.nodes()[number.place()];
         let crossing = Crossing::of::<S, D>(&node.hyperplane, self.ray);
         let (pitch, exponent) = (self.pitch, self.ray.exponent());
         let units = |at: Ratio| parameter(pitch, &at, exponent);
-        self.watcher.tell(|| RayEvent::Visit {
+        self.watcher.notify(|| RayEvent::Visit {
             node: number,
             from: units(stretch.from),
             to: stretch.to.map(units),
@@ -240,21 +240,21 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
                 Half::Minus => node.minus,
                 Half::Plus => node.plus,
             };
-            Open::Child(link, Some((number, half)), stretch)
+            StackEntry::Child(link, Some((number, half)), stretch)
         };
         match (crossing.at, crossing.first) {
             (None, Some(half)) => open.push(child(half, stretch)),
             (None, None) => open.extend([
                 child(Half::Plus, stretch),
                 child(Half::Minus, stretch),
-                Open::Cut(number, stretch),
+                StackEntry::Cut(number, stretch),
             ]),
             (Some(at), first) => {
                 let first = first.unwrap_or(Half::Minus);
                 let beyond = stretch.after(at);
                 open.push(child(first.opposite(), beyond));
                 if at >= stretch.from {
-                    open.push(Open::Cut(number, beyond));
+                    open.push(StackEntry::Cut(number, beyond));
                 }
                 open.push(child(first, stretch.before(at)));
             }
@@ -269,7 +269,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
             let at = meeting::<D>(&self.facets[piece as usize], self.ray);
             self.path.tests += 1;
             let (pitch, exponent) = (self.pitch, self.ray.exponent());
-            self.watcher.tell(|| RayEvent::Test {
+            self.watcher.notify(|| RayEvent::Test {
                 node: number,
                 piece,
                 at: at.map(|at| parameter(pitch, &at, exponent)),

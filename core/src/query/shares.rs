@@ -22,10 +22,10 @@ use crate::tree::solid::Solid;
 
 /// Sums whose denominators have at most this many bits are reduced: for longer ones the divisor
 /// costs more to find than it saves.
-const REDUCED: u64 = 1024;
+const MAX_BITS_REDUCED: u64 = 1024;
 
 /// Groups of at least this many triangles are summed as two tasks of more than 100 µs each.
-const TASK: usize = 64;
+const MIN_TRIANGLES_DIVIDED: usize = 64;
 
 /// The shares of all triangles in six times the volume, in cubic steps.
 pub struct Shares {
@@ -164,7 +164,7 @@ impl Shares {
                 open: share.points.iter().map(|p| (*p, 1)).collect(),
             }),
             _ => {
-                let worth = Worth::pool_if(shares.len() >= TASK);
+                let worth = Worth::pool_if(shares.len() >= MIN_TRIANGLES_DIVIDED);
                 let (low, high) = halves(shares);
                 let (low, high) = both(worth, || self.partial(low), || self.partial(high));
                 self.joined(low, high)
@@ -205,7 +205,7 @@ impl Shares {
         }
         sum.open.retain(|p| !is_closed(p));
         sum.closed *= self.product(&closed);
-        if sum.closed.bits() <= REDUCED {
+        if sum.closed.bits() <= MAX_BITS_REDUCED {
             (sum.numerator, sum.closed) = lowest(sum.numerator, sum.closed);
         }
         sum

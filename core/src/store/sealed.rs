@@ -26,13 +26,13 @@ const MARK: [u8; 6] = *b"bspcsg";
 const VERSION: u8 = 3;
 
 /// The first version with a mark. It stores of whole faces only whether they are turned.
-const OLDEST: u8 = 2;
+const OLDEST_VERSION: u8 = 2;
 
 /// The first byte of version 1, which had neither mark nor checksum.
 const VERSION_ONE: u8 = 1;
 
-const HEAD: usize = MARK.len() + 2;
-const CHECKSUM: usize = 4;
+const HEAD_BYTES: usize = MARK.len() + 2;
+const CHECKSUM_BYTES: usize = 4;
 
 impl Kind {
     fn letter(self) -> u8 {
@@ -95,16 +95,16 @@ fn payload(kind: Kind, bytes: &[u8]) -> Result<&[u8]> {
     let Some((version, _)) = bytes.strip_prefix(&*head).and_then(<[u8]>::split_first) else {
         return Err(kind.refusal("they do not begin as one"));
     };
-    if !(OLDEST..=VERSION).contains(version) {
+    if !(OLDEST_VERSION..=VERSION).contains(version) {
         let why = format!("version {version} is not known; a newer bspcsg may have written it");
         return Err(kind.refusal(&why));
     }
     let (sealed, checksum) = bytes
-        .split_last_chunk::<CHECKSUM>()
-        .filter(|(sealed, _)| sealed.len() >= HEAD)
+        .split_last_chunk::<CHECKSUM_BYTES>()
+        .filter(|(sealed, _)| sealed.len() >= HEAD_BYTES)
         .ok_or_else(|| kind.refusal("they end too soon"))?;
     if crc32fast::hash(sealed) != u32::from_le_bytes(*checksum) {
         return Err(kind.refusal("the checksum does not match, so they were damaged on their way"));
     }
-    Ok(&sealed[HEAD..])
+    Ok(&sealed[HEAD_BYTES..])
 }

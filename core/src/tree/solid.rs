@@ -14,7 +14,7 @@ use crate::mesh::source::{Shape, Source};
 
 /// Sources that a table may have beyond twice those the tree uses, so that operands of short expressions
 /// keep their numbers.
-const SPARE: usize = 64;
+const SPARE_SOURCES: usize = 64;
 
 /// A set of points as a partition tree. Immutable; clones share everything.
 ///
@@ -110,10 +110,10 @@ impl Solid {
                 .flat_map(|o| o.doubts.as_deref().unwrap_or(std::slice::from_ref(*o)));
             let doubts: Vec<Self> = doubts
                 .filter(|d| !d.is_reduced())
-                .take(SPARE + 1)
+                .take(SPARE_SOURCES + 1)
                 .cloned()
                 .collect();
-            self.doubts = (doubts.len() <= SPARE).then(|| doubts.into());
+            self.doubts = (doubts.len() <= SPARE_SOURCES).then(|| doubts.into());
         }
         self
     }
@@ -162,7 +162,7 @@ impl Solid {
     #[must_use]
     pub fn outgrowing(mut self, named: usize) -> Self {
         self.named = named;
-        if self.sources.len() > 2 * named + SPARE {
+        if self.sources.len() > 2 * named + SPARE_SOURCES {
             let names = self.names();
             let kept = |s: &&Arc<Source>| names.contains(&s.id());
             self.sources = self.sources.iter().filter(kept).collect();

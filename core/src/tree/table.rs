@@ -19,13 +19,13 @@ enum Entries {
     #[default]
     None,
     One(Arc<Source>),
-    Many(Beginning),
+    Many(LogPrefix),
 }
 
 /// A prefix of a log. The first table to extend the log, and tables that extend it the same way, share it;
 /// others copy the prefix.
 #[derive(Clone, Debug, Default)]
-struct Beginning {
+struct LogPrefix {
     log: Arc<Log>,
     len: usize,
 }
@@ -153,13 +153,13 @@ impl Entries {
         match self {
             Self::None => Self::One(Arc::clone(source)),
             Self::One(only) if only.id() == source.id() => Self::One(only),
-            Self::One(only) => Self::Many(Beginning::default().with(&only).with(source)),
+            Self::One(only) => Self::Many(LogPrefix::default().with(&only).with(source)),
             Self::Many(beginning) => Self::Many(beginning.with(source)),
         }
     }
 }
 
-impl Beginning {
+impl LogPrefix {
     fn slot(&self, source: &Source) -> Option<usize> {
         self.log.slot(source, self.len)
     }

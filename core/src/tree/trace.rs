@@ -10,7 +10,7 @@ pub trait Watcher<E> {
     const LISTENS: bool;
 
     /// Takes an event, which is only made if it is used.
-    fn tell(&mut self, event: impl FnOnce() -> E);
+    fn notify(&mut self, event: impl FnOnce() -> E);
 }
 
 /// Ignores all events.
@@ -18,14 +18,14 @@ impl<E> Watcher<E> for () {
     const LISTENS: bool = false;
 
     #[inline]
-    fn tell(&mut self, _: impl FnOnce() -> E) {}
+    fn notify(&mut self, _: impl FnOnce() -> E) {}
 }
 
 /// Keeps all events in order.
 impl<E> Watcher<E> for Vec<E> {
     const LISTENS: bool = true;
 
-    fn tell(&mut self, event: impl FnOnce() -> E) {
+    fn notify(&mut self, event: impl FnOnce() -> E) {
         self.push(event());
     }
 }

@@ -42,7 +42,7 @@ pub struct Boundary {
 const PARALLEL_FROM: usize = 256;
 
 /// At least one in this many faces must be listed for counting to be faster than sorting.
-const SPARSE: usize = 16;
+const COUNTED_IF_ONE_IN: usize = 16;
 
 struct Collector<'a> {
     sources: &'a Sources,
@@ -159,7 +159,7 @@ impl Collector<'_> {
 fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
     let faces = fates.faces();
     let mut sorted = spanning.to_vec();
-    if spanning.len() < faces / SPARSE {
+    if spanning.len() < faces / COUNTED_IF_ONE_IN {
         sorted.sort_by_key(|s| s.face.face);
         return sorted;
     }

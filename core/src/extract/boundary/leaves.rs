@@ -120,7 +120,7 @@ struct Leaf<'a> {
 /// Collects the listings of all leaves.
 pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     let leaves = leaves_of(root);
-    let fates = Marks::of(&leaves, sources);
+    let fates = AtomicFates::of(&leaves, sources);
     let visit = carried(|leaf: &Leaf<'a>| leaf.visit(sources, &fates));
     let size: usize = leaves.iter().map(|l| l.content.len()).sum();
     let found: Vec<Found> = if in_pool() && size > CHUNK {
@@ -337,14 +337,14 @@ impl IndexMut<SourceFace> for Fates {
 }
 
 /// Fates that several threads mark, by slot; empty for sources that no leaf names.
-struct Marks(Vec<Vec<AtomicU8>>);
+struct AtomicFates(Vec<Vec<AtomicU8>>);
 
 const GONE: u8 = 0;
 const WHOLE: u8 = 1;
 const TURNED: u8 = 2;
 const CUT: u8 = 3;
 
-impl Marks {
+impl AtomicFates {
     fn of(leaves: &[Leaf], sources: &Sources) -> Self {
         let mut fates: Vec<Vec<AtomicU8>> = Vec::new();
         fates.resize_with(sources.table().len(), Vec::new);
@@ -379,7 +379,7 @@ impl Marks {
 }
 
 impl<'a> Leaf<'a> {
-    fn visit(&self, sources: &Sources, fates: &Marks) -> Found<'a> {
+    fn visit(&self, sources: &Sources, fates: &AtomicFates) -> Found<'a> {
         let mut found = Found::default();
         for group in &self.content.groups {
             let slot = sources.slot(&group.source);

@@ -32,17 +32,17 @@ pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let numbers = renumber(&mut mesh.vertices, &mut mesh.triangles, &order);
     let starts = split.split_edges.iter().map(|e| e[0]);
     let text = "the solid touches itself along edges, here split (start vertices)";
-    tell(mesh, "edge_contact", starts, &numbers, text);
+    add_finding(mesh, "edge_contact", starts, &numbers, text);
     let ends: HashSet<VertexId> = split.split_edges.iter().flatten().copied().collect();
     let alone = split.split_vertices.iter().copied();
     let alone = alone.filter(|v| !ends.contains(v));
     let text = "the solid touches itself at vertices, here split";
-    tell(mesh, "vertex_contact", alone, &numbers, text);
+    add_finding(mesh, "vertex_contact", alone, &numbers, text);
     Ok(())
 }
 
 /// Adds a finding about vertices, given with their new numbers, if there are any.
-fn tell(
+fn add_finding(
     mesh: &mut ExactMesh,
     code: &'static str,
     vertices: impl Iterator<Item = VertexId>,

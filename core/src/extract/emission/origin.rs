@@ -14,7 +14,7 @@ const MAX_POINTS_UNHALVED: usize = 8;
 
 /// Halving points does not pay if the halves together keep more than this many sixteenths of the
 /// faces, seven of eight each.
-const LEFT: usize = 28;
+const MAX_SIXTEENTHS_LEFT: usize = 28;
 
 /// The share of the largest coordinate by which rounding may move a corner or a side.
 const ROUNDING: f64 = 1e-12;
@@ -100,7 +100,7 @@ impl<'a> Owners<'a> {
             points.select_nth_unstable_by(middle, |a, b| a.1[axis].total_cmp(&b.1[axis]));
             let near = [&points[..middle], &points[middle..]]
                 .map(|half| self.reaching(&faces, &bounds(half)));
-            if 16 * (near[0].len() + near[1].len()) <= LEFT * faces.len() {
+            if 16 * (near[0].len() + near[1].len()) <= MAX_SIXTEENTHS_LEFT * faces.len() {
                 let (lower, upper) = points.split_at_mut(middle);
                 let [some, others] = near;
                 return Ok([(lower, some), (upper, others)]

@@ -3,7 +3,7 @@
 //! Surfaces may touch: points and edges that two parts of a mesh share are no crossings, whether or
 //! not they are vertices and edges of both.
 
-use super::company::in_company;
+use super::broad_phase::triangles_near;
 use super::edges::crossing;
 use super::image::Image;
 use super::star::is_star_shaped;
@@ -47,9 +47,9 @@ impl Faults {
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
-        Worth::pool_if(some.len() > SHARE),
+        Worth::pool_if(some.len() > TRIANGLES_PER_TASK),
         || -> Vec<Candidate> {
-            let near = in_company(faces, some, &party);
+            let near = triangles_near(faces, some, &party);
             let has_area = near.iter().filter(|e| !has_no_area(&faces.corners(e.1)));
             has_area.map(candidate).collect()
         },
@@ -60,7 +60,7 @@ pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + S
     );
     let next = candidates.last().map_or(0, |other| other.party + 1);
     candidates.extend(own.into_iter().map(|own| own.after(next)));
-    let crossings = Search::among::<Found>(&candidates).settled(faces);
+    let crossings = Search::among::<Meetings>(&candidates).settled(faces);
     Faults { crossings, flat }
 }
 
@@ -99,7 +99,7 @@ pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
     let (own, _) = parties(faces, &all);
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let candidates: Vec<Candidate> = own.iter().map(candidate).collect();
-    ascending(Search::among::<Close>(&candidates).0)
+    ascending(Search::among::<ClosePairs>(&candidates).0)
 }
 
 /// Those of `pairs` of triangles that cross or overlap, in ascending order.
@@ -107,12 +107,12 @@ pub fn close_pairs(faces: &Faces) -> Vec<[u32; 2]> {
 /// # Cost
 /// One comparison per pair, and a pass over the triangles if some meet along edges.
 pub fn crossings_among(faces: &Faces, pairs: &[[u32; 2]]) -> Vec<[u32; 2]> {
-    let mut found = Found::default();
+    let mut found = Meetings::default();
     for pair in pairs {
         if !pair.iter().any(|t| has_no_area(&faces.corners(*t))) {
             poll();
             let [p, q] = pair.map(|t| Candidate::of(faces, (0, t)));
-            found.look_at(&p, &q);
+            found.compare(&p, &q);
         }
     }
     found.settled(faces)
@@ -125,10 +125,10 @@ fn ascending(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
 }
 
 /// Triangles that one thread compares: half a millisecond of work or more.
-const SHARE: usize = 512;
+const TRIANGLES_PER_TASK: usize = 512;
 
 /// Pairs that are compared together, by several threads if there are any.
-const BATCH: usize = 8 * CHUNK;
+const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
 /// A triangle that is compared with others.
 struct Candidate {
@@ -172,9 +172,9 @@ impl Candidate {
 }
 
 /// The findings of a search about pairs of triangles that may meet.
-trait Kept: Default + Send {
+trait PairFindings: Default + Send {
     /// Looks at a pair.
-    fn look_at(&mut self, p: &Candidate, q: &Candidate);
+    fn compare(&mut self, p: &Candidate, q: &Candidate);
 
     /// Merges these findings with others.
     fn with(self, others: Self) -> Self;
@@ -182,14 +182,14 @@ trait Kept: Default + Send {
 
 /// The meetings found between pairs of triangles.
 #[derive(Default)]
-struct Found {
+struct Meetings {
     crossings: Vec<[u32; 2]>,
     /// Pairs that meet along edges: the neighbours there decide whether surfaces cross.
     doubtful: Vec<([u32; 2], Meeting)>,
 }
 
-impl Kept for Found {
-    fn look_at(&mut self, p: &Candidate, q: &Candidate) {
+impl PairFindings for Meetings {
+    fn compare(&mut self, p: &Candidate, q: &Candidate) {
         let [p, q] = ordered(p, q);
         let pair = [p.triangle, q.triangle];
         if let Some(edge) = p.common_edge(q) {
@@ -214,10 +214,10 @@ impl Kept for Found {
 
 /// Pairs of triangles that are close to each other.
 #[derive(Default)]
-struct Close(Vec<[u32; 2]>);
+struct ClosePairs(Vec<[u32; 2]>);
 
-impl Kept for Close {
-    fn look_at(&mut self, p: &Candidate, q: &Candidate) {
+impl PairFindings for ClosePairs {
+    fn compare(&mut self, p: &Candidate, q: &Candidate) {
         if p.common_edge(q).is_none() && !are_clear(&p.facing, &q.facing) {
             let [p, q] = ordered(p, q);
             self.0.push([p.triangle, q.triangle]);
@@ -239,7 +239,7 @@ fn ordered<'a>(p: &'a Candidate, q: &'a Candidate) -> [&'a Candidate; 2] {
     }
 }
 
-impl Found {
+impl Meetings {
     /// The crossings in ascending order, including the doubtful pairs that cross.
     fn settled(mut self, faces: &Faces) -> Vec<[u32; 2]> {
         self.crossings.extend(crossing(faces, self.doubtful));
@@ -257,7 +257,7 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Compare the pairs of candidates of different parties that may meet.
-    fn among<K: Kept>(candidates: &'a [Candidate]) -> K {
+    fn among<K: PairFindings>(candidates: &'a [Candidate]) -> K {
         let corners = |k: u32| *candidates[k as usize].facing.triangle();
         let Some(image) = Image::of(candidates.len(), corners) else {
             return K::default();
@@ -270,8 +270,8 @@ impl<'a> Search<'a> {
             slabs: candidates.iter().map(slabs).collect(),
         };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
-        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(SHARE);
-        let found = each(Worth::Pool, parts, |part| search.kept(part));
+        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(TRIANGLES_PER_TASK);
+        let found = each(Worth::Pool, parts, |part| search.findings_in(part));
         found.into_iter().fold(K::default(), K::with)
     }
 
@@ -293,7 +293,7 @@ impl<'a> Search<'a> {
     }
 
     /// The findings about the pairs that belong to a part of space.
-    fn kept<K: Kept>(&self, part: Part) -> K {
+    fn findings_in<K: PairFindings>(&self, part: Part) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
         pairs_of_many(
@@ -304,25 +304,25 @@ impl<'a> Search<'a> {
                     return Some(());
                 }
                 waiting.push([i, j]);
-                if waiting.len() == BATCH {
-                    self.look_at(&waiting, &mut found);
+                if waiting.len() == PAIRS_PER_BATCH {
+                    self.compare_all(&waiting, &mut found);
                     waiting.clear();
                 }
                 Some(())
             },
         );
-        self.look_at(&waiting, &mut found);
+        self.compare_all(&waiting, &mut found);
         found
     }
 
     /// Compare pairs that may meet.
-    fn look_at<K: Kept>(&self, pairs: &[[u32; 2]], found: &mut K) {
+    fn compare_all<K: PairFindings>(&self, pairs: &[[u32; 2]], found: &mut K) {
         let looked = each_chunk(pairs, |_, pairs| {
             spend(pairs.len());
             let mut found = K::default();
             for [i, j] in pairs {
                 let candidate = |k: &u32| &self.candidates[*k as usize];
-                found.look_at(candidate(i), candidate(j));
+                found.compare(candidate(i), candidate(j));
             }
             found
         });

@@ -13,18 +13,18 @@ use crate::geometry::plane::Lattice;
 use crate::mesh::terrains::is_needle;
 
 /// The number of triangles sampled to find the axes.
-const SAMPLE: usize = 64;
+const TRIANGLES_SAMPLED: usize = 64;
 
 /// Axes are rotated if they suit at least one in this many triangles.
-const SUITED: usize = 4;
+const SUITED_IF_ONE_IN: usize = 4;
 
 /// Directions this close, as a cosine or its complement, count as perpendicular or as one: a
 /// triangle off by this share of its length is as good as flat in a sweep.
-const CLOSE: f64 = 1e-6;
+const DIRECTION_TOLERANCE: f64 = 1e-6;
 
 /// Lines whose directions have a larger cosine count as one: seen across both, lengths shrink to
 /// less than a twentieth, and the rounding of a rotation must stay far below a step.
-const APART: f64 = 0.99;
+const MAX_COSINE_OF_AXES: f64 = 0.99;
 
 /// A linear image of triangles.
 ///
@@ -45,7 +45,7 @@ impl Image {
     /// The image of some triangles; `None` if there are none.
     pub fn of(count: usize, corners: impl Fn(u32) -> Triangle) -> Option<Self> {
         let numbers = 0..as_number(count);
-        let step = count.div_ceil(SAMPLE).max(1);
+        let step = count.div_ceil(TRIANGLES_SAMPLED).max(1);
         let sample: Vec<Triangle> = numbers.clone().step_by(step).map(&corners).collect();
         let normals: Vec<Point> = sample.iter().map(normal).filter_map(unit).collect();
         let axes = axes(&normals).or_else(|| axes_across_needles(&sample));
@@ -105,9 +105,9 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
         return None;
     }
     let first = most_common(normals, |_| true)?;
-    let second = most_common(normals, |a| dot(a, &first).abs() < CLOSE)?;
+    let second = most_common(normals, |a| dot(a, &first).abs() < DIRECTION_TOLERANCE)?;
     let suited = count_along(&first, normals) + count_along(&second, normals);
-    if SUITED * suited < normals.len() || is_axis(&first) && is_axis(&second) {
+    if SUITED_IF_ONE_IN * suited < normals.len() || is_axis(&first) && is_axis(&second) {
         return None;
     }
     Some([first, second, cross(&first, &second)])
@@ -119,14 +119,14 @@ fn axes(normals: &[Point]) -> Option<[Point; 3]> {
 /// A needle along one of the lines is thin seen across both, and seen in their plane across its
 /// own.
 fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
-    let needles: Vec<Point> = sample.iter().filter_map(bearing).collect();
-    if SUITED * needles.len() < sample.len() || needles.iter().all(is_axis) {
+    let needles: Vec<Point> = sample.iter().filter_map(second_edge_direction).collect();
+    if SUITED_IF_ONE_IN * needles.len() < sample.len() || needles.iter().all(is_axis) {
         return None;
     }
     let first = most_common(&needles, |_| true)?;
-    let second = most_common(&needles, |a| dot(a, &first).abs() < APART);
+    let second = most_common(&needles, |a| dot(a, &first).abs() < MAX_COSINE_OF_AXES);
     let suited = |a: &Point| count_along(a, &needles);
-    if SUITED * (suited(&first) + second.as_ref().map_or(0, suited)) < sample.len() {
+    if SUITED_IF_ONE_IN * (suited(&first) + second.as_ref().map_or(0, suited)) < sample.len() {
         return None;
     }
     let across = unit(cross(&first, &second.unwrap_or(beside(&first))))?;
@@ -137,7 +137,7 @@ fn axes_across_needles(sample: &[Triangle]) -> Option<[Point; 3]> {
 
 /// The direction of the second longest edge of a needle; `None` for other triangles. The longest
 /// edge is the diagonal between neighbours.
-fn bearing(triangle: &Triangle) -> Option<Point> {
+fn second_edge_direction(triangle: &Triangle) -> Option<Point> {
     let [a, b, c] = triangle;
     let mut edges = [less(b, a), less(c, b), less(a, c)];
     edges.sort_unstable_by(|e, f| dot(e, e).total_cmp(&dot(f, f)));
@@ -164,11 +164,11 @@ fn count_along(a: &Point, directions: &[Point]) -> usize {
 }
 
 fn is_along(a: &Point, b: &Point) -> bool {
-    dot(a, b).abs() > 1.0 - CLOSE
+    dot(a, b).abs() > 1.0 - DIRECTION_TOLERANCE
 }
 
 fn is_axis(a: &Point) -> bool {
-    a.iter().any(|x| x.abs() > 1.0 - CLOSE)
+    a.iter().any(|x| x.abs() > 1.0 - DIRECTION_TOLERANCE)
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From exact vertices to doubles or singles, without crossings.
 
-pub mod company;
+pub mod broad_phase;
 pub mod crossings;
 mod edges;
 mod image;

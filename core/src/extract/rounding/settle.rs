@@ -2,7 +2,7 @@
 
 use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 
-use super::company::in_company;
+use super::broad_phase::triangles_near;
 use super::crossings::{all_faults, faults, Faults};
 use super::mend::{Mending, Precision};
 use super::snapping::crossed;
@@ -17,12 +17,12 @@ use crate::mesh::snap::snap_all;
 use crate::mesh::triangles::firsts;
 
 /// Rounds of finding and mending: each mends what it found, the next checks what that moved.
-const ROUNDS: usize = 4;
+const MAX_ROUNDS: usize = 4;
 
 /// The most crossing pairs, per triangle, for which a moved mesh is mended. Surfaces that touched
 /// cross along curves, in fewer pairs than there are triangles. With more, they lie on each other
 /// as a whole, and no change as small as the rounding separates them.
-const MOST_CROSSINGS: usize = 1;
+const MAX_CROSSINGS_PER_TRIANGLE: usize = 1;
 
 /// A mesh whose vertices were rounded, closed by index.
 #[derive(Clone, Debug)]
@@ -72,7 +72,7 @@ pub fn settle(
         settled.moved = merged(&settled.moved, &moved);
         found = mesh.faults_after(&found, &changed, &touched, &party);
     }
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         if found.is_empty() {
             break;
         }
@@ -133,7 +133,7 @@ pub fn settle_moved(mesh: &mut Rounded, before: &[Point], pitch: Pitch) -> Settl
             ..Settled::default()
         };
     }
-    if found.crossings.len() > MOST_CROSSINGS * mesh.triangles.len() {
+    if found.crossings.len() > MAX_CROSSINGS_PER_TRIANGLE * mesh.triangles.len() {
         let left = found;
         return Settled {
             left,
@@ -304,9 +304,9 @@ impl Rounded {
     ) -> Vec<u32> {
         let corners = members(found).flat_map(|t| self.triangles[t as usize]);
         let core = self.stars(&corners.collect::<Vec<VertexId>>());
-        let near = in_company(&self.faces(), &core, |_| 0);
+        let near = triangles_near(&self.faces(), &core, |_| 0);
         let some = merged(&core, &near.into_iter().map(|o| o.1).collect::<Vec<u32>>());
-        let part = Part::of(self, &some);
+        let part = SubMesh::of(self, &some);
         let local = |t: &u32| as_number(some.binary_search(t).unwrap_or(0));
         let faults = Faults {
             crossings: found
@@ -328,7 +328,7 @@ impl Rounded {
     }
 
     /// Copies a mended part back into the mesh; returns the triangles changed.
-    fn take_back(&mut self, mending: &Mending, part: &Part, some: &[u32]) -> Vec<u32> {
+    fn take_back(&mut self, mending: &Mending, part: &SubMesh, some: &[u32]) -> Vec<u32> {
         let mut globals = part.globals.clone();
         let first = self.vertices.len() - globals.len();
         for (v, place) in mending.vertices.iter().enumerate() {
@@ -355,13 +355,13 @@ impl Rounded {
 }
 
 /// Some triangles with vertices of their own.
-struct Part {
+struct SubMesh {
     /// The vertices by their numbers in the whole mesh.
     globals: Vec<VertexId>,
     triangles: Vec<[VertexId; 3]>,
 }
 
-impl Part {
+impl SubMesh {
     fn of(mesh: &Rounded, some: &[u32]) -> Self {
         let mut numbers: HashMap<VertexId, VertexId> = HashMap::default();
         let mut globals = Vec::new();

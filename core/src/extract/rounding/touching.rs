@@ -97,13 +97,16 @@ struct Filter {
 
 impl Filter {
     /// Bits per place in the set: one in this many others passes as well.
-    const ROOM: usize = 16;
+    const BITS_PER_PLACE: usize = 16;
 
     /// The bits in a word.
     const WORD: u32 = u64::BITS;
 
     fn for_places(count: usize) -> Self {
-        let bits = (Self::ROOM * count).next_power_of_two().ilog2().max(6);
+        let bits = (Self::BITS_PER_PLACE * count)
+            .next_power_of_two()
+            .ilog2()
+            .max(6);
         Self {
             words: vec![0; (1 << bits) / Self::WORD as usize],
             shift: u64::BITS - bits,

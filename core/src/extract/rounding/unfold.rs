@@ -17,7 +17,7 @@ use crate::mesh::faces::edges;
 use crate::mesh::handle::VertexId;
 
 /// Swaps tried per triangle found turned over; each lowers the number of such triangles.
-const TRIES: usize = 8;
+const MAX_SWAPS_PER_TRIANGLE: usize = 8;
 
 /// The changes that rounding made to the triangles of a mesh.
 #[derive(Debug, Default)]
@@ -38,7 +38,7 @@ pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded
         return Unfolded::default();
     }
     let mut surface = Surface::new(mesh, Planes { exact, sources });
-    let mut tries = TRIES * turned.len();
+    let mut tries = MAX_SWAPS_PER_TRIANGLE * turned.len();
     let mut found = Unfolded::default();
     let mut open: Vec<usize> = turned.iter().rev().map(|t| as_place(*t)).collect();
     while let Some(t) = open.pop() {

@@ -21,7 +21,7 @@ use crate::mesh::grid::Pitch;
 
 /// Different coordinates up to this many steps have different nearest doubles: one step is at least
 /// two spacings of the doubles there.
-const DISTINCT: u64 = 1 << 51;
+const MAX_DISTINCT_STEPS: u64 = 1 << 51;
 
 /// Return whether the triangles of a rounded mesh cross only if they do so on the lattice: they are
 /// perpendicular to axes, each vertex is at the doubles nearest to its lattice point, and none is
@@ -51,7 +51,8 @@ fn stands_upright(corners: &Triangle, normal: &[i128; 3]) -> bool {
 
 /// Return whether a place is nearest to a lattice point, and to no other.
 fn is_at(place: &Point, p: &Lattice, pitch: Pitch) -> bool {
-    p.iter().all(|k| k.unsigned_abs() <= DISTINCT) && p.map(|k| pitch.coordinate(k)) == *place
+    p.iter().all(|k| k.unsigned_abs() <= MAX_DISTINCT_STEPS)
+        && p.map(|k| pitch.coordinate(k)) == *place
 }
 
 /// The lattice point of a vertex, if it is known to be one.

@@ -1,6 +1,6 @@
 //! The possible changes in a round, and a choice of independent ones.
 
-use super::edit::{Act, Edit, Limits, MOST_AROUND};
+use super::edit::{Act, Edit, Limits, MAX_TRIANGLES_PER_VERTEX};
 use super::sizes::{height, lengths};
 use super::surface::Surface;
 use crate::arith::convert::as_number;
@@ -123,7 +123,7 @@ fn is_locked(surface: &Surface, locks: &[Lock], act: &Act) -> bool {
             let taken = |v: &VertexId| at(v).ends || at(v).beside || at(v).turns;
             let may_go = ends
                 .iter()
-                .filter(|v| surface.star(**v).len() <= MOST_AROUND);
+                .filter(|v| surface.star(**v).len() <= MAX_TRIANGLES_PER_VERTEX);
             ends.iter().any(taken)
                 || may_go
                     .flat_map(|v| surface.neighbours(*v))

@@ -32,7 +32,7 @@ struct Witness {
 
 /// An old point that comes to a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Coming {
+pub enum Arrival {
     /// All that came to another vertex.
     Vertex(VertexId),
     /// A point of an edge, by its place and slack.
@@ -59,10 +59,15 @@ impl Drift {
     }
 
     /// Return the bound at a vertex after an arrival; `None` beyond a limit.
-    pub fn with(&self, (to, place): (VertexId, &Point), coming: Coming, limit: f64) -> Option<f64> {
-        let far = match coming {
-            Coming::Vertex(v) => self.farthest(v, place, limit)?,
-            Coming::Point(p, slack) => above(distance_above(&p, place), slack),
+    pub fn with(
+        &self,
+        (to, place): (VertexId, &Point),
+        arrival: Arrival,
+        limit: f64,
+    ) -> Option<f64> {
+        let far = match arrival {
+            Arrival::Vertex(v) => self.farthest(v, place, limit)?,
+            Arrival::Point(p, slack) => above(distance_above(&p, place), slack),
         };
         (far <= limit).then(|| far.max(self.at(to)))
     }
@@ -85,11 +90,11 @@ impl Drift {
     }
 
     /// Records an arrival at a vertex, and the bound after it.
-    pub fn follow(&mut self, to: VertexId, coming: Coming, bound: f64) {
+    pub fn follow(&mut self, to: VertexId, arrival: Arrival, bound: f64) {
         let to = to.place();
-        let from = match coming {
-            Coming::Vertex(v) => v.place(),
-            Coming::Point(place, slack) => {
+        let from = match arrival {
+            Arrival::Vertex(v) => v.place(),
+            Arrival::Point(place, slack) => {
                 let next = as_number(self.witnesses.len());
                 self.witnesses.push(Witness { place, slack, next });
                 next as usize
@@ -134,22 +139,22 @@ mod tests {
     fn the_farthest_that_came_counts() {
         let mut drift = Drift::new(&ROW);
         assert!(near(
-            drift.with((VertexId(1), &ROW[1]), Coming::Vertex(VertexId(0)), 9.0),
+            drift.with((VertexId(1), &ROW[1]), Arrival::Vertex(VertexId(0)), 9.0),
             1.0
         ));
-        drift.follow(VertexId(1), Coming::Vertex(VertexId(0)), 1.0);
+        drift.follow(VertexId(1), Arrival::Vertex(VertexId(0)), 1.0);
         // Not the sum of the ways, 1 + 2, but the distance to the first vertex.
         assert!(near(
-            drift.with((VertexId(2), &ROW[2]), Coming::Vertex(VertexId(1)), 9.0),
+            drift.with((VertexId(2), &ROW[2]), Arrival::Vertex(VertexId(1)), 9.0),
             3.0
         ));
-        drift.follow(VertexId(2), Coming::Vertex(VertexId(1)), 3.0);
+        drift.follow(VertexId(2), Arrival::Vertex(VertexId(1)), 3.0);
         assert!(near(
-            drift.with((VertexId(3), &ROW[3]), Coming::Vertex(VertexId(2)), 9.0),
+            drift.with((VertexId(3), &ROW[3]), Arrival::Vertex(VertexId(2)), 9.0),
             5.0
         ));
         assert_eq!(
-            drift.with((VertexId(3), &ROW[3]), Coming::Vertex(VertexId(2)), 4.9),
+            drift.with((VertexId(3), &ROW[3]), Arrival::Vertex(VertexId(2)), 4.9),
             None
         );
     }
@@ -157,15 +162,15 @@ mod tests {
     #[test]
     fn what_came_before_stays() {
         let mut drift = Drift::new(&ROW);
-        drift.follow(VertexId(2), Coming::Vertex(VertexId(3)), 4.0);
+        drift.follow(VertexId(2), Arrival::Vertex(VertexId(3)), 4.0);
         assert!(near(
-            drift.with((VertexId(2), &ROW[2]), Coming::Vertex(VertexId(1)), 9.0),
+            drift.with((VertexId(2), &ROW[2]), Arrival::Vertex(VertexId(1)), 9.0),
             4.0
         ));
-        drift.follow(VertexId(2), Coming::Vertex(VertexId(1)), 4.0);
+        drift.follow(VertexId(2), Arrival::Vertex(VertexId(1)), 4.0);
         assert!(drift.bound().to_bits() == 4.0f64.to_bits());
         assert!(near(
-            drift.with((VertexId(0), &ROW[0]), Coming::Vertex(VertexId(2)), 9.0),
+            drift.with((VertexId(0), &ROW[0]), Arrival::Vertex(VertexId(2)), 9.0),
             5.0
         ));
     }
@@ -173,11 +178,11 @@ mod tests {
     #[test]
     fn points_of_edges_bring_their_slack() {
         let mut drift = Drift::new(&ROW);
-        let middle = Coming::Point([2.0, 0.0, 0.0], 0.5);
+        let middle = Arrival::Point([2.0, 0.0, 0.0], 0.5);
         assert!(near(drift.with((VertexId(1), &ROW[1]), middle, 9.0), 1.5));
         drift.follow(VertexId(1), middle, 1.5);
         assert!(near(
-            drift.with((VertexId(0), &ROW[0]), Coming::Vertex(VertexId(1)), 9.0),
+            drift.with((VertexId(0), &ROW[0]), Arrival::Vertex(VertexId(1)), 9.0),
             2.5
         ));
     }

@@ -1,6 +1,6 @@
 //! Changes that mend a short edge or a sliver, and whether they are allowed.
 
-use super::drift::{Coming, Drift};
+use super::drift::{Arrival, Drift};
 use super::sizes::{height, rounding_of, swept};
 use super::surface::{place_of, Surface};
 use crate::geometry::doubles::vector::{dot, less, normal};
@@ -8,11 +8,11 @@ use crate::geometry::doubles::{is_flat, Triangle};
 use crate::mesh::handle::VertexId;
 
 /// A vertex of more triangles stays: checking each edge of a hub costs a pass over all of them.
-pub const MOST_AROUND: usize = 64;
+pub const MAX_TRIANGLES_PER_VERTEX: usize = 64;
 
 /// Triangles lower than this part of the tolerance are not made, unless one was as low before: they
 /// are lower than those that gathering corners leave, and further collapses would not remove them.
-const LEAST_HEIGHT: f64 = 0.25;
+const MIN_HEIGHT_SHARE: f64 = 0.25;
 
 /// A change to try, by its vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -33,7 +33,7 @@ pub struct Edit {
     /// The vertex to which a part of the surface comes.
     pub target: VertexId,
     /// The old point that comes to it.
-    pub coming: Coming,
+    pub arrival: Arrival,
     /// The bound on the drift at the target afterwards.
     pub bound: f64,
     /// Six times the volume between the old and the new surface.
@@ -106,16 +106,16 @@ impl Limits<'_> {
             return None;
         };
         let star = self.surface.star(from);
-        if star.len() > MOST_AROUND || !self.may_be_joined(from, to) {
+        if star.len() > MAX_TRIANGLES_PER_VERTEX || !self.may_be_joined(from, to) {
             return None;
         }
-        let (place, coming) = (self.surface.place(to), Coming::Vertex(from));
+        let (place, arrival) = (self.surface.place(to), Arrival::Vertex(from));
         let mut edit = Edit {
             act,
             changes: Vec::new(),
             target: to,
-            coming,
-            bound: self.drift.with((to, place), coming, self.tolerance)?,
+            arrival,
+            bound: self.drift.with((to, place), arrival, self.tolerance)?,
             swept: 0.0,
         };
         let mut least = f64::INFINITY;
@@ -123,7 +123,7 @@ impl Limits<'_> {
             least = least.min(self.change(&mut edit, t, [from, to])?);
         }
         let lowest = |m: f64, t: &u32| m.min(height(&self.surface.corners(*t)));
-        let before = star.iter().fold(LEAST_HEIGHT * self.tolerance, lowest);
+        let before = star.iter().fold(MIN_HEIGHT_SHARE * self.tolerance, lowest);
         (least >= before).then_some(edit)
     }
 
@@ -167,10 +167,10 @@ impl Limits<'_> {
             return None;
         }
         let (sliver, mate) = (surface.left_of(a, b)?, surface.left_of(b, a)?);
-        let coming = self.beside([a, b, c])?;
+        let arrival = self.beside([a, b, c])?;
         let bound = self
             .drift
-            .with((c, surface.place(c)), coming, self.tolerance)?;
+            .with((c, surface.place(c)), arrival, self.tolerance)?;
         let (old, made) = (surface.corners(mate), [[a, d, c], [d, b, c]]);
         let new = made.map(|t| surface.places(&t));
         let least = |triangles: [&Triangle; 2]| height(triangles[0]).min(height(triangles[1]));
@@ -179,20 +179,20 @@ impl Limits<'_> {
             act: Act::Flip([a, b, c, d]),
             changes: vec![(sliver, made[0]), (mate, made[1])],
             target: c,
-            coming,
+            arrival,
             bound,
             swept: 0.0,
         })
     }
 
     /// The point of the edge a → b nearest to c, if it is inside.
-    fn beside(&self, [a, b, c]: [VertexId; 3]) -> Option<Coming> {
+    fn beside(&self, [a, b, c]: [VertexId; 3]) -> Option<Arrival> {
         let [p, q, r] = [a, b, c].map(|v| self.surface.place(v));
         let along = less(q, p);
         let share = dot(&less(r, p), &along) / dot(&along, &along);
         let place = [0, 1, 2].map(|i| p[i] + share * along[i]);
         let slack = self.drift.at(a).max(self.drift.at(b)) + rounding_of(p, q);
-        (share > 0.0 && share < 1.0).then_some(Coming::Point(place, slack))
+        (share > 0.0 && share < 1.0).then_some(Arrival::Point(place, slack))
     }
 }
 

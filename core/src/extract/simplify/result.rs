@@ -15,7 +15,7 @@ use crate::tree::solid::Solid;
 
 /// The lattices to try, by how many powers of ten they are finer than the solid's own: rounding
 /// leaves triangles lower than a step, down to a few last places of doubles.
-const FINER: [i64; 3] = [0, 3, 6];
+const FINER_POWERS_OF_TEN: [i64; 3] = [0, 3, 6];
 
 /// The solid of a bounded solid's mesh without short edges and slivers.
 ///
@@ -32,7 +32,7 @@ pub fn simplified(solid: &Solid, tolerance: f64) -> Result<Option<Solid>> {
         return Ok(None);
     }
     let noticed = findings(&simplified, before);
-    for finer in FINER {
+    for finer in FINER_POWERS_OF_TEN {
         let pitch = Pitch::new(solid.pitch().exponent() - finer);
         let held = pitch.map(|pitch| on_lattice(&simplified, pitch, noticed.clone()));
         if let Some(made) = held.unwrap_or(Ok(None))? {
@@ -65,11 +65,12 @@ fn findings(mesh: &Simplified, before: usize) -> Vec<Finding> {
         ..Finding::about("simplified", Severity::Note, &[], text)
     };
     let left: Vec<u64> = mesh.left.iter().map(|t| u64::from(*t)).collect();
-    let rest = Finding::about("small_left", Severity::Note, &left, LEFT);
+    let rest = Finding::about("small_left", Severity::Note, &left, SMALL_LEFT_TEXT);
     [done, rest].into_iter().filter(|f| f.count > 0).collect()
 }
 
-const LEFT: &str = "an edge or a height of these triangles is within the tolerance still: without \
+const SMALL_LEFT_TEXT: &str =
+    "an edge or a height of these triangles is within the tolerance still: without \
     them the surface would move farther, cross itself, or vanish in part";
 
 #[cfg(test)]

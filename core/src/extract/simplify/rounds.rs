@@ -17,7 +17,7 @@ use crate::mesh::tasks::each_chunk;
 
 /// The most rounds; changes that still wait then are not made. A vertex has six neighbours on
 /// average, so that a change blocks some twenty others: of a million, less than one waits longer.
-const ROUNDS: usize = 256;
+const MAX_ROUNDS: usize = 256;
 
 /// A mesh that was simplified.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ pub struct Simplified {
 /// ```
 pub fn simplify(vertices: Vec<Point>, triangles: Vec<[VertexId; 3]>, tolerance: f64) -> Simplified {
     let mut simplifying = Simplifying::new(vertices, triangles, tolerance);
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         if !simplifying.round() {
             break;
         }
@@ -104,7 +104,7 @@ impl Simplifying {
         }
         for edit in &kept {
             edit.corners().for_each(|v| self.awake[v.place()] = true);
-            self.drift.follow(edit.target, edit.coming, edit.bound);
+            self.drift.follow(edit.target, edit.arrival, edit.bound);
         }
         self.changed |= !kept.is_empty();
         self.refused.extend(refused);

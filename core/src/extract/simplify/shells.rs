@@ -62,13 +62,13 @@ impl Shells {
         if self.sides.len() < 2 {
             return vec![false; edits.len()];
         }
-        let resting = self.resting(vertices, triangles, edits);
+        let shell_points = self.shell_points(vertices, triangles, edits);
         let is_swept = |edit: &Edit| {
             let own = self.of_edit(edit);
             edit.bodies().iter().any(|body| {
                 poll();
                 let body = body.map(|v| &vertices[v.place()]);
-                let others = resting.beside(&body).iter().filter(|r| r.0 != own);
+                let others = shell_points.beside(&body).iter().filter(|r| r.0 != own);
                 others.into_iter().any(|(_, p)| may_hold(&body, p))
             })
         };
@@ -76,7 +76,12 @@ impl Shells {
     }
 
     /// A vertex of each shell that stays in this round.
-    fn resting(&self, vertices: &[Point], triangles: &[[VertexId; 3]], edits: &[Edit]) -> Resting {
+    fn shell_points(
+        &self,
+        vertices: &[Point],
+        triangles: &[[VertexId; 3]],
+        edits: &[Edit],
+    ) -> ShellPoints {
         let mut goes = vec![false; vertices.len()];
         for v in edits.iter().filter_map(Edit::going) {
             goes[v.place()] = true;
@@ -88,7 +93,7 @@ impl Shells {
         let numbered = (0..).zip(found);
         let mut points: Vec<(usize, Point)> = numbered.filter_map(|(k, p)| Some((k, p?))).collect();
         points.sort_by(|p, q| p.1[0].total_cmp(&q.1[0]));
-        Resting { points }
+        ShellPoints { points }
     }
 
     /// The sign of each shell's volume.
@@ -96,18 +101,18 @@ impl Shells {
         spend(triangles.len());
         let used = self.numbers.iter().filter(|n| **n != NONE);
         let count = used.max().map_or(0, |m| *m as usize + 1);
-        let mut sums = vec![Sum::default(); count];
+        let mut sums = vec![ShellVolume::default(); count];
         for t in triangles.iter().filter(|t| t[0] != t[1]) {
             let corners = t.map(|v| vertices[v.place()]);
             sums[self.numbers[t[0].place()] as usize].add(&corners);
         }
-        sums.iter().map(Sum::sign).collect()
+        sums.iter().map(ShellVolume::sign).collect()
     }
 }
 
 /// Six times the volume of a shell.
 #[derive(Clone, Default)]
-struct Sum {
+struct ShellVolume {
     origin: Option<Point>,
     volume: f64,
     size: f64,
@@ -115,9 +120,9 @@ struct Sum {
 }
 
 /// Roundings of a difference, a minor, a product and a sum, in units of the last place, with a margin.
-const ROUNDINGS: f64 = 16.0;
+const VOLUME_ROUNDINGS: f64 = 16.0;
 
-impl Sum {
+impl ShellVolume {
     fn add(&mut self, corners: &[Point; 3]) {
         let origin = *self.origin.get_or_insert(corners[0]);
         let [a, b, c] = corners;
@@ -129,17 +134,17 @@ impl Sum {
     }
 
     fn sign(&self) -> Filtered<Sign> {
-        let error = (ROUNDINGS + self.count) * f64::EPSILON * self.size;
+        let error = (VOLUME_ROUNDINGS + self.count) * f64::EPSILON * self.size;
         Filtered::when(self.volume.abs() > error, Sign::of(self.volume))
     }
 }
 
 /// A point of each shell, by its x.
-struct Resting {
+struct ShellPoints {
     points: Vec<(usize, Point)>,
 }
 
-impl Resting {
+impl ShellPoints {
     /// The points within a body's range of x.
     fn beside(&self, body: &[&Point; 4]) -> &[(usize, Point)] {
         let of_all = |pick: fn(f64, f64) -> f64| body.iter().map(|p| p[0]).reduce(pick);

@@ -4,10 +4,10 @@ use crate::geometry::doubles::vector::{cross, dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 
 /// The roundings of a sum of three squares and its root, in units of the last place, with a margin.
-const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+const LENGTH_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Rounding errors of three coordinates, and of the point itself, in units of the largest one.
-const PLACES: f64 = 16.0 * f64::EPSILON;
+const POINT_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The distance of two points, rounded up.
 ///
@@ -20,13 +20,13 @@ pub fn distance_above(p: &Point, q: &Point) -> f64 {
         return 0.0;
     }
     let scaled = gap.map(|x| x / most);
-    (dot(&scaled, &scaled).sqrt() * (1.0 + ROUNDINGS) * most).next_up()
+    (dot(&scaled, &scaled).sqrt() * (1.0 + LENGTH_ROUNDING) * most).next_up()
 }
 
 /// A bound on the error of a point computed between two others.
 pub fn rounding_of(p: &Point, q: &Point) -> f64 {
     let largest = p.iter().chain(q).fold(0.0f64, |m, x| m.max(x.abs()));
-    PLACES * largest
+    POINT_ROUNDING * largest
 }
 
 /// The edge lengths, each from a corner to the next.

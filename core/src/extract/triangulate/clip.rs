@@ -7,14 +7,14 @@ use crate::arith::Sign;
 use crate::interrupt::poll;
 
 /// Loops up to this length are clipped; the sweep wins on longer ones.
-const SHORT: usize = 8;
+const MAX_CORNERS_CLIPPED: usize = 8;
 
 /// The vertices of a short loop.
-pub(super) type Loop = SmallVec<[u32; SHORT]>;
+pub(super) type Loop = SmallVec<[u32; MAX_CORNERS_CLIPPED]>;
 
 /// The vertices of `edges` in order, if the edges are one short loop that visits no vertex twice.
 pub(super) fn small_loop(edges: &[(u32, u32)]) -> Option<Loop> {
-    if !(3..=SHORT).contains(&edges.len()) {
+    if !(3..=MAX_CORNERS_CLIPPED).contains(&edges.len()) {
         return None;
     }
     let mut corners = Loop::new();
@@ -42,7 +42,7 @@ pub(super) fn clip_ears<P: Planar>(points: &P, mut corners: Loop) -> Result<Vec<
             .ok_or(Error::Crossing { vertex: a });
     }
     let mut triangles = Vec::with_capacity(corners.len() - 2);
-    let mut turns: SmallVec<[Sign; SHORT]> = (0..corners.len())
+    let mut turns: SmallVec<[Sign; MAX_CORNERS_CLIPPED]> = (0..corners.len())
         .map(|k| turn(points, &corners, k))
         .collect();
     while corners.len() > 3 {

@@ -1,7 +1,7 @@
 //! A sequence kept in order by its owner's answers.
 
 /// Longest block; a trade between moving entries and moving blocks.
-const BLOCK: usize = 256;
+const MAX_BLOCK_LENGTH: usize = 256;
 
 /// Numbers in an order that only the caller knows, in blocks so that insertion stays cheap.
 #[derive(Default)]
@@ -44,8 +44,8 @@ impl Order {
         }
         let block = &mut self.blocks[place.block];
         block.insert(place.offset, entry);
-        if block.len() > BLOCK {
-            let tail = block.split_off(BLOCK / 2);
+        if block.len() > MAX_BLOCK_LENGTH {
+            let tail = block.split_off(MAX_BLOCK_LENGTH / 2);
             self.blocks.insert(place.block + 1, tail);
         }
     }

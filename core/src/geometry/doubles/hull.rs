@@ -69,10 +69,10 @@ pub fn hull_beyond(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
     let mut faces = Polytope::around(points, &[&all], 0.0);
     let corners = corners_of(&faces);
     let places: Vec<Point> = corners.iter().map(|p| points[*p]).collect();
-    if radius > 0.0 && is_flat_within(&places, FLAT * radius) {
+    if radius > 0.0 && is_flat_within(&places, FLAT_RADII * radius) {
         return Vec::new();
     }
-    for _ in 0..PASSES {
+    for _ in 0..MAX_PASSES {
         let sharp = sharp_corners(points, &faces, 2.0 * radius);
         if sharp.len() == corners_of(&faces).len() {
             break;
@@ -86,12 +86,12 @@ pub fn hull_beyond(points: &[Point], radius: f64) -> Vec<[usize; 3]> {
 
 /// The most passes. Where several corners are one but for rounding, none is sharp; the first pass leaves
 /// one of them.
-const PASSES: usize = 3;
+const MAX_PASSES: usize = 3;
 
 /// Points of one plane, each off by a radius, lie within this many radii of the plane through three of them
 /// that are far apart. The three contribute at most three, two and one, by how far the plane extends beyond
 /// each, and the point itself one.
-const FLAT: f64 = 7.0;
+const FLAT_RADII: f64 = 7.0;
 
 /// The points that faces use, ascending.
 #[must_use]
@@ -136,7 +136,7 @@ fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize
         around.extend(face.map(|corner| (corner, number)));
     }
     around.sort_unstable();
-    let clearly = (CLEAR * size_of(points, faces)).max(most);
+    let clearly = (CLEAR_DISTANCE * size_of(points, faces)).max(most);
     let mut sharp = Vec::new();
     for star in around.chunk_by(|p, q| p.0 == q.0) {
         poll();
@@ -159,7 +159,7 @@ fn sharp_corners(points: &[Point], faces: &[[usize; 3]], most: f64) -> Vec<usize
 }
 
 /// Relative to the size of a hull: doubles decide distances beyond this.
-const CLEAR: f64 = 1e-12;
+const CLEAR_DISTANCE: f64 = 1e-12;
 
 /// The largest distance along an axis between corners of faces and the first of them.
 fn size_of(points: &[Point], faces: &[[usize; 3]]) -> f64 {

@@ -55,7 +55,7 @@ fn meeting_by_sides(p: &Triangle, q: &Triangle) -> Meeting {
         (Reach::All, _) | (_, Reach::All) if overlap(p, q) => Meeting::Overlap,
         (Reach::All, _) | (_, Reach::All) => Meeting::Clear,
         (Reach::Edge(i), Reach::Edge(j)) if is_same_edge(p, i, q, j) => Meeting::Edges(i, j),
-        (first, second) if has_common_stretch(p, alone(of_p), q, alone(of_q)) => {
+        (first, second) if has_common_stretch(p, lone_corner(of_p), q, lone_corner(of_q)) => {
             match (first, second) {
                 (Reach::Edge(i), Reach::Edge(j)) => Meeting::Edges(i, j),
                 (Reach::Edge(i), _) => Meeting::FirstEdge(i),
@@ -217,7 +217,7 @@ fn reach(sides: [Side; 3]) -> Reach {
     let passes = straddle(&sides) == (true, true);
     match (zeros, passes) {
         (3, _) => Reach::All,
-        (2, _) => Reach::Edge((alone(sides) + 1) % 3),
+        (2, _) => Reach::Edge((lone_corner(sides) + 1) % 3),
         (_, true) => Reach::Inside,
         _ => Reach::Point,
     }
@@ -230,7 +230,7 @@ fn is_same_edge(p: &Triangle, i: usize, q: &Triangle, j: usize) -> bool {
 }
 
 /// The corner that is alone on its side; not one in the plane if another will do.
-fn alone(sides: [Side; 3]) -> usize {
+fn lone_corner(sides: [Side; 3]) -> usize {
     let single = |i: &usize| {
         let others = sides.iter().filter(|s| **s == sides[*i]).count();
         others == 1 && sides[*i] != Side::On

@@ -68,7 +68,7 @@ const TRUSTED: std::ops::Range<f64> = 1e-200..1e200;
 
 /// The largest difference of exponents that fits: 53 + 70 bits a coordinate, 124 a difference, 249 a minor
 /// of two rows, 375 a determinant of three.
-const SPAN: i32 = 70;
+const MAX_EXPONENT_DIFFERENCE: i32 = 70;
 
 /// A triangle with its plane, prepared for questions about sides.
 #[derive(Clone, Copy, Debug)]
@@ -303,7 +303,7 @@ fn on_common_grid(parts: &[(i64, i32)]) -> Option<[i128; 12]> {
         exponents().min().unwrap_or(0),
         exponents().max().unwrap_or(0),
     );
-    if most - least > SPAN {
+    if most - least > MAX_EXPONENT_DIFFERENCE {
         return None;
     }
     let mut grid = [0; 12];

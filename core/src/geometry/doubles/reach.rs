@@ -4,7 +4,7 @@ use crate::geometry::doubles::vector::{cross, dot, less};
 use crate::geometry::doubles::{Point, Triangle};
 
 /// The most steps towards the nearest point; a few usually suffice.
-const MOST_STEPS: usize = 64;
+const MAX_STEPS: usize = 64;
 
 /// Return whether a point outside the convex hull of others lies farther from it than a distance; true
 /// where rounding leaves a doubt.
@@ -30,7 +30,7 @@ pub fn is_beyond(point: &Point, others: &[Point], most: f64) -> bool {
         return true;
     };
     let mut triangle = [near; 3];
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let size = square(&near);
         if size <= most * most {
             return false;

@@ -51,7 +51,7 @@ fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [
         error: 0.0,
     };
     for beyond in cuts {
-        let lone = alone(beyond);
+        let lone = lone_corner(beyond);
         let inside = beyond[lone] < 0;
         let corner = at_corner(corners, area, beyond, lone);
         rest.add(&corner, Orientation::turned_around(!inside));
@@ -63,7 +63,7 @@ fn less<'a>(corners: &[Lattice; 3], area: i128, cuts: impl Iterator<Item = &'a [
 }
 
 /// The corner that lies alone on its side of a wall.
-fn alone(beyond: &[i64; 3]) -> usize {
+fn lone_corner(beyond: &[i64; 3]) -> usize {
     match beyond.map(|b| b > 0) {
         [a, b, c] if b == c && a != b => 0,
         [a, b, c] if a == c && a != b => 1,
@@ -72,7 +72,7 @@ fn alone(beyond: &[i64; 3]) -> usize {
 }
 
 /// Binary places of a [`share`].
-const SHARE: u32 = 104;
+const SHARE_PLACES: u32 = 104;
 
 /// Six times the flux through the corner of a triangle that a wall cuts off.
 ///
@@ -104,20 +104,20 @@ fn at_corner(corners: &[Lattice; 3], area: i128, beyond: &[i64; 3], lone: usize)
 /// Return the part of an edge before a wall, from the distances of both ends to it; rounded down.
 fn share(before: u64, behind: u64) -> Int<2> {
     let length = u128::from(before + behind);
-    let dividend = u128::from(before) << (SHARE / 2);
+    let dividend = u128::from(before) << (SHARE_PLACES / 2);
     let (high, rest) = (dividend / length, dividend % length);
-    let low = (rest << (SHARE / 2)) / length;
-    Int::from_i128((high << (SHARE / 2) | low).cast_signed())
+    let low = (rest << (SHARE_PLACES / 2)) / length;
+    Int::from_i128((high << (SHARE_PLACES / 2) | low).cast_signed())
 }
 
 /// A sum of heights at shares of edges, in units of 2^-`PLACES` steps; rounded down.
 fn height(first: i64, rises: [(Int<2>, i64); 2]) -> i128 {
-    let mut sum: Int<3> = Int::<2>::from_i128(1 << SHARE).mul_i64(first);
+    let mut sum: Int<3> = Int::<2>::from_i128(1 << SHARE_PLACES).mul_i64(first);
     for (share, rise) in rises {
         sum += share.mul_i64(rise);
     }
     let [low, middle, high] = *sum.limbs();
-    let shift = SHARE - PLACES;
+    let shift = SHARE_PLACES - PLACES;
     let pair = |a: u64, b: u64| u128::from(a >> shift | b << (64 - shift));
     (pair(middle, high) << 64 | pair(low, middle)).cast_signed()
 }

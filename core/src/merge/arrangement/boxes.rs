@@ -14,16 +14,16 @@ use crate::interrupt::{poll, spend};
 use crate::mesh::tasks::{each, Worth};
 
 /// Children of a node.
-const FAN: usize = 4;
+const CHILDREN_PER_NODE: usize = 4;
 
 /// Steps of the curve along each axis, numbered by ten bits.
-const STEPS: u16 = 1 << 10;
+const CURVE_STEPS: u16 = 1 << 10;
 
 /// The number of pairs of nodes at which the search for pairs is split into tasks.
-const TASKS: usize = 64;
+const MIN_TASKS: usize = 64;
 
 /// The size of a block of pairs.
-const BLOCK: usize = 1 << 9;
+const PAIRS_PER_BLOCK: usize = 1 << 9;
 
 /// A box in single precision, rounded outwards.
 #[derive(Clone, Copy, Debug)]
@@ -106,7 +106,7 @@ pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
     let all = Bounds::around_all(&bounds);
     let scale = each_axis(|i| {
         let width = 2.0 * (all.high[i] - all.low[i]);
-        f32::from(STEPS - 1) / width.max(f32::MIN_POSITIVE)
+        f32::from(CURVE_STEPS - 1) / width.max(f32::MIN_POSITIVE)
     });
     spend(triangles.len());
     let number = |b: &Bounds| {
@@ -127,7 +127,7 @@ pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
     reason = "a step along the curve, clamped"
 )]
 fn along_curve(step: f32) -> u32 {
-    (step as u32).min(u32::from(STEPS) - 1)
+    (step as u32).min(u32::from(CURVE_STEPS) - 1)
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "the lower half is meant")]
@@ -151,7 +151,12 @@ impl BoxTree {
         let mut levels = Vec::new();
         let mut below = &bounds;
         while below.len() > 1 || levels.is_empty() {
-            levels.push(below.chunks(FAN).map(Bounds::around_all).collect());
+            levels.push(
+                below
+                    .chunks(CHILDREN_PER_NODE)
+                    .map(Bounds::around_all)
+                    .collect(),
+            );
             below = &levels[levels.len() - 1];
         }
         Self {
@@ -178,13 +183,14 @@ impl BoxTree {
 
     fn children(&self, node: Node) -> impl Iterator<Item = Node> + use<> {
         let level = node.level - 1;
-        let end = (FAN * (node.place + 1)).min(self.levels[level].len());
-        (FAN * node.place..end).map(move |place| Node { level, place })
+        let end = (CHILDREN_PER_NODE * (node.place + 1)).min(self.levels[level].len());
+        (CHILDREN_PER_NODE * node.place..end).map(move |place| Node { level, place })
     }
 
     /// The indices of a lowest node's boxes.
     fn leaves(&self, node: Node) -> std::ops::Range<usize> {
-        FAN * node.place..(FAN * (node.place + 1)).min(self.bounds.len())
+        CHILDREN_PER_NODE * node.place
+            ..(CHILDREN_PER_NODE * (node.place + 1)).min(self.bounds.len())
     }
 
     /// Calls `visit` with the indices of all boxes that meet another one.
@@ -227,8 +233,8 @@ impl BoxTree {
     /// Pairs of nodes with all pairs below them: about one for each task.
     fn starts(&self, other: &Self) -> Vec<[Node; 2]> {
         let mut open = vec![[self.root(), other.root()]];
-        while open.len() < TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
-            let mut next = Vec::with_capacity(FAN * open.len());
+        while open.len() < MIN_TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
+            let mut next = Vec::with_capacity(CHILDREN_PER_NODE * open.len());
             for pair in open {
                 self.descend(other, pair, &mut next);
             }
@@ -268,7 +274,7 @@ impl BoxTree {
             } else {
                 self.descend(other, [a, b], &mut open);
             }
-            if pairs.len() >= BLOCK || open.is_empty() {
+            if pairs.len() >= PAIRS_PER_BLOCK || open.is_empty() {
                 found.push(visit(&pairs)?);
                 pairs.clear();
             }

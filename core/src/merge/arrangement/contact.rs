@@ -222,11 +222,11 @@ fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     let axis = f.main_axis();
     let both = [f, g].map(|t| seen_along(t.triangle(), axis));
     let beside = [
-        Beside::of(&both[0], &both[1]),
-        Beside::of(&both[1], &both[0]),
+        CornerSides::of(&both[0], &both[1]),
+        CornerSides::of(&both[1], &both[0]),
     ];
     let mut found = Touching::new(sides);
-    if beside.iter().any(Beside::is_apart) {
+    if beside.iter().any(CornerSides::is_apart) {
         return found;
     }
     for of in [0, 1] {
@@ -243,17 +243,17 @@ fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
             }
         }
     }
-    found.overlap = !beside.iter().any(Beside::is_outside);
+    found.overlap = !beside.iter().any(CornerSides::is_outside);
     found
 }
 
 /// The turns from the edges of one triangle to the corners of another in its plane.
-struct Beside {
+struct CornerSides {
     /// By edge and corner: negative outside.
     turns: [[Sign; 3]; 3],
 }
 
-impl Beside {
+impl CornerSides {
     fn of(edges: &[[f64; 2]; 3], corners: &[[f64; 2]; 3]) -> Self {
         let turned = turn(*edges);
         let at = |k: usize, i: usize| match turned {
@@ -290,7 +290,7 @@ fn spots_along(
     of: usize,
     edge: usize,
     both: &[[[f64; 2]; 3]; 2],
-    beside: &[Beside; 2],
+    beside: &[CornerSides; 2],
 ) -> SmallVec<[Spot; 6]> {
     let (ours, theirs) = (&both[of], &both[1 - of]);
     let (in_theirs, in_ours) = (&beside[1 - of], &beside[of]);

@@ -3,8 +3,8 @@
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::looked::Looked;
-use super::PAIRS_FOR_EACH;
+use super::prepared::PreparedFace;
+use super::MAX_PAIRS_PER_FACE;
 use crate::arith::convert::{as_double, as_number};
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
@@ -20,10 +20,10 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
 /// The number of pairs tested together, by several threads if there are any.
-const BATCH: usize = 8 * CHUNK;
+const PAIRS_PER_BATCH: usize = 8 * CHUNK;
 
 /// The first batch of a search that may end early; the batch then doubles each time.
-const FIRST_BATCH: usize = 256;
+const PAIRS_IN_FIRST_BATCH: usize = 256;
 
 /// A mesh prepared for quick tests of its faces.
 pub(super) struct View<'a> {
@@ -86,7 +86,11 @@ impl<'a> View<'a> {
         let mut search = Search {
             view: self,
             until_overlap,
-            batch: if until_overlap { FIRST_BATCH } else { BATCH },
+            batch: if until_overlap {
+                PAIRS_IN_FIRST_BATCH
+            } else {
+                PAIRS_PER_BATCH
+            },
             waiting: Vec::new(),
             found: Vec::new(),
             overlap: false,
@@ -95,7 +99,7 @@ impl<'a> View<'a> {
         let swept = |number: u32| self.swept(face(number));
         let add = |a: u32, b: u32| search.add([face(a), face(b)]);
         let all = pairs_of_many(Part::of(boxes, self.shift), swept, add);
-        if all.and_then(|()| search.look()).is_none() {
+        if all.and_then(|()| search.test_waiting()).is_none() {
             return if search.overlap {
                 Pairs::Overlap
             } else {
@@ -110,9 +114,9 @@ impl<'a> View<'a> {
 
 impl View<'_> {
     /// A face prepared for quick tests.
-    fn of(&self, face: FaceId) -> Looked {
+    fn of(&self, face: FaceId) -> PreparedFace {
         let terrain = self.terrains[face.place()];
-        Looked::at(self.mesh, face, self.irregular, terrain)
+        PreparedFace::at(self.mesh, face, self.irregular, terrain)
     }
 
     /// The party of a face: faces of one terrain are not compared.
@@ -161,12 +165,12 @@ impl Search<'_> {
         if self.waiting.len() < self.batch {
             return Some(());
         }
-        self.batch = BATCH.min(2 * self.batch);
-        self.look()
+        self.batch = PAIRS_PER_BATCH.min(2 * self.batch);
+        self.test_waiting()
     }
 
     /// Tests the waiting pairs; `None` if the search ends.
-    fn look(&mut self) -> Option<()> {
+    fn test_waiting(&mut self) -> Option<()> {
         let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
         self.waiting.clear();
         let found: Vec<[FaceId; 2]> = found.into_iter().flatten().collect();
@@ -177,7 +181,7 @@ impl Search<'_> {
         }
         let ascending = found.iter().map(|[a, b]| [a.0.min(b.0), a.0.max(b.0)]);
         self.found.extend(ascending);
-        (self.found.len() <= PAIRS_FOR_EACH * self.view.mesh.faces.len()).then_some(())
+        (self.found.len() <= MAX_PAIRS_PER_FACE * self.view.mesh.faces.len()).then_some(())
     }
 }
 
@@ -197,32 +201,32 @@ fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
 
 /// The pairs that a quick test does not clear.
 fn unclear(view: &View, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
-    let mut looks = Looks {
+    let mut prepared = PreparedFaces {
         view,
         places: HashMap::default(),
-        looked: Vec::new(),
+        faces: Vec::new(),
     };
     let is_unclear = |pair: &&[FaceId; 2]| {
         poll();
-        let [a, b] = pair.map(|face| looks.at(face));
-        !looks.looked[a].is_clear_of(&looks.looked[b])
+        let [a, b] = pair.map(|face| prepared.at(face));
+        !prepared.faces[a].is_clear_of(&prepared.faces[b])
     };
     pairs.iter().filter(is_unclear).copied().collect()
 }
 
 /// The prepared faces: pairs found in succession have few faces.
-struct Looks<'a> {
+struct PreparedFaces<'a> {
     view: &'a View<'a>,
     places: HashMap<FaceId, usize>,
-    looked: Vec<Looked>,
+    faces: Vec<PreparedFace>,
 }
 
-impl Looks<'_> {
+impl PreparedFaces<'_> {
     /// The index of a face.
     fn at(&mut self, face: FaceId) -> usize {
         *self.places.entry(face).or_insert_with(|| {
-            self.looked.push(self.view.of(face));
-            self.looked.len() - 1
+            self.faces.push(self.view.of(face));
+            self.faces.len() - 1
         })
     }
 }
@@ -264,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_search_gives_up_where_most_faces_overlap_most_others() {
-        let boxes = vec![[[0; 3], [9; 3]]; 4 * PAIRS_FOR_EACH];
+        let boxes = vec![[[0; 3], [9; 3]]; 4 * MAX_PAIRS_PER_FACE];
         assert!(pairs_of(&boxes).is_none());
     }
 

@@ -6,17 +6,17 @@ use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::poll;
 
 /// The most cells along each axis: a row of them is one word.
-const MOST_CELLS: usize = 64;
+const MAX_CELLS_PER_AXIS: usize = 64;
 
 /// Fewer cells along each axis would hardly separate any faces.
-const FEWEST_CELLS: usize = 8;
+const MIN_CELLS_PER_AXIS: usize = 8;
 
 /// The most rows to mark for each face of both meshes: a row costs up to two hundred instructions, and a
 /// face excluded from the search for pairs saves a thousand.
-const ROWS: usize = 8;
+const MAX_ROWS_PER_FACE: usize = 8;
 
 /// A face that extends over more cells than this on all axes is clipped to its plane.
-const BLOCK: usize = 2;
+const MAX_CELLS_UNCLIPPED: usize = 2;
 
 /// The cells of a window that faces may reach into.
 #[derive(Debug)]
@@ -49,7 +49,7 @@ impl Occupancy {
         triangle: impl Fn(usize) -> Triangle,
         faces: usize,
     ) -> Self {
-        let mut budget = ROWS * faces;
+        let mut budget = MAX_ROWS_PER_FACE * faces;
         let mut made = Self::new(window, faces);
         for (i, bounds) in boxes.iter().enumerate() {
             let around = made.cells(bounds);
@@ -60,7 +60,7 @@ impl Occupancy {
                 return made;
             }
             budget -= rows;
-            let is_large = (0..3).all(|axis| count(axis) > BLOCK);
+            let is_large = (0..3).all(|axis| count(axis) > MAX_CELLS_UNCLIPPED);
             let plane = is_large.then(|| Plane::of(&triangle(i), window));
             made.mark(&around, plane.as_ref());
         }
@@ -69,11 +69,11 @@ impl Occupancy {
 
     /// A grid as fine as this many faces pay for: a large face may reach into all rows.
     fn new(window: &[Point; 2], faces: usize) -> Self {
-        let mut cells = MOST_CELLS;
-        while cells >= FEWEST_CELLS && 2 * cells * cells > faces {
+        let mut cells = MAX_CELLS_PER_AXIS;
+        while cells >= MIN_CELLS_PER_AXIS && 2 * cells * cells > faces {
             cells /= 2;
         }
-        let rows = if cells < FEWEST_CELLS {
+        let rows = if cells < MIN_CELLS_PER_AXIS {
             0
         } else {
             cells * cells
@@ -187,7 +187,7 @@ impl Plane {
 
 /// The bits of a range of cells.
 fn mask([first, last]: [usize; 2]) -> u64 {
-    (u64::MAX >> (MOST_CELLS - 1 - (last - first))) << first
+    (u64::MAX >> (MAX_CELLS_PER_AXIS - 1 - (last - first))) << first
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! Two unchanged meshes: which of their faces may meet.
 
 use super::candidates::{Candidates, Operand, Within};
-use super::kept::Kept;
+use super::keep_rule::KeepRule;
 use super::occupancy::Occupancy;
-use super::probe::probe;
+use super::sample::sample;
 use super::scene::Scene;
 use super::segments::{contacts_of, Contacts};
 use super::surfaces::Surfaces;
-use super::POOL;
+use super::MIN_FACES_FOR_POOL;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::Point;
@@ -41,7 +41,7 @@ pub fn arranged(
     let operands = operands(expression, solids, sources).ok_or(Declined::Operands)?;
     let window = window(operands.each_ref().map(|o| o.bounds)).ok_or(Declined::Apart)?;
     let faces: usize = operands.iter().map(|o| o.mesh.faces.len()).sum();
-    let worth = Worth::pool_if(faces >= POOL);
+    let worth = Worth::pool_if(faces >= MIN_FACES_FOR_POOL);
     let count = |found: &Result<Near, Declined>| found.as_ref().map_or(0, Near::len);
     let near = profile.timed("candidates", || near(&operands, &window, worth), count)?;
     let Near {
@@ -58,7 +58,7 @@ pub fn arranged(
         surfaces,
         near: within.map(|w| w.faces).into(),
         cell: solids[0].root().cell.join(&solids[1].root().cell),
-        kept: Kept::of(expression),
+        kept: KeepRule::of(expression),
         worth,
     };
     let root = profile.timed("faces", || scene.root(&found), leaf_len)?;
@@ -87,7 +87,7 @@ impl Near {
 
 fn near(operands: &[Operand; 2], window: &[Point; 2], worth: Worth) -> Result<Near, Declined> {
     let within = for_both(worth, |k| operands[k].within(window));
-    probe(operands, &within)?;
+    sample(operands, &within)?;
     let compared = within.iter().map(|w| w.faces.len()).sum();
     let occupied = for_both(worth, |k| {
         let triangle = |i: usize| operands[k].triangle(within[k].faces[i]);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::candidates::Operand;
 use super::faces::{Arrangement, CellNumbers, Face, Planes, Shared};
-use super::kept::Kept;
+use super::keep_rule::KeepRule;
 use super::labels::Labels;
 use super::segments::{Contacts, Cover, Edge, Point as CommonPoint, Segment};
 use super::surfaces::Surfaces;
@@ -21,7 +21,7 @@ use crate::mesh::tasks::{each, Worth};
 use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
 
 /// The number of items in a task for other threads.
-const TASK: usize = 32;
+const ITEMS_PER_TASK: usize = 32;
 
 /// Two meshes, or one compared with itself.
 #[derive(Debug)]
@@ -31,7 +31,7 @@ pub(super) struct Scene<'a> {
     pub(super) near: Vec<Vec<FaceId>>,
     /// The cell of the result.
     pub(super) cell: Cell,
-    pub(super) kept: Kept,
+    pub(super) kept: KeepRule,
     pub(super) worth: Worth,
 }
 
@@ -58,7 +58,7 @@ impl Fate {
 }
 
 /// What stays of an arranged face: all of it in one orientation, or a part in each.
-enum Left {
+enum Remainder {
     Whole(Option<Orientation>),
     Parts([Option<PartElement>; 2]),
 }
@@ -76,7 +76,7 @@ impl<'a> Scene<'a> {
             ..Deferred::default()
         };
         let operands = (0..self.surfaces.operands.len()).collect();
-        for left in each(self.worth, operands, |k| self.left(k, found, &shared)) {
+        for left in each(self.worth, operands, |k| self.remainder(k, found, &shared)) {
             let (groups, parts) = left?;
             leaf.groups.extend(groups);
             leaf.parts.extend(parts);
@@ -95,7 +95,7 @@ impl<'a> Scene<'a> {
     /// The points and planes of all contacts.
     fn shared<'b>(&'b self, found: &'b Contacts) -> Shared<'b> {
         let planes = self.planes(found);
-        let blocks = found.points.chunks(TASK).collect();
+        let blocks = found.points.chunks(ITEMS_PER_TASK).collect();
         let vertices = each(self.worth, blocks, |block: &[CommonPoint]| {
             let vertex = |point: &CommonPoint| Arc::new(self.vertex(point, &planes));
             block.iter().map(vertex).collect::<Vec<_>>()
@@ -113,7 +113,7 @@ impl<'a> Scene<'a> {
         let faces = self.arranged_faces(found);
         let planes = each(
             self.worth,
-            faces.chunks(TASK).collect(),
+            faces.chunks(ITEMS_PER_TASK).collect(),
             |block: &[u32]| {
                 let planes = block
                     .iter()
@@ -179,7 +179,7 @@ impl<'a> Scene<'a> {
         };
         let found = each(
             self.worth,
-            faces.chunks(TASK).collect(),
+            faces.chunks(ITEMS_PER_TASK).collect(),
             |block: &[u32]| {
                 let block = block.iter().map(|number| arranged(*number));
                 block.collect::<Result<Vec<_>, Declined>>()
@@ -190,7 +190,7 @@ impl<'a> Scene<'a> {
     }
 
     /// What stays of an operand: whole faces, and parts of divided ones.
-    fn left(
+    fn remainder(
         &self,
         operand: usize,
         found: &Contacts,
@@ -266,8 +266,8 @@ impl<'a> Scene<'a> {
             labels.join_corners(of.mesh.vertices_of(*id))?;
         }
         match self.kept {
-            Kept::Pair(_) => labels.note_beyond(),
-            Kept::Alone(_) => labels.note_widest(arranged, others())?,
+            KeepRule::Pair(_) => labels.note_beyond(),
+            KeepRule::Single(_) => labels.note_widest(arranged, others())?,
         }
         Ok(labels)
     }
@@ -312,7 +312,7 @@ impl<'a> Scene<'a> {
             .collect();
         all.sort_unstable_by_key(|(id, ..)| *id);
         let ids: Vec<FaceId> = all.iter().map(|(id, ..)| *id).collect();
-        let blocks = all.chunks_mut(TASK).collect();
+        let blocks = all.chunks_mut(ITEMS_PER_TASK).collect();
         let found = each(
             self.worth,
             blocks,
@@ -323,12 +323,12 @@ impl<'a> Scene<'a> {
                 left.collect::<Result<Vec<_>, Declined>>()
             },
         );
-        let found: Vec<Vec<Left>> = found.into_iter().collect::<Result<_, _>>()?;
+        let found: Vec<Vec<Remainder>> = found.into_iter().collect::<Result<_, _>>()?;
         let mut parts = [Vec::new(), Vec::new()];
         for (id, left) in ids.into_iter().zip(found.into_iter().flatten()) {
             match left {
-                Left::Whole(stays) => fates[id.place()] = Fate::of(stays, true),
-                Left::Parts(of_face) => {
+                Remainder::Whole(stays) => fates[id.place()] = Fate::of(stays, true),
+                Remainder::Parts(of_face) => {
                     for (all, part) in parts.iter_mut().zip(of_face) {
                         all.extend(part);
                     }
@@ -344,7 +344,7 @@ impl<'a> Scene<'a> {
         operand: usize,
         arrangement: &mut Arrangement,
         first: i32,
-    ) -> Result<Left, Declined> {
+    ) -> Result<Remainder, Declined> {
         let stays = |cell: &CellNumbers| self.kept.of_cell(operand, cell, first);
         let all = arrangement
             .cells
@@ -352,7 +352,7 @@ impl<'a> Scene<'a> {
             .map(stays)
             .collect::<Result<Vec<_>, Declined>>()?;
         if all.iter().all(|s| *s == all[0]) {
-            return Ok(Left::Whole(all[0]));
+            return Ok(Remainder::Whole(all[0]));
         }
         let id = self.surfaces.id(arrangement.face.number);
         let mut part = |orientation: Orientation| {
@@ -363,7 +363,7 @@ impl<'a> Scene<'a> {
                 PartElement { part, orientation }
             })
         };
-        Ok(Left::Parts(Orientation::BOTH.map(&mut part)))
+        Ok(Remainder::Parts(Orientation::BOTH.map(&mut part)))
     }
 }
 

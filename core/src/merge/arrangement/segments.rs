@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap as HashMap;
 use super::candidates::Candidates;
 use super::contact::{contact, Contact, End, Spot, Touching};
 use super::surfaces::Surfaces;
-use super::PAIRS_FOR_EACH;
+use super::MAX_PAIRS_PER_FACE;
 use crate::arith::convert::as_number;
 use crate::geometry::doubles::{Facing, Triangle};
 use crate::geometry::plane::Lattice;
@@ -18,7 +18,7 @@ use crate::mesh::handle::{FaceId, VertexId};
 use crate::mesh::tasks::{each, Worth};
 
 /// The number of pairs of one operand tested together.
-const BLOCK: usize = 1 << 9;
+const PAIRS_PER_BLOCK: usize = 1 << 9;
 
 /// An edge: the operand, and its end vertices there, the lower first.
 pub(super) type Edge = (usize, [VertexId; 2]);
@@ -92,12 +92,12 @@ pub(super) struct Contacts {
 }
 
 /// Two faces that meet.
-struct Met {
+struct MeetingFaces {
     pair: [u32; 2],
-    how: How,
+    kind: MeetingKind,
 }
 
-enum How {
+enum MeetingKind {
     Crossing([End; 2]),
     Touching(Box<Touching>),
 }
@@ -112,8 +112,9 @@ pub(super) fn contacts_of(
     worth: Worth,
 ) -> Result<Contacts, Declined> {
     let [first, second] = candidates;
-    let left = AtomicUsize::new(PAIRS_FOR_EACH * (first.triangles.len() + second.triangles.len()));
-    let visit = |block: &[[u32; 2]]| -> Result<Vec<Met>, Declined> {
+    let left =
+        AtomicUsize::new(MAX_PAIRS_PER_FACE * (first.triangles.len() + second.triangles.len()));
+    let visit = |block: &[[u32; 2]]| -> Result<Vec<MeetingFaces>, Declined> {
         let take = |left: usize| left.checked_sub(block.len());
         left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, take)
             .map_err(|_| Declined::Crowded)?;
@@ -126,7 +127,7 @@ pub(super) fn contacts_of(
 
 /// The contacts of the given pairs of faces of one operand.
 pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Worth) -> Contacts {
-    let blocks = pairs.chunks(BLOCK).collect();
+    let blocks = pairs.chunks(PAIRS_PER_BLOCK).collect();
     let operand = &surfaces.operands[0];
     let triangle = |face: u32| operand.triangle(FaceId(face));
     let met = each(worth, blocks, |block: &[[u32; 2]]| {
@@ -135,20 +136,24 @@ pub(super) fn contacts_among(surfaces: &Surfaces, pairs: &[[u32; 2]], worth: Wor
     Contacts::new(surfaces, met)
 }
 
-fn met([ours, theirs]: [&dyn Fn(u32) -> Triangle; 2], pairs: &[[u32; 2]], second: u32) -> Vec<Met> {
+fn met(
+    [ours, theirs]: [&dyn Fn(u32) -> Triangle; 2],
+    pairs: &[[u32; 2]],
+    second: u32,
+) -> Vec<MeetingFaces> {
     spend(pairs.len());
     let mut found = Vec::new();
     for run in pairs.chunk_by(|p, q| p[0] == q[0]) {
         let first = Facing::of(&ours(run[0][0]));
         for &[f, g] in run {
             let other = Facing::of(&theirs(g));
-            let how = match contact(&first, &other) {
+            let kind = match contact(&first, &other) {
                 Contact::Apart => continue,
-                Contact::Crossing(ends) => How::Crossing(ends),
-                Contact::Touching(touching) => How::Touching(touching),
+                Contact::Crossing(ends) => MeetingKind::Crossing(ends),
+                Contact::Touching(touching) => MeetingKind::Touching(touching),
             };
             let pair = [f, second + g];
-            found.push(Met { pair, how });
+            found.push(MeetingFaces { pair, kind });
         }
     }
     found
@@ -174,13 +179,13 @@ impl Contacts {
         self.segments.is_empty() && self.covers.is_empty()
     }
 
-    fn new(surfaces: &Surfaces, met: Vec<Vec<Met>>) -> Self {
+    fn new(surfaces: &Surfaces, met: Vec<Vec<MeetingFaces>>) -> Self {
         let mut contacts = Self::default();
-        for Met { pair, how } in met.into_iter().flatten() {
+        for MeetingFaces { pair, kind } in met.into_iter().flatten() {
             poll();
-            match how {
-                How::Crossing(ends) => contacts.cross(surfaces, pair, ends),
-                How::Touching(touching) => contacts.touch(surfaces, pair, &touching),
+            match kind {
+                MeetingKind::Crossing(ends) => contacts.cross(surfaces, pair, ends),
+                MeetingKind::Touching(touching) => contacts.touch(surfaces, pair, &touching),
             }
         }
         contacts.sort();

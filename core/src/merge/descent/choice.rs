@@ -9,57 +9,57 @@ use crate::merge::kernels::general::MAX_OPERANDS;
 
 /// Lists that together hold at most this many elements are worked on by a leaf kernel, whatever
 /// their position: local trees cost the square, smaller cells cost halvings and cut faces.
-pub const LEAF: usize = 32;
+pub const MAX_ELEMENTS_PER_LEAF: usize = 32;
 
 /// States that together hold at most this many are tried without local trees: in larger leaves the
 /// next operation has more to do again, in smaller ones more faces are cut by walls.
-const GENERAL: usize = 64;
+const MAX_ELEMENTS_GENERAL: usize = 64;
 
 /// The same, where no state is an operation's result, and the next operation may never come.
 ///
 /// More are halved, to be shared among threads.
-const FRESH: usize = 1 << 13;
+const MAX_ELEMENTS_FRESH: usize = 1 << 13;
 
 /// The same, for results of groups of operands in one place: the only step that takes one of them
 /// apart is the one that combines it with the other. Where they were halved, walls that both have
 /// would meet in special ways in a larger cell, and each wall makes parts of faces.
-const GROUPS: usize = 1 << 13;
+const MAX_ELEMENTS_OF_GROUPS: usize = 1 << 13;
 
 /// States that together hold at most this many for each operand are worked on at once, if all faces
 /// are perpendicular to axes.
 ///
 /// Few operands are as a rule a step of a chain: the next one cuts the leaf up again.
-pub const ORTHOGONAL: usize = 32;
+pub const MAX_ORTHOGONAL_PER_OPERAND: usize = 32;
 
 /// More elements than this are halved even so, to be shared among threads.
-pub const CROWD: usize = 512;
+pub const MAX_ELEMENTS_ORTHOGONAL: usize = 512;
 
 /// Three halvings are one round of the axes.
-const ROUND: u32 = 3;
+const HALVINGS_PER_ROUND: u32 = 3;
 
 /// A round should leave at most so many eighths of the elements in a part.
 ///
 /// Of a surface it leaves a quarter, and half of what runs along a line. Layers thinner than the cell
 /// stay together: halved on, each is listed in ever more cells, before one is as small as they are thin.
-const MOST_EIGHTHS: usize = 5;
+const MAX_EIGHTHS_LEFT: usize = 5;
 
 /// Longer lists than this are halved on, stuck or not: the kernel's memory grows with their square, to
 /// a gigabyte for two fans of needles around one corner.
 ///
 /// Of many needles near a line nearly all run through each of the small cells along it, so halving them
 /// on costs far more than the kernel.
-pub const STUCK: usize = 1 << 14;
+pub const MAX_ELEMENTS_STUCK: usize = 1 << 14;
 
-/// A kernel that refused a cell is asked again when one in so many elements is left: from `FRESH`
-/// down to `LEAF` at most three times in vain.
-const RETRY: usize = 8;
+/// A kernel that refused a cell is asked again when one in so many elements is left: from `MAX_ELEMENTS_FRESH`
+/// down to `MAX_ELEMENTS_PER_LEAF` at most three times in vain.
+const RETRIED_IF_ONE_IN: usize = 8;
 
 /// As few operands as this can be evaluated in groups, where no kernel takes all of them.
-pub const GROUPED: usize = 3;
+pub const MIN_OPERANDS_GROUPED: usize = 3;
 
 /// A group of so few operands is evaluated at once: each partial result is a boundary to be cut
 /// again, and of more operands most of what crosses lies inside of others.
-pub const TOGETHER: usize = 8;
+pub const MAX_OPERANDS_AT_ONCE: usize = 8;
 
 /// Operands in one place from which groups are evaluated before a kernel is asked: what is left
 /// of a group's boundaries is less than all of them, and all of them cross each other.
@@ -76,7 +76,7 @@ pub struct Round {
     /// True if operands are results of groups that the kernel did not refuse yet.
     groups: bool,
     /// True if the other half of the cell that was halved last is empty.
-    alone: bool,
+    empty_sibling: bool,
 }
 
 impl Round {
@@ -87,7 +87,7 @@ impl Round {
         stuck: false,
         refused: usize::MAX,
         groups: false,
-        alone: false,
+        empty_sibling: false,
     };
 
     /// The same, where operands are results of groups that were in one place.
@@ -99,18 +99,18 @@ impl Round {
     /// After a halving of a cell with so many elements that may separate them.
     #[must_use]
     pub fn next(self, total: usize) -> Self {
-        if self.depth + 1 < ROUND {
+        if self.depth + 1 < HALVINGS_PER_ROUND {
             return Self {
                 depth: self.depth + 1,
-                alone: false,
+                empty_sibling: false,
                 ..self
             };
         }
         Self {
             depth: 0,
             start: total,
-            stuck: total * 8 > self.start * MOST_EIGHTHS,
-            alone: false,
+            stuck: total * 8 > self.start * MAX_EIGHTHS_LEFT,
+            empty_sibling: false,
             ..self
         }
     }
@@ -118,21 +118,21 @@ impl Round {
     /// After a halving of a cell with so many elements that only cuts off what is empty: it tells
     /// nothing about how the rest separates, if that is small.
     #[must_use]
-    pub fn next_alone(self, cell: &Cell, extent: i64, total: usize) -> Self {
+    pub fn next_with_empty_sibling(self, cell: &Cell, extent: i64, total: usize) -> Self {
         let round = if fills(extent, cell) {
             self.next(total)
         } else {
             self
         };
         Self {
-            alone: true,
+            empty_sibling: true,
             ..round
         }
     }
 
     /// Return whether the other half of the cell that was halved last is empty.
-    pub fn is_alone(&self) -> bool {
-        self.alone
+    pub fn has_empty_sibling(&self) -> bool {
+        self.empty_sibling
     }
 
     /// Return whether the last three halvings left most elements in one part.
@@ -145,7 +145,7 @@ impl Round {
     pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
         let (mut cell, mut round) = (cell, self);
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
-            round = round.next_alone(&cell, extent, total);
+            round = round.next_with_empty_sibling(&cell, extent, total);
             let lower = cell.half(cut, Half::Minus);
             cell = if lower.holds(inner) {
                 lower
@@ -156,13 +156,19 @@ impl Round {
                 break;
             }
         }
-        let alone = false;
-        (cell, Self { alone, ..round })
+        let empty_sibling = false;
+        (
+            cell,
+            Self {
+                empty_sibling,
+                ..round
+            },
+        )
     }
 
     /// The kernel for general position refused so many elements.
     pub fn refused(&mut self, total: usize) {
-        if self.groups && total > GENERAL {
+        if self.groups && total > MAX_ELEMENTS_GENERAL {
             self.groups = false;
         } else {
             self.refused = total;
@@ -181,16 +187,16 @@ impl Round {
 
     /// Return whether a cell of so many elements is for the kernel for general position.
     pub fn suits_general_position(&self, states: &States, total: usize) -> bool {
-        if states.len() > MAX_OPERANDS || total > self.refused / RETRY {
+        if states.len() > MAX_OPERANDS || total > self.refused / RETRIED_IF_ONE_IN {
             return false;
         }
         if states.iter().all(|s| s.1.is_given()) {
-            return total <= FRESH;
+            return total <= MAX_ELEMENTS_FRESH;
         }
         if self.groups {
-            return total <= GROUPS && states.iter().all(|s| s.1.is_undivided());
+            return total <= MAX_ELEMENTS_OF_GROUPS && states.iter().all(|s| s.1.is_undivided());
         }
-        total <= GENERAL && states.iter().all(|s| matches!(s.1, State::List(_)))
+        total <= MAX_ELEMENTS_GENERAL && states.iter().all(|s| matches!(s.1, State::List(_)))
     }
 }
 
@@ -226,7 +232,7 @@ pub fn is_overcrowded(cell: &Cell, states: &States) -> bool {
 /// Return whether operands are in one place: one of three pairs of them has boxes that overlap in
 /// the cell, as far as a sample shows.
 pub fn is_crowded(cell: &Cell, states: &States) -> bool {
-    if states.len() < GROUPED {
+    if states.len() < MIN_OPERANDS_GROUPED {
         return false;
     }
     let some = states.iter().step_by(states.len().div_ceil(MAX_OPERANDS));
@@ -273,7 +279,7 @@ mod tests {
 
     #[test]
     fn three_halvings_that_keep_most_elements_are_stuck() {
-        let after = |round: Round, total| (0..ROUND).fold(round, |r, _| r.next(total));
+        let after = |round: Round, total| (0..HALVINGS_PER_ROUND).fold(round, |r, _| r.next(total));
         let first = after(Round::START, 100);
         assert!(!first.stuck);
         assert!(after(first, 70).stuck);

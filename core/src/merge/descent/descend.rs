@@ -9,11 +9,14 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::choice::{extent, is_crowded, is_overcrowded, Round, CROWD, LEAF, ORTHOGONAL, STUCK};
+use super::choice::{
+    extent, is_crowded, is_overcrowded, Round, MAX_ELEMENTS_ORTHOGONAL, MAX_ELEMENTS_PER_LEAF,
+    MAX_ELEMENTS_STUCK, MAX_ORTHOGONAL_PER_OPERAND,
+};
 use super::counters::Counters;
 use super::join;
 use super::state::{find, has_constant, has_surface, nested, worth, State, States, BINS_FROM};
-use super::twins::{self, Firsts};
+use super::twins::{self, TwinTable};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::side::Half;
@@ -235,7 +238,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Operands that are equal in a cell, unless each must be examined.
-    fn twins(&self, found: impl FnOnce() -> Option<Firsts>) -> Option<Firsts> {
+    fn twins(&self, found: impl FnOnce() -> Option<TwinTable>) -> Option<TwinTable> {
         self.share.then(found).flatten()
     }
 
@@ -247,7 +250,7 @@ impl<'a> Descent<'a> {
         states: States,
         round: Round,
     ) -> Visited {
-        if let Some(inner) = nested(&cell, &states, round.is_alone()) {
+        if let Some(inner) = nested(&cell, &states, round.has_empty_sibling()) {
             return self.jump(cell, inner, expression, states, round);
         }
         let opening: usize = states.iter().map(|s| s.1.len_to_open(&cell)).sum();
@@ -257,13 +260,13 @@ impl<'a> Descent<'a> {
         let mut round = round;
         let stuck = round.is_stuck(&cell, &states, total);
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
-        let small = total <= LEAF || stuck && total <= STUCK;
+        let small = total <= MAX_ELEMENTS_PER_LEAF || stuck && total <= MAX_ELEMENTS_STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
             let solved = self.solved(cell, &expression, &states, total, &ALL)?;
             return Ok(solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"))?);
         };
         let flat = || states.iter().all(|s| s.1.is_orthogonal(self.sources));
-        if total <= (ORTHOGONAL * states.len()).min(CROWD)
+        if total <= (MAX_ORTHOGONAL_PER_OPERAND * states.len()).min(MAX_ELEMENTS_ORTHOGONAL)
             && flat()
             && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])?
         {
@@ -301,7 +304,7 @@ impl<'a> Descent<'a> {
         mut states: States,
         mut round: Round,
     ) -> Visited {
-        if let Some(extent) = extent(&cell, &states).filter(|_| round.is_alone()) {
+        if let Some(extent) = extent(&cell, &states).filter(|_| round.has_empty_sibling()) {
             let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
             (inner, round) = round.inward(cell, &inner, extent, total);
         }
@@ -391,7 +394,7 @@ impl<'a> Descent<'a> {
         };
         let round = remaining.map_or_else(
             || round.next(total),
-            |extent| round.next_alone(&cell, extent, total),
+            |extent| round.next_with_empty_sibling(&cell, extent, total),
         );
         let visit = |half: Half, states: States| {
             self.cell(cell.half(cut, half), Arc::clone(expression), states, round)

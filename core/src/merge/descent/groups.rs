@@ -4,7 +4,7 @@
 use std::sync::atomic::Ordering;
 use std::sync::Arc;
 
-use super::choice::{Round, TOGETHER};
+use super::choice::{Round, MAX_OPERANDS_AT_ONCE};
 use super::descend::{both_in_turn, Descent, Visited};
 use super::state::{worth, State, States};
 use crate::geometry::cell::Cell;
@@ -13,7 +13,7 @@ use crate::merge::expression::{Expression, Parted};
 use crate::tree::node::Branch;
 
 /// The most levels of groups: 2³² operands in halves, and as many levels of alternating operations.
-const DEEPEST: u32 = 64;
+const MAX_DEPTH: u32 = 64;
 
 impl Descent<'_> {
     /// The expression split in two, if results of operations need not be reduced.
@@ -57,7 +57,7 @@ impl Descent<'_> {
             let [left, right] = parted.halves;
             steps.push((right, last, parted.whole));
             let next = left.parted().filter(Parted::takes_one_by_one);
-            match next.filter(|_| first.len() > TOGETHER) {
+            match next.filter(|_| first.len() > MAX_OPERANDS_AT_ONCE) {
                 Some(next) => parted = next,
                 None => break left,
             }
@@ -95,8 +95,8 @@ impl Descent<'_> {
 
     /// The result of a group of operands in a cell.
     fn group(&self, cell: Cell, expression: &Expression, states: States, depth: u32) -> Visited {
-        if states.len() > TOGETHER
-            && depth < DEEPEST
+        if states.len() > MAX_OPERANDS_AT_ONCE
+            && depth < MAX_DEPTH
             && let Some(parted) = expression.parted()
         {
             return self.grouped(cell, parted, states, depth + 1);

@@ -17,7 +17,7 @@ use crate::tree::node::{Branch, Deferred, Group, Node};
 /// The most faces of two deferred leaves that are joined into one.
 ///
 /// Half the size of cells that kernels take, so that a joined leaf is not split again at once.
-pub const JOINED: usize = 16;
+pub const MAX_FACES_JOINED: usize = 16;
 
 /// The branch for a cell from the branches for its halves.
 ///
@@ -84,7 +84,7 @@ fn divided(cell: Cell, minus: Branch, plus: Branch, joined: Option<Node>) -> Bra
 /// One deferred leaf for both halves, if they are small and list only whole faces.
 fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Sources) -> Option<Node> {
     let (a, b) = (small_leaf(minus)?, small_leaf(plus)?);
-    if a.len() + b.len() > 2 * JOINED {
+    if a.len() + b.len() > 2 * MAX_FACES_JOINED {
         return None;
     }
     let mut faces = listed(minus, a);
@@ -95,7 +95,7 @@ fn joined(cell: &Cell, cut: Cut, minus: &Branch, plus: &Branch, sources: &Source
             None => faces.push(element),
         }
     }
-    if faces.len() > JOINED {
+    if faces.len() > MAX_FACES_JOINED {
         return None;
     }
     let halves = [
@@ -140,13 +140,13 @@ fn corner_of(branch: &Branch, leaf: &Deferred, cell: &Cell) -> i32 {
 ///
 /// An operand taken unchanged may have numbers above one where the leaf kernel says one: leaves that
 /// disagree across the cut must not be joined.
-fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
+fn change_along_edge(faces: &[ListedFace], cell: &Cell, cut: Cut) -> i32 {
     let segment = Segment {
         from: cell.corner(),
         axis: cut.axis,
         to: 2 * cut.at - 1,
     };
-    let across = |f: &Listed| match f.source.shape() {
+    let across = |f: &ListedFace| match f.source.shape() {
         Shape::Mesh(mesh) => triangle_change(&mesh.corners(f.face), &segment),
         Shape::HalfSpace(plane) => plane_change(plane, &segment),
     };
@@ -155,20 +155,22 @@ fn change_along_edge(faces: &[Listed], cell: &Cell, cut: Cut) -> i32 {
 
 fn small_leaf(branch: &Branch) -> Option<&Deferred> {
     match &*branch.node {
-        Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= JOINED => Some(leaf),
+        Node::Deferred(leaf) if leaf.parts.is_empty() && leaf.len() <= MAX_FACES_JOINED => {
+            Some(leaf)
+        }
         _ => None,
     }
 }
 
-struct Listed {
+struct ListedFace {
     touching: bool,
     source: Arc<Source>,
     orientation: Orientation,
     face: FaceId,
 }
 
-fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
-    let entry = |g: &Group, face: &FaceId| Listed {
+fn listed(branch: &Branch, leaf: &Deferred) -> Vec<ListedFace> {
+    let entry = |g: &Group, face: &FaceId| ListedFace {
         touching: g.touching,
         source: Arc::clone(&g.source),
         orientation: g.orientation.turned_if(branch.complement),
@@ -180,7 +182,7 @@ fn listed(branch: &Branch, leaf: &Deferred) -> Vec<Listed> {
         .collect()
 }
 
-impl Listed {
+impl ListedFace {
     fn same_as(&self, other: &Self) -> bool {
         self.face == other.face
             && self.orientation == other.orientation
@@ -229,7 +231,7 @@ enum Extent {
     Nothing,
 }
 
-fn grouped(faces: Vec<Listed>) -> Vec<Group> {
+fn grouped(faces: Vec<ListedFace>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for f in faces {
         poll();

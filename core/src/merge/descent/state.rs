@@ -15,18 +15,18 @@ use crate::tree::node::{Branch, Node};
 
 /// The least number of elements of a cell that is worth a task: a kernel takes some 20 µs for half as many,
 /// and a task costs less than one.
-const TASK: usize = 64;
+const MIN_ELEMENTS_PER_TASK: usize = 64;
 
 /// The least number of elements of a cell that is worth waking a pool, which takes some 50 µs: kernels
 /// alone take ten times as long.
-const POOL: usize = 256;
+const MIN_ELEMENTS_FOR_POOL: usize = 256;
 
 /// The worth of sharing the work in a cell with this many elements.
 pub const fn worth(elements: usize) -> Worth {
     match elements {
-        ..TASK => Worth::Nothing,
-        TASK..POOL => Worth::Task,
-        POOL.. => Worth::Pool,
+        ..MIN_ELEMENTS_PER_TASK => Worth::Nothing,
+        MIN_ELEMENTS_PER_TASK..MIN_ELEMENTS_FOR_POOL => Worth::Task,
+        MIN_ELEMENTS_FOR_POOL.. => Worth::Pool,
     }
 }
 
@@ -110,7 +110,7 @@ impl State {
             Self::Constant(_) => 0,
             Self::Tree(branch) => match &*branch.node {
                 Node::Deferred(leaf) => leaf.len(),
-                Node::Cut(_) => TASK,
+                Node::Cut(_) => MIN_ELEMENTS_PER_TASK,
                 Node::Leaf(_) => 0,
             },
             Self::List(list) => list.len(),

@@ -17,9 +17,9 @@ use crate::merge::residual::Twin;
 use crate::tree::node::Part;
 
 /// Operands with the twin of each, ascending.
-pub struct Firsts(Vec<(u32, Twin)>);
+pub struct TwinTable(Vec<(u32, Twin)>);
 
-impl Firsts {
+impl TwinTable {
     /// The twin of an operand; its own if it has no other.
     pub fn of(&self, operand: u32) -> Twin {
         let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
@@ -49,7 +49,7 @@ const MAX_SUBTREES_COMPARED: usize = 16;
 ///
 /// # Cost
 /// A look at each operand.
-pub fn of_one_node(states: &States) -> Option<Firsts> {
+pub fn of_one_node(states: &States) -> Option<TwinTable> {
     let is_tree = |s: &&(u32, State)| matches!(s.1, State::Tree(_));
     if !(2..=MAX_SUBTREES_COMPARED).contains(&states.iter().filter(is_tree).count()) {
         return None;
@@ -65,7 +65,7 @@ pub fn of_one_node(states: &States) -> Option<Firsts> {
         };
         (*number, itself(first))
     };
-    Firsts::found(states.iter().map(pair).collect())
+    TwinTable::found(states.iter().map(pair).collect())
 }
 
 /// The operands whose lists have the same elements and the same number at the cell's corner; `None` if all
@@ -73,20 +73,20 @@ pub fn of_one_node(states: &States) -> Option<Firsts> {
 ///
 /// # Cost
 /// A pass over lists of equal length, and a sort of equal ones.
-pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<Firsts> {
+pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<TwinTable> {
     let size = |listed: &Listed| (listed.list.len(), listed.list.corner);
     let mut sizes: SmallVec<[_; 8]> = operands.iter().map(size).collect();
     sizes.sort_unstable();
     if sizes.is_sorted_by(|a, b| a < b) {
         return None;
     }
-    let is_alone = |listed| {
+    let has_unique_size = |listed| {
         let next = sizes.partition_point(|other| *other < size(listed)) + 1;
         sizes.get(next) != Some(&size(listed))
     };
     let mut known: HashMap<_, &'a Listed<'a>> = HashMap::default();
     let mut first = |listed: &'a Listed<'a>| {
-        if is_alone(listed) {
+        if has_unique_size(listed) {
             return None;
         }
         let mark = mark(&listed.list, sources)?;
@@ -101,7 +101,7 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
     };
     let own = operands.iter().map(|listed| listed.number);
     let pair = |(number, listed)| (number, first(listed).unwrap_or_else(|| itself(number)));
-    Firsts::found(own.zip(operands).map(pair).collect())
+    TwinTable::found(own.zip(operands).map(pair).collect())
 }
 
 /// A hash that equal lists share, whatever the order of their elements; `None` if a face is not a triangle.

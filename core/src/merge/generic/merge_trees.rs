@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use super::split_tree::split_tree_watched;
-use super::trace::{Because, Decision, Joined, Root, Seen};
+use super::trace::{Decision, DecisionReason, Joined, MergeEvent, Root};
 use crate::error::{Error, Result};
 use crate::geometry::side::Half;
 use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
 use crate::merge::op::{Outcome, SetOp};
-use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
+use crate::tree::partition::{Cut, Facet, PartitionTree, SubHyperplane};
 use crate::tree::trace::Watcher;
 
 /// Combines two trees of one region by a set operation.
@@ -60,7 +60,7 @@ pub fn merge<S: Space>(
 ///
 /// # Errors
 /// As for [`merge`].
-pub fn merge_watched<S: Space, W: Watcher<Seen<S>>>(
+pub fn merge_watched<S: Space, W: Watcher<MergeEvent<S>>>(
     a: &PartitionTree<S>,
     b: &PartitionTree<S>,
     op: SetOp,
@@ -73,7 +73,7 @@ pub fn merge_watched<S: Space, W: Watcher<Seen<S>>>(
         match step {
             Step::Merge(a, b) => {
                 let found = decided(&a, &b, op);
-                watcher.tell(|| Seen::Pair {
+                watcher.notify(|| MergeEvent::Pair {
                     a: Root::of(&a),
                     b: Root::of(&b),
                     decision: found.as_ref().map_or(Decision::Divide, Decided::decision),
@@ -104,7 +104,7 @@ enum Step<S: Space> {
 struct Decided<'a, S: Space> {
     outcome: Outcome,
     operand: &'a PartitionTree<S>,
-    because: Because,
+    because: DecisionReason,
 }
 
 impl<S: Space> Decided<'_, S> {
@@ -114,7 +114,7 @@ impl<S: Space> Decided<'_, S> {
 
     fn decision(&self) -> Decision {
         let because = self.because;
-        let second = because == Because::FirstIsLeaf;
+        let second = because == DecisionReason::FirstIsLeaf;
         match self.outcome {
             Outcome::Leaf(label) => Decision::Leaf(label, because),
             Outcome::Operand if second => Decision::Second(because),
@@ -139,10 +139,14 @@ fn decided<'a, S: Space>(
         })
     };
     match (a, b) {
-        (_, PartitionTree::Leaf(label)) => by(op.with_second(*label), a, Because::SecondIsLeaf),
-        (PartitionTree::Leaf(label), _) => by(op.with_first(*label), b, Because::FirstIsLeaf),
-        _ if a.is_same(b) => by(op.with_itself(), a, Because::Same),
-        _ if a.is_complement(b) => by(op.with_complement(), a, Because::Complement),
+        (_, PartitionTree::Leaf(label)) => {
+            by(op.with_second(*label), a, DecisionReason::SecondIsLeaf)
+        }
+        (PartitionTree::Leaf(label), _) => {
+            by(op.with_first(*label), b, DecisionReason::FirstIsLeaf)
+        }
+        _ if a.is_same(b) => by(op.with_itself(), a, DecisionReason::Same),
+        _ if a.is_complement(b) => by(op.with_complement(), a, DecisionReason::Complement),
         (PartitionTree::Cut(cut), _) => Err(cut),
     }
 }
@@ -152,9 +156,9 @@ fn divide<S: Space>(
     cut: &Cut<S>,
     b: &PartitionTree<S>,
     steps: &mut Vec<Step<S>>,
-    watcher: &mut impl Watcher<Seen<S>>,
+    watcher: &mut impl Watcher<MergeEvent<S>>,
 ) -> Result<()> {
-    let halves = split_tree_watched(b, &cut.sheet().span, watcher)?;
+    let halves = split_tree_watched(b, &cut.sub_hyperplane().span, watcher)?;
     steps.push(Step::Join {
         node: cut.clone(),
         coplanar: halves.coplanar,
@@ -168,7 +172,7 @@ fn join<S: Space>(
     node: &Cut<S>,
     coplanar: Vec<Facet<S>>,
     done: &mut Vec<PartitionTree<S>>,
-    watcher: &mut impl Watcher<Seen<S>>,
+    watcher: &mut impl Watcher<MergeEvent<S>>,
 ) -> Result<()> {
     let (Some(plus), Some(minus)) = (done.pop(), done.pop()) else {
         return Err(Error::internal("merge joined a node before its subtrees"));
@@ -176,31 +180,34 @@ fn join<S: Space>(
     let tree = if coplanar.is_empty() {
         node.with_children(minus, plus)
     } else {
-        PartitionTree::cut(joined(node.sheet(), coplanar), minus, plus)
+        PartitionTree::cut(joined(node.sub_hyperplane(), coplanar), minus, plus)
     };
-    watcher.tell(|| seen_join(node, &tree));
+    watcher.notify(|| join_event(node, &tree));
     done.push(tree);
     Ok(())
 }
 
-fn seen_join<S: Space>(node: &Cut<S>, tree: &PartitionTree<S>) -> Seen<S> {
+fn join_event<S: Space>(node: &Cut<S>, tree: &PartitionTree<S>) -> MergeEvent<S> {
     let joined = match tree {
         PartitionTree::Leaf(label) => Joined::Collapsed(*label),
         PartitionTree::Cut(_) if tree.is_same(&node.clone().into()) => Joined::Shared,
         PartitionTree::Cut(_) => Joined::Rebuilt,
     };
-    Seen::Join {
-        sheet: Arc::clone(node.sheet()),
+    MergeEvent::Join {
+        sub_hyperplane: Arc::clone(node.sub_hyperplane()),
         joined,
     }
 }
 
-/// A sheet with more coplanar fragments.
-fn joined<S: Space>(sheet: &Sheet<S>, coplanar: Vec<Facet<S>>) -> Arc<Sheet<S>> {
-    let mut facets = sheet.facets.clone();
+/// A sub-hyperplane with more coplanar fragments.
+fn joined<S: Space>(
+    sub_hyperplane: &SubHyperplane<S>,
+    coplanar: Vec<Facet<S>>,
+) -> Arc<SubHyperplane<S>> {
+    let mut facets = sub_hyperplane.facets.clone();
     facets.extend(coplanar);
-    Arc::new(Sheet {
-        span: sheet.span.clone(),
+    Arc::new(SubHyperplane {
+        span: sub_hyperplane.span.clone(),
         facets,
     })
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::split_tree::split_tree;
 use crate::error::Result;
 use crate::geometry::spaces::space::Space;
-use crate::tree::partition::{PartitionTree, Sheet};
+use crate::tree::partition::{PartitionTree, SubHyperplane};
 
 /// The same set as a tree whose root is cut by the hyperplane of `span`.
 ///
@@ -23,6 +23,10 @@ pub fn partition_tree<S: Space>(
 ) -> Result<PartitionTree<S>> {
     let halves = split_tree(tree, &span)?;
     let facets = halves.coplanar;
-    let sheet = Arc::new(Sheet { span, facets });
-    Ok(PartitionTree::cut(sheet, halves.minus, halves.plus))
+    let sub_hyperplane = Arc::new(SubHyperplane { span, facets });
+    Ok(PartitionTree::cut(
+        sub_hyperplane,
+        halves.minus,
+        halves.plus,
+    ))
 }

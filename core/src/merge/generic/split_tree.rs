@@ -10,12 +10,12 @@
 use std::sync::Arc;
 
 use super::case::SplitCase;
-use super::trace::{Root, Seen};
+use super::trace::{MergeEvent, Root};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
 use crate::geometry::spaces::space::Space;
 use crate::interrupt::poll;
-use crate::tree::partition::{Cut, Facet, PartitionTree, Sheet};
+use crate::tree::partition::{Cut, Facet, PartitionTree, SubHyperplane};
 use crate::tree::trace::Watcher;
 
 /// A tree's parts on the two sides of a hyperplane.
@@ -44,8 +44,8 @@ enum Case<S: Space> {
     Crossing {
         /// P on the minus and plus sides of the node's cut.
         parts: [S::Fragment; 2],
-        /// The node's sheet on the minus and plus sides of H.
-        sheets: [Arc<Sheet<S>>; 2],
+        /// The node's sub-hyperplane on the minus and plus sides of H.
+        sub_hyperplanes: [Arc<SubHyperplane<S>>; 2],
     },
 }
 
@@ -73,9 +73,11 @@ impl<S: Space> Case<S> {
         }
     }
 
-    fn sheets(&self) -> Option<[Arc<Sheet<S>>; 2]> {
+    fn sub_hyperplanes(&self) -> Option<[Arc<SubHyperplane<S>>; 2]> {
         match self {
-            Self::Crossing { sheets, .. } => Some(sheets.clone()),
+            Self::Crossing {
+                sub_hyperplanes, ..
+            } => Some(sub_hyperplanes.clone()),
             _ => None,
         }
     }
@@ -102,7 +104,7 @@ pub fn split_tree<S: Space>(tree: &PartitionTree<S>, span: &S::Fragment) -> Resu
 ///
 /// # Errors
 /// As for [`split_tree`].
-pub fn split_tree_watched<S: Space, W: Watcher<Seen<S>>>(
+pub fn split_tree_watched<S: Space, W: Watcher<MergeEvent<S>>>(
     tree: &PartitionTree<S>,
     span: &S::Fragment,
     watcher: &mut W,
@@ -138,11 +140,13 @@ enum Step<S: Space> {
         deep: Half,
         home: Half,
     },
-    /// Join the halves of a node's subtrees under the halves of its sheet.
-    Crossing { sheets: [Arc<Sheet<S>>; 2] },
+    /// Join the halves of a node's subtrees under the halves of its sub-hyperplane.
+    Crossing {
+        sub_hyperplanes: [Arc<SubHyperplane<S>>; 2],
+    },
 }
 
-impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
+impl<'a, S: Space, W: Watcher<MergeEvent<S>>> Splitter<'a, S, W> {
     fn new(watcher: &'a mut W) -> Self {
         Self {
             steps: Vec::new(),
@@ -156,7 +160,7 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
         match step {
             Step::Split(PartitionTree::Leaf(label), _) => {
                 let leaf = PartitionTree::Leaf(label);
-                self.watcher.tell(|| Seen::Split {
+                self.watcher.notify(|| MergeEvent::Split {
                     root: Root::Leaf(label),
                     case: SplitCase::Leaf,
                     parts: None,
@@ -166,16 +170,16 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
             }
             Step::Split(PartitionTree::Cut(node), span) => self.split(node, span),
             Step::OneSided { node, deep, home } => self.rebuild(&node, deep, home),
-            Step::Crossing { sheets } => self.join(sheets),
+            Step::Crossing { sub_hyperplanes } => self.join(sub_hyperplanes),
         }
     }
 
     fn split(&mut self, node: Cut<S>, span: S::Fragment) -> Result<()> {
         let case = case_of(&node, &span)?;
-        self.watcher.tell(|| Seen::Split {
-            root: Root::Cut(Arc::clone(node.sheet())),
+        self.watcher.notify(|| MergeEvent::Split {
+            root: Root::Cut(Arc::clone(node.sub_hyperplane())),
             case: case.name(),
-            parts: case.sheets(),
+            parts: case.sub_hyperplanes(),
         });
         match case {
             Case::Same => self.open(&node, [Half::Minus, Half::Plus]),
@@ -185,9 +189,12 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
                 self.steps.push(Step::OneSided { node, deep, home });
                 self.steps.push(Step::Split(child, span));
             }
-            Case::Crossing { parts, sheets } => {
+            Case::Crossing {
+                parts,
+                sub_hyperplanes,
+            } => {
                 let [inner, outer] = parts;
-                self.steps.push(Step::Crossing { sheets });
+                self.steps.push(Step::Crossing { sub_hyperplanes });
                 let minus = Step::Split(node.child(Half::Minus), inner);
                 let plus = Step::Split(node.child(Half::Plus), outer);
                 self.steps.extend([plus, minus]);
@@ -199,7 +206,8 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
     /// The coplanar cases: the subtrees are the halves.
     fn open(&mut self, node: &Cut<S>, halves: [Half; 2]) {
         let [minus, plus] = halves.map(|half| node.child(half));
-        self.coplanar.extend_from_slice(&node.sheet().facets);
+        self.coplanar
+            .extend_from_slice(&node.sub_hyperplane().facets);
         self.push(minus, plus);
     }
 
@@ -214,7 +222,7 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
     }
 
     /// The crossing case: each half has a node.
-    fn join(&mut self, [inner, outer]: [Arc<Sheet<S>>; 2]) -> Result<()> {
+    fn join(&mut self, [inner, outer]: [Arc<SubHyperplane<S>>; 2]) -> Result<()> {
         let (plus_minus, plus_plus) = self.pop()?;
         let (minus_minus, minus_plus) = self.pop()?;
         let minus = PartitionTree::cut(inner, minus_minus, plus_minus);
@@ -224,7 +232,7 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
     }
 
     fn push(&mut self, minus: PartitionTree<S>, plus: PartitionTree<S>) {
-        self.watcher.tell(|| Seen::Halves {
+        self.watcher.notify(|| MergeEvent::Halves {
             roots: [Root::of(&minus), Root::of(&plus)],
         });
         self.done.push((minus, plus));
@@ -239,9 +247,9 @@ impl<'a, S: Space, W: Watcher<Seen<S>>> Splitter<'a, S, W> {
 /// The case for a node and the splitting hyperplane's part in its region.
 fn case_of<S: Space>(node: &Cut<S>, span: &S::Fragment) -> Result<Case<S>> {
     let (own, cut) = (node.hyperplane(), S::hyperplane(span));
-    let sheet = node.sheet();
+    let sub_hyperplane = node.sub_hyperplane();
     let one_sided = |deep, home| Ok(Case::OneSided { deep, home });
-    match (S::split(span, own), S::split(&sheet.span, cut)) {
+    match (S::split(span, own), S::split(&sub_hyperplane.span, cut)) {
         (Split::Coplanar(Orientation::Same), _) => Ok(Case::Same),
         (Split::Coplanar(Orientation::Opposite), _) => Ok(Case::Opposite),
         (Split::Minus, Split::Minus) => one_sided(Half::Minus, Half::Minus),
@@ -255,9 +263,12 @@ fn case_of<S: Space>(node: &Cut<S>, span: &S::Fragment) -> Result<Case<S>> {
                 plus: outer,
             },
         ) => {
-            let sheets = sheet.parted(cut, inner, outer).map(Arc::new);
+            let sub_hyperplanes = sub_hyperplane.parted(cut, inner, outer).map(Arc::new);
             let parts = [minus, plus];
-            Ok(Case::Crossing { parts, sheets })
+            Ok(Case::Crossing {
+                parts,
+                sub_hyperplanes,
+            })
         }
         _ => Err(Error::internal(
             "one of two crossing sub-hyperplanes does not cross the other",

@@ -1,6 +1,6 @@
 //! The steps of splitting and merging trees, node by node.
 //!
-//! The algorithms report shared nodes ([`Seen`]); a [`Journal`] numbers the nodes of both operands in
+//! The algorithms report shared nodes ([`MergeEvent`]); a [`Journal`] numbers the nodes of both operands in
 //! preorder and keeps plain records ([`MergeStep`]). With the operands as lists of numbers and labels, the
 //! records reproduce the result without any geometry.
 
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::case::SplitCase;
 use crate::geometry::spaces::space::Space;
 use crate::mesh::handle::NodeId;
-use crate::tree::partition::{Label, PartitionTree, Sheet};
+use crate::tree::partition::{Label, PartitionTree, SubHyperplane};
 use crate::tree::trace::Watcher;
 
 /// A tree's root: a leaf, or the contents of its cut.
@@ -20,22 +20,22 @@ use crate::tree::trace::Watcher;
 pub enum Root<S: Space> {
     /// An undivided region.
     Leaf(Label),
-    /// A divided region; complements have the same sheets.
-    Cut(Arc<Sheet<S>>),
+    /// A divided region; complements have the same sub-hyperplanes.
+    Cut(Arc<SubHyperplane<S>>),
 }
 
 impl<S: Space> Root<S> {
     pub(super) fn of(tree: &PartitionTree<S>) -> Self {
         match tree {
             PartitionTree::Leaf(label) => Self::Leaf(*label),
-            PartitionTree::Cut(cut) => Self::Cut(Arc::clone(cut.sheet())),
+            PartitionTree::Cut(cut) => Self::Cut(Arc::clone(cut.sub_hyperplane())),
         }
     }
 }
 
 /// An event, in terms of shared nodes.
 #[derive(Clone, Debug)]
-pub enum Seen<S: Space> {
+pub enum MergeEvent<S: Space> {
     /// A pair of trees of one region is to be combined.
     Pair {
         /// The part of the first operand.
@@ -52,7 +52,7 @@ pub enum Seen<S: Space> {
         /// The case for it and the splitting hyperplane.
         case: SplitCase,
         /// The parts of the cut's contents on the minus and the plus side, if the two cross.
-        parts: Option<[Arc<Sheet<S>>; 2]>,
+        parts: Option<[Arc<SubHyperplane<S>>; 2]>,
     },
     /// A subtree has been split.
     Halves {
@@ -61,8 +61,8 @@ pub enum Seen<S: Space> {
     },
     /// The combined subtrees of a node of the first operand have been joined.
     Join {
-        /// The node's own sheet.
-        sheet: Arc<Sheet<S>>,
+        /// The node's own sub-hyperplane.
+        sub_hyperplane: Arc<SubHyperplane<S>>,
         /// What became of it in the result.
         joined: Joined,
     },
@@ -74,20 +74,20 @@ pub enum Decision {
     /// The second tree is split by the first one's root; the halves are combined.
     Divide,
     /// A leaf, and why.
-    Leaf(Label, Because),
+    Leaf(Label, DecisionReason),
     /// The first tree unchanged, shared.
-    First(Because),
+    First(DecisionReason),
     /// The complement of the first tree.
-    FirstComplement(Because),
+    FirstComplement(DecisionReason),
     /// The second tree unchanged, shared.
-    Second(Because),
+    Second(DecisionReason),
     /// The complement of the second tree.
-    SecondComplement(Because),
+    SecondComplement(DecisionReason),
 }
 
 /// The reason for a decision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Because {
+pub enum DecisionReason {
     /// The first tree is a leaf.
     FirstIsLeaf,
     /// The second tree is a leaf.
@@ -165,7 +165,7 @@ pub struct Journal<S: Space> {
     steps: Vec<MergeStep>,
 }
 
-type Numbers<S> = FxHashMap<*const Sheet<S>, (NodeId, Arc<Sheet<S>>)>;
+type Numbers<S> = FxHashMap<*const SubHyperplane<S>, (NodeId, Arc<SubHyperplane<S>>)>;
 
 impl<S: Space> Journal<S> {
     /// A journal of merging two trees, or of splitting the second one.
@@ -182,14 +182,14 @@ impl<S: Space> Journal<S> {
         self.steps
     }
 
-    fn note(&mut self, seen: &Seen<S>) -> MergeStep {
+    fn note(&mut self, seen: &MergeEvent<S>) -> MergeStep {
         match seen {
-            Seen::Pair { a, b, decision } => MergeStep::Pair {
+            MergeEvent::Pair { a, b, decision } => MergeStep::Pair {
                 a: self.first_name(a),
                 b: self.second_name(b),
                 decision: *decision,
             },
-            Seen::Split { root, case, parts } => {
+            MergeEvent::Split { root, case, parts } => {
                 let name = self.second_name(root);
                 if let (Name::Second(number), Some(parts)) = (name, parts) {
                     let part = |p: &Arc<_>| (Arc::as_ptr(p), (number, Arc::clone(p)));
@@ -200,12 +200,15 @@ impl<S: Space> Journal<S> {
                     case: *case,
                 }
             }
-            Seen::Halves { roots } => MergeStep::Halves {
+            MergeEvent::Halves { roots } => MergeStep::Halves {
                 minus: self.second_name(&roots[0]),
                 plus: self.second_name(&roots[1]),
             },
-            Seen::Join { sheet, joined } => MergeStep::Join {
-                node: self.first_name(&Root::Cut(Arc::clone(sheet))),
+            MergeEvent::Join {
+                sub_hyperplane,
+                joined,
+            } => MergeStep::Join {
+                node: self.first_name(&Root::Cut(Arc::clone(sub_hyperplane))),
                 joined: *joined,
             },
         }
@@ -220,10 +223,10 @@ impl<S: Space> Journal<S> {
     }
 }
 
-impl<S: Space> Watcher<Seen<S>> for Journal<S> {
+impl<S: Space> Watcher<MergeEvent<S>> for Journal<S> {
     const LISTENS: bool = true;
 
-    fn tell(&mut self, event: impl FnOnce() -> Seen<S>) {
+    fn notify(&mut self, event: impl FnOnce() -> MergeEvent<S>) {
         let step = self.note(&event());
         self.steps.push(step);
     }
@@ -232,10 +235,10 @@ impl<S: Space> Watcher<Seen<S>> for Journal<S> {
 fn name<S: Space>(root: &Root<S>, numbers: &Numbers<S>, make: impl Fn(NodeId) -> Name) -> Name {
     match root {
         Root::Leaf(label) => Name::Leaf(*label),
-        // All sheets that can occur are numbered; an unknown one would get a number without a node.
-        Root::Cut(sheet) => make(
+        // All sub-hyperplanes that can occur are numbered; an unknown one would get a number without a node.
+        Root::Cut(sub_hyperplane) => make(
             numbers
-                .get(&Arc::as_ptr(sheet))
+                .get(&Arc::as_ptr(sub_hyperplane))
                 .map_or(NodeId(u32::MAX), |e| e.0),
         ),
     }
@@ -247,9 +250,9 @@ fn numbered<S: Space>(tree: &PartitionTree<S>) -> Numbers<S> {
     let mut pending = vec![tree.clone()];
     while let Some(next) = pending.pop() {
         if let PartitionTree::Cut(cut) = next {
-            let sheet = Arc::clone(cut.sheet());
+            let sub_hyperplane = Arc::clone(cut.sub_hyperplane());
             let number = NodeId::of(numbers.len());
-            numbers.insert(Arc::as_ptr(&sheet), (number, sheet));
+            numbers.insert(Arc::as_ptr(&sub_hyperplane), (number, sub_hyperplane));
             pending.extend(cut.children());
         }
     }

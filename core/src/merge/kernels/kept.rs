@@ -23,11 +23,11 @@ use crate::tree::pieces::pieces;
 pub struct Kept {
     face: SourceFace,
     orientation: Orientation,
-    what: What,
+    kept_region: KeptRegion,
 }
 
 #[derive(Debug)]
-enum What {
+enum KeptRegion {
     /// All of a whole face inside the cell.
     Whole,
     /// All of a part inside the cell.
@@ -41,21 +41,21 @@ enum What {
 impl Kept {
     /// All of a face in the cell.
     pub fn whole(face: SourceFace, orientation: Orientation) -> Self {
-        let what = What::Whole;
+        let kept_region = KeptRegion::Whole;
         Self {
             face,
             orientation,
-            what,
+            kept_region,
         }
     }
 
     /// All of a part in the cell.
     pub fn part(face: SourceFace, orientation: Orientation, part: Arc<Part>) -> Self {
-        let what = What::Part(part);
+        let kept_region = KeptRegion::Part(part);
         Self {
             face,
             orientation,
-            what,
+            kept_region,
         }
     }
 
@@ -71,44 +71,44 @@ impl Kept {
         pieces: Vec<Polygon>,
         edges: Vec<BareEdge>,
     ) -> Self {
-        let what = What::Pieces(pieces, edges);
+        let kept_region = KeptRegion::Pieces(pieces, edges);
         Self {
             face,
             orientation,
-            what,
+            kept_region,
         }
     }
 
     /// The region inside an outline: some, but not all of a face in the cell. No two consecutive edges lie
     /// on one line.
     pub fn outlined(face: SourceFace, orientation: Orientation, edges: Vec<BareEdge>) -> Self {
-        let what = What::Outline(edges);
+        let kept_region = KeptRegion::Outline(edges);
         Self {
             face,
             orientation,
-            what,
+            kept_region,
         }
     }
 
     /// Edges that bound some of it, besides the convex pieces.
     fn edges(&self) -> &[BareEdge] {
-        match &self.what {
-            What::Pieces(_, edges) | What::Outline(edges) => edges,
-            What::Whole | What::Part(_) => &[],
+        match &self.kept_region {
+            KeptRegion::Pieces(_, edges) | KeptRegion::Outline(edges) => edges,
+            KeptRegion::Whole | KeptRegion::Part(_) => &[],
         }
     }
 
     /// The convex pieces inside the cell.
     fn polygons(&self, source: &Source, cell: &Cell) -> Cow<'_, [Polygon]> {
-        match &self.what {
-            What::Whole => source.clip(self.face.id, cell).into_iter().collect(),
-            What::Part(part) => {
+        match &self.kept_region {
+            KeptRegion::Whole => source.clip(self.face.id, cell).into_iter().collect(),
+            KeptRegion::Part(part) => {
                 let pieces = pieces(part);
                 let clipped = pieces.iter().filter_map(|p| p.clipped(cell));
                 clipped.collect()
             }
-            What::Pieces(pieces, _) => Cow::Borrowed(pieces),
-            What::Outline(_) => Cow::Borrowed(&[]),
+            KeptRegion::Pieces(pieces, _) => Cow::Borrowed(pieces),
+            KeptRegion::Outline(_) => Cow::Borrowed(&[]),
         }
     }
 }
@@ -138,13 +138,14 @@ pub fn assemble(
         let orientation = run[0].orientation;
         match run {
             [Kept {
-                what: What::Whole, ..
+                kept_region: KeptRegion::Whole,
+                ..
             }] => {
                 list_whole(&mut leaf.groups, source, face, orientation, touching);
                 continue;
             }
             [Kept {
-                what: What::Part(part),
+                kept_region: KeptRegion::Part(part),
                 ..
             }] => {
                 let part = Arc::clone(part);
@@ -152,7 +153,7 @@ pub fn assemble(
                 continue;
             }
             [Kept {
-                what: What::Outline(edges),
+                kept_region: KeptRegion::Outline(edges),
                 ..
             }] => {
                 let edges = std::mem::take(edges);

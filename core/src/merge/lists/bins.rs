@@ -23,16 +23,16 @@ use crate::mesh::triangles::TriangleMesh;
 use crate::tree::node::{Branch, Deferred, Group, Node};
 
 /// The least average number of faces in a cell.
-const DENSITY: usize = 4;
+const MIN_FACES_PER_CELL: usize = 4;
 
 /// The largest average number of entries of a face: above that a coarser level is better.
-const ROWS: usize = 2;
+const MAX_ENTRIES_PER_FACE: usize = 2;
 
 /// The number of faces sampled to estimate the number of entries.
-const SAMPLE: usize = 1024;
+const FACES_SAMPLED: usize = 1024;
 
 /// The least number of cells worth sorting into.
-const LEAST: usize = 64;
+const MIN_CELLS: usize = 64;
 
 /// The faces of a deferred leaf, by cells of a window.
 #[derive(Debug)]
@@ -83,13 +83,19 @@ impl Bins {
                 return Some(bins);
             }
             let (low, high) = bounds(&runs, &home.cell)?;
-            window = Window::around(&low, &high, window.size() + 1).filter(|w| w.len() >= LEAST)?;
+            window =
+                Window::around(&low, &high, window.size() + 1).filter(|w| w.len() >= MIN_CELLS)?;
         }
     }
 
     fn sorted(home: &Branch, runs: &[Run], window: Window, total: usize) -> Option<Self> {
         let sorted = Sorted::new(&window, runs, total);
-        let rows = rows(&window, runs, &sorted.spans, 2 * ROWS * total)?;
+        let rows = rows(
+            &window,
+            runs,
+            &sorted.spans,
+            2 * MAX_ENTRIES_PER_FACE * total,
+        )?;
         let (starts, entries) = distribute(&window, &sorted.cells, &rows);
         let corners = |element: u32| {
             let (run, face) = find(runs, element);
@@ -275,7 +281,7 @@ fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
 /// The finest window with enough faces per cell and few enough entries per face.
 fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
-    let step = total.div_ceil(SAMPLE);
+    let step = total.div_ceil(FACES_SAMPLED);
     let sample: Vec<(Lattice, Lattice)> = (0..as_number(total))
         .step_by(step)
         .map(|element| find(runs, element))
@@ -284,9 +290,12 @@ fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
     let coarsest = home.size().into_iter().min().map_or(0, u32::from);
     (0..=coarsest)
         .filter_map(|size| Window::around(&low, &high, size))
-        .filter(|w| w.len() * DENSITY <= total)
-        .find(|w| sample.iter().map(|b| entry_count(w, b)).sum::<usize>() <= ROWS * sample.len())
-        .filter(|w| w.len() >= LEAST)
+        .filter(|w| w.len() * MIN_FACES_PER_CELL <= total)
+        .find(|w| {
+            sample.iter().map(|b| entry_count(w, b)).sum::<usize>()
+                <= MAX_ENTRIES_PER_FACE * sample.len()
+        })
+        .filter(|w| w.len() >= MIN_CELLS)
 }
 
 /// The number of cells in which a face with these bounds is entered.

@@ -9,7 +9,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
 
 /// The most cells along one axis: places in the window and just outside it fit into ten bits.
-const PLACES: i64 = 1022;
+const MAX_CELLS_PER_AXIS: i64 = 1022;
 
 /// Equal cells of the hierarchy, numbered from the lowest one.
 ///
@@ -62,13 +62,16 @@ impl Span {
 
 impl Window {
     /// The cells of extent 2^size that a lattice box meets; `None` if there are too many on an axis.
-    #[allow(clippy::cast_possible_truncation, reason = "not above PLACES")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "not above MAX_CELLS_PER_AXIS"
+    )]
     pub fn around(low: &Lattice, high: &Lattice, size: u32) -> Option<Self> {
         let first = low.map(|k| k >> size);
         let count = each_axis(|i| (high[i] >> size) - first[i] + 1);
         count
             .iter()
-            .all(|c| (1..=PLACES).contains(c))
+            .all(|c| (1..=MAX_CELLS_PER_AXIS).contains(c))
             .then(|| Self {
                 size,
                 first,

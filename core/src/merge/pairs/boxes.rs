@@ -14,7 +14,7 @@ const MAX_COMPARED: usize = 256;
 pub const MAX_COMPARED_UNSEPARATED: usize = 384;
 
 /// The number of pairs of boxes compared per unit of work.
-const PAIRS: usize = 16;
+const PAIRS_PER_UNIT: usize = 16;
 
 /// The number of boxes compared with one at a time.
 const LANES: usize = 8;
@@ -142,7 +142,7 @@ pub fn compare_all(
         let start = end;
         end += run.len();
         for one in &elements[start..end] {
-            spend(1 + (elements.len() - end) / PAIRS);
+            spend(1 + (elements.len() - end) / PAIRS_PER_UNIT);
             let mut goes_on = Some(());
             Lanes::each_overlapping(&lanes, end, one, |at| {
                 let other = &elements[at];
@@ -168,7 +168,7 @@ fn compare_in_order(
     let lanes = Lanes::of(&sorted);
     for (next, one) in (1..).zip(&sorted) {
         let reached = sorted[next..].partition_point(|e| e.low[axis] <= one.high[axis]);
-        spend(1 + reached / PAIRS);
+        spend(1 + reached / PAIRS_PER_UNIT);
         let mut goes_on = Some(());
         let reached = &lanes[..(next + reached).div_ceil(LANES)];
         Lanes::each_overlapping(reached, next, one, |at| {
@@ -199,7 +199,7 @@ fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
 pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &Boxed)) {
     let lanes = Lanes::of(second);
     for one in first {
-        spend(1 + second.len() / PAIRS);
+        spend(1 + second.len() / PAIRS_PER_UNIT);
         Lanes::each_overlapping(&lanes, 0, one, |at| {
             meet(one, &second[at]);
         });

@@ -15,17 +15,17 @@ use crate::interrupt::spend;
 const MAX_FRAGMENTS_COMPARED: usize = 64;
 
 /// The candidate places divide each axis into this many intervals.
-const PLACES: usize = 16;
+const INTERVALS_PER_AXIS: usize = 16;
 
 /// A division separates elements if the parts of the cell have less than this share of its pairs.
-const FEWER: f64 = 7.0 / 8.0;
+const MAX_SHARE_OF_PAIRS: f64 = 7.0 / 8.0;
 
 /// The number of consecutive divisions that may separate nothing, unless a part has at most half of the
 /// pairs. Near the corner of a fan, one axis leaves all needles on both sides, and another then separates
 /// them from walls.
 ///
 /// No division increases the number of pairs, so there are never more fragments than pairs.
-const PATIENCE: u32 = 2;
+const MAX_VAIN_DIVISIONS: u32 = 2;
 
 /// A crowd's elements, and the cells still to be divided.
 pub struct Crowd {
@@ -72,7 +72,7 @@ impl Crowd {
         let all = Fragments {
             elements: numbered.collect(),
             space: Space::around(boxed),
-            patience: PATIENCE,
+            patience: MAX_VAIN_DIVISIONS,
         };
         Self {
             corners,
@@ -153,12 +153,18 @@ impl Fragments {
     /// The patience for the parts below and above a place; `None` if none is left for dividing there.
     fn patience_after(&self, division: &Division) -> Option<[u32; 2]> {
         let before = self.pairs();
-        if division.left() <= FEWER * before {
-            return Some([PATIENCE; 2]);
+        if division.left() <= MAX_SHARE_OF_PAIRS * before {
+            return Some([MAX_VAIN_DIVISIONS; 2]);
         }
         let less = self.patience.checked_sub(1);
         let less = less.filter(|_| division.left() <= before)?;
-        let of_part = |own: f64| if 2.0 * own <= before { PATIENCE } else { less };
+        let of_part = |own: f64| {
+            if 2.0 * own <= before {
+                MAX_VAIN_DIVISIONS
+            } else {
+                less
+            }
+        };
         Some(division.pairs.map(of_part))
     }
 
@@ -183,18 +189,18 @@ impl Fragments {
     fn divisions(&self, axis: usize) -> impl Iterator<Item = Division> + use<> {
         let (low, high) = self.space.ends();
         let (low, length) = (low[axis], high[axis] - low[axis]);
-        let scale = as_double(PLACES) / f64::from(length);
+        let scale = as_double(INTERVALS_PER_AXIS) / f64::from(length);
         let first_from = |x: i32| as_place((f64::from(x - low) * scale).ceil());
         let (mut below, mut above) = (Tally::default(), Tally::default());
         for run in self.runs() {
             let ends = || run.iter().map(Boxed::ends);
             below.add(ends().map(|(low, _)| first_from(low[axis])));
-            above.add(ends().map(|(_, high)| PLACES - first_from(high[axis])));
+            above.add(ends().map(|(_, high)| INTERVALS_PER_AXIS - first_from(high[axis])));
         }
         let (below, above) = (below.pairs(), above.pairs());
-        (1..PLACES).filter_map(move |k| {
+        (1..INTERVALS_PER_AXIS).filter_map(move |k| {
             let at = low + as_coordinate(as_double(k) / scale);
-            let pairs = [below[k], above[PLACES - 1 - k]];
+            let pairs = [below[k], above[INTERVALS_PER_AXIS - 1 - k]];
             let is_inside = low < at && at < low + length;
             is_inside.then_some(Division { axis, at, pairs })
         })
@@ -205,15 +211,15 @@ impl Fragments {
 #[derive(Default)]
 struct Tally {
     /// The increase over the previous place.
-    more: [f64; PLACES + 1],
+    more: [f64; INTERVALS_PER_AXIS + 1],
     /// The increase of the sum of squares of the operands' numbers.
-    more_squares: [f64; PLACES + 1],
+    more_squares: [f64; INTERVALS_PER_AXIS + 1],
 }
 
 impl Tally {
     /// Adds an operand's elements, given the place where each begins.
     fn add(&mut self, places: impl Iterator<Item = usize>) {
-        let mut own = [0.0; PLACES + 1];
+        let mut own = [0.0; INTERVALS_PER_AXIS + 1];
         places.for_each(|place| own[place] += 1.0);
         let mut before = 0.0;
         for (k, more) in own.into_iter().enumerate() {
@@ -224,7 +230,7 @@ impl Tally {
     }
 
     /// The number of pairs of different operands up to each place.
-    fn pairs(&self) -> [f64; PLACES + 1] {
+    fn pairs(&self) -> [f64; INTERVALS_PER_AXIS + 1] {
         let (mut count, mut squares) = (0.0, 0.0);
         std::array::from_fn(|k| {
             count += self.more[k];
@@ -249,7 +255,7 @@ fn as_coordinate(x: f64) -> i32 {
     reason = "the cast saturates"
 )]
 fn as_place(x: f64) -> usize {
-    (x as usize).min(PLACES)
+    (x as usize).min(INTERVALS_PER_AXIS)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Lines to sweep along, and the extents of elements along them.
 
 use super::direction::{frame, unit, Span, SLACK};
-use super::view::{views, View, OFF};
+use super::view::{views, View, SLOPE_ERROR};
 use super::Swept;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
@@ -11,7 +11,7 @@ use crate::geometry::doubles::vector::{cross, dot};
 pub const SLANTED_LINES_FROM: usize = 512;
 
 /// Lines with a larger cosine are nearly parallel: their plane shows little.
-const PARALLEL: f64 = 0.8;
+const MAX_COSINE_OF_LINES: f64 = 0.8;
 
 /// A line, and the elements along it.
 pub struct Line {
@@ -33,7 +33,7 @@ impl Gauge {
     /// Return whether the plane of two lines shows more than one of them does.
     pub fn is_across(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < PARALLEL,
+            (Self::Along(a), Self::Along(b)) => dot(a, b).abs() < MAX_COSINE_OF_LINES,
             _ => self.keeps_straight(other),
         }
     }
@@ -60,7 +60,7 @@ impl Gauge {
     pub fn slack(&self, size: f64) -> f64 {
         match self {
             Self::Along(_) => size * SLACK,
-            Self::Seen(_) => OFF,
+            Self::Seen(_) => SLOPE_ERROR,
         }
     }
 }

@@ -15,10 +15,10 @@ use crate::interrupt::spend;
 use crate::mesh::tasks::{each, Worth};
 
 /// A sweep that compares more pairs, at about a nanosecond each, costs more than halving the cell.
-const CROWDED: f64 = 3e8;
+const MAX_PAIRS_SWEPT: f64 = 3e8;
 
 /// The number of pairs of spans compared per unit of work.
-const PAIRS: usize = 16;
+const PAIRS_PER_UNIT: usize = 16;
 
 /// Calls `meet` for all pairs of different operands whose extents overlap along every line, the lower index
 /// first; returns `None` if too many elements overlap along each line.
@@ -27,7 +27,7 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
     let sweeps = each(Worth::Task, parties.iter().collect(), |numbers| {
         Sweep::of(elements, numbers)
     });
-    if sweeps.iter().map(Sweep::cost).sum::<f64>() > CROWDED {
+    if sweeps.iter().map(Sweep::cost).sum::<f64>() > MAX_PAIRS_SWEPT {
         return None;
     }
     let found = each(Worth::Task, sweeps.iter().collect(), Sweep::run);
@@ -70,13 +70,13 @@ fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
 
 /// The elements along the lines on which they overlap least, by operand.
 struct Sweep {
-    operands: Vec<Swath>,
+    operands: Vec<SortedElements>,
     size: usize,
     crowding: f64,
 }
 
 /// An operand's elements, sorted along the line on which all overlap least.
-struct Swath {
+struct SortedElements {
     /// Extents along that line.
     first: Vec<Span>,
     /// Extents along the next best line.
@@ -107,7 +107,7 @@ impl Sweep {
         let rim = |i: &usize| rims(swept[*i].corners.as_ref(), &plane, size);
         let swath = |own: &[usize]| {
             let ordered = |line: &Line| own.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
-            Swath {
+            SortedElements {
                 first: ordered(&first),
                 second: ordered(&second),
                 others: lines.iter().map(ordered).collect(),
@@ -142,7 +142,7 @@ impl Sweep {
     }
 }
 
-impl Swath {
+impl SortedElements {
     /// Finds for each element those of another operand that begin after it, or also at the same place if
     /// `level` is set.
     fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
@@ -151,7 +151,7 @@ impl Swath {
             let before = |span: &Span| span[0] < *low || !level && span[0] <= *low;
             start += other.first[start..].partition_point(before);
             let end = start + other.first[start..].partition_point(|span| span[0] <= *high);
-            spend(1 + (end - start) / PAIRS);
+            spend(1 + (end - start) / PAIRS_PER_UNIT);
             let [low, high] = self.second[at];
             for (next, span) in (start..end).zip(&other.second[start..end]) {
                 if span[0] <= high && span[1] >= low && self.may_meet(at, other, next) {

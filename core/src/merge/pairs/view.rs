@@ -11,17 +11,17 @@ use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::{dot, less};
 
 /// An operand's elements are a fan if at least one in this many has the apex.
-const FAN: usize = 4;
+const FAN_IF_ONE_IN: usize = 4;
 
 /// A point is ahead if its depth is more than this share of the largest coordinate.
-const AHEAD: f64 = 1e-6;
+const MIN_DEPTH_AHEAD: f64 = 1e-6;
 
 /// A point is ahead if its slope is less than this.
-const STEEP: f64 = 16.0;
+const MAX_SLOPE_AHEAD: f64 = 16.0;
 
 /// The error of slopes of points ahead: coordinates and depths are off by less than `SLACK` times the
 /// largest coordinate.
-pub const OFF: f64 = (1.0 + STEEP) * SLACK / AHEAD;
+pub const SLOPE_ERROR: f64 = (1.0 + MAX_SLOPE_AHEAD) * SLACK / MIN_DEPTH_AHEAD;
 
 /// An eye point, a viewing direction, and a direction to measure slopes in.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +68,7 @@ fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
     let (most, count) = counts
         .into_iter()
         .max_by_key(|(bits, count)| (*count, *bits))?;
-    (count * FAN >= elements.len()).then(|| most.map(f64::from_bits))
+    (count * FAN_IF_ONE_IN >= elements.len()).then(|| most.map(f64::from_bits))
 }
 
 /// Return bits that are equal for equal places: coordinates are whole numbers, so that zero has one sign.
@@ -142,7 +142,7 @@ impl View {
         let toward = less(p, &self.eye);
         let depth = dot(&toward, &self.ahead);
         let slope = dot(&toward, &self.across) / depth;
-        (depth > AHEAD * self.size && slope.abs() < STEEP).then_some(slope)
+        (depth > MIN_DEPTH_AHEAD * self.size && slope.abs() < MAX_SLOPE_AHEAD).then_some(slope)
     }
 
     /// The least and greatest slope of each element, padded by their error; all slopes for elements that
@@ -155,7 +155,7 @@ impl View {
             let places = self.places(e.corners.as_ref()?)?;
             let least = places.iter().copied().fold(f64::INFINITY, f64::min);
             let most = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            Some([least - OFF, most + OFF])
+            Some([least - SLOPE_ERROR, most + SLOPE_ERROR])
         };
         let spans: Vec<Option<Span>> = elements.iter().map(span).collect();
         let known = || spans.iter().flatten();

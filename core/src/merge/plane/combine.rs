@@ -10,13 +10,13 @@ use crate::error::Result;
 use crate::merge::generic::merge_trees::merge;
 use crate::merge::op::SetOp;
 use crate::tree::partition::Label;
-use crate::tree::plane::{Boundary, PlaneSet, TREE};
+use crate::tree::plane::{Boundary, PlaneSet, SWEEPS_PER_TREE};
 
 /// Operands are unlike if their sizes differ by more than this factor.
-const UNLIKE: usize = 8;
+const MAX_SIZE_RATIO: usize = 8;
 
 /// A tree that grows to more than this many times its first size is rebuilt.
-const GROWTH: usize = 4;
+const MAX_GROWTH: usize = 4;
 
 /// The most nodes of a tree that is never rebuilt.
 const MAX_UNSHRUNK: usize = 64;
@@ -27,8 +27,9 @@ const MAX_UNSHRUNK: usize = 64;
 /// `Internal` for a defect.
 pub fn combined(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
     let larger = if a.size() < b.size() { b } else { a };
-    let unlike = UNLIKE * a.size().min(b.size()) < larger.size();
-    let paid = larger.known_tree().is_some() || larger.spent.swept > TREE * larger.size();
+    let unlike = MAX_SIZE_RATIO * a.size().min(b.size()) < larger.size();
+    let paid =
+        larger.known_tree().is_some() || larger.spent.swept > SWEEPS_PER_TREE * larger.size();
     if unlike && paid {
         return merged(a, b, op);
     }
@@ -63,7 +64,7 @@ fn merged(a: &PlaneSet, b: &PlaneSet, op: SetOp) -> Result<PlaneSet> {
     };
     let built = nodes(a).max(nodes(b));
     let mut set = PlaneSet::from(tree);
-    if set.size() > GROWTH * built + MAX_UNSHRUNK {
+    if set.size() > MAX_GROWTH * built + MAX_UNSHRUNK {
         return Ok(PlaneSet::from(Boundary::clone(set.boundary()?)));
     }
     set.spent.built = built;

@@ -28,7 +28,7 @@ pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
 
 /// Steps around a corner in doubles: two units in the last place are at most two steps below 2⁵³, and
 /// truncation is less than one.
-const SLACK: f64 = 4.0;
+const CORNER_SLACK: f64 = 4.0;
 
 /// The box around a boundary's corners, rounded outwards; `None` without corners.
 fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
@@ -38,8 +38,8 @@ fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
         (on_both(f64::min, low), on_both(f64::max, high))
     })?;
     Some([
-        low.map(|c| as_whole(c - SLACK)),
-        high.map(|c| as_whole(c + SLACK)),
+        low.map(|c| as_whole(c - CORNER_SLACK)),
+        high.map(|c| as_whole(c + CORNER_SLACK)),
     ])
 }
 

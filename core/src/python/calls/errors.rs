@@ -32,7 +32,7 @@ pub fn to_python(py: Python<'_>, error: &Error) -> PyErr {
 }
 
 /// The exception of a call; that of a defect names the call and what it was given, for a report.
-pub fn blamed<'py>(
+pub fn with_report<'py>(
     py: Python<'py>,
     error: PyErr,
     call: &str,

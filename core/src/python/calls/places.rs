@@ -25,7 +25,7 @@ mod linux {
     const MAX_THREADS_PLACED: usize = 8;
 
     /// The time for which processors count as free: a hundred times what it takes to ask.
-    const FRESH: Duration = Duration::from_millis(5);
+    const MAX_AGE: Duration = Duration::from_millis(5);
 
     /// The threads of a pool.
     pub struct Places {
@@ -59,7 +59,7 @@ mod linux {
             }
             let mut seen = self.seen.try_lock().ok()?;
             let allowed = sched_getaffinity(None).ok()?;
-            let fresh = seen.filter(|(when, _)| when.elapsed() < FRESH);
+            let fresh = seen.filter(|(when, _)| when.elapsed() < MAX_AGE);
             let (_, free) = *seen.insert(fresh.unwrap_or_else(|| {
                 let others = others_that_run(&self.threads);
                 let room = |n| n + self.threads.len() <= allowed.count() as usize;

@@ -11,7 +11,7 @@ use super::places::Places;
 use crate::error::{Error, ErrorKind, Result};
 
 /// The descent is at most 162 cells deep, three frames each; stolen work nests once more per level.
-const STACK: usize = 64 << 20;
+const STACK_BYTES: usize = 64 << 20;
 
 static DEFAULT_THREADS: AtomicUsize = AtomicUsize::new(0);
 
@@ -75,7 +75,7 @@ impl Pools {
 fn started(threads: usize) -> Result<Pool> {
     let built = ThreadPoolBuilder::new()
         .num_threads(threads)
-        .stack_size(STACK)
+        .stack_size(STACK_BYTES)
         .build();
     let threads = built.map_err(|e| {
         let text = format!("the system does not start the threads ({e}); ask for fewer threads");

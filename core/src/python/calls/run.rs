@@ -10,14 +10,14 @@ use super::errors::to_python;
 use super::pool::{pool, Pool};
 use crate::error::panics::caught;
 use crate::error::{Error, Result};
-use crate::interrupt::{Call, Means, Share, Task, ASK_EVERY};
+use crate::interrupt::{Call, CallerHooks, Share, Task, ASK_EVERY};
 
 /// Work on fewer elements than this begins on the caller's thread: passes over them are not shared,
 /// and what is worth more wakes the pool by itself.
-pub const SMALL: usize = 1 << 13;
+pub const MIN_ELEMENTS_FOR_POOL: usize = 1 << 13;
 
 /// The abilities of a caller's thread.
-const MEANS: Means = Means {
+const HOOKS: CallerHooks = CallerHooks {
     wants_to_stop: signal_raised,
     hand_over,
 };
@@ -58,9 +58,9 @@ pub fn run<T: Send>(
 ) -> PyResult<T> {
     RAISED.set(None);
     let call = Call::new();
-    let result = if size < SMALL {
+    let result = if size < MIN_ELEMENTS_FOR_POOL {
         let before = HELPERS.replace((threads, None));
-        let result = detached(py, || call.run_here(MEANS, work));
+        let result = detached(py, || call.run_here(HOOKS, work));
         HELPERS.set(before);
         result
     } else {

@@ -9,18 +9,18 @@ use crate::python::arrays::array;
 use crate::python::hyperplanes::Row;
 use crate::tree::fragments::{NodeCut, Policy, Sample};
 
-/// A caller's wish how to build, before the dimension is known.
+/// A caller's choice of how to build, before the dimension is known.
 #[derive(Clone, Debug)]
-pub enum Wish {
+pub enum BuildMethod {
     Policy(Policy, Option<usize>, i64),
     Lines(Sample),
     Given(Vec<NodeCut>),
 }
 
-/// A wish, and hyperplanes of the caller's own that come first.
+/// How to build, and hyperplanes of the caller's own that come first.
 #[derive(Clone, Debug)]
-pub struct Recipe {
-    pub wish: Wish,
+pub struct BuildOptions {
+    pub method: BuildMethod,
     pub own: Vec<Row>,
 }
 
@@ -67,7 +67,7 @@ pub fn rows<T: numpy::Element + Copy>(
 }
 
 /// The mark that stands for an axis in the row of a hyperplane that is the tree's own.
-const OWN: i64 = -2;
+const OWN_AXIS: i64 = -2;
 
 /// Cuts as rows: (-1, piece) for a pivot, (axis, coordinate) for an axis-parallel cut, (-2, place)
 /// for a hyperplane of the tree's own list.
@@ -82,7 +82,7 @@ pub fn cut_row(cut: NodeCut) -> [i64; 2] {
     match cut {
         NodeCut::Pivot(piece) => [-1, i64::from(piece)],
         NodeCut::Axis { axis, at } => [axis as i64, at],
-        NodeCut::Own(number) => [OWN, i64::from(number)],
+        NodeCut::Own(number) => [OWN_AXIS, i64::from(number)],
     }
 }
 
@@ -90,7 +90,7 @@ pub fn node_cuts(array: &PyReadonlyArray2<'_, i64>) -> Result<Vec<NodeCut>> {
     let wrong = |_| Error::new(ErrorKind::BadSnapshot, "a stored cut is not one");
     let cut = |row: [i64; 3]| match row {
         [-1, piece, _] => u32::try_from(piece).map(NodeCut::Pivot).map_err(wrong),
-        [OWN, number, _] => u32::try_from(number).map(NodeCut::Own).map_err(wrong),
+        [OWN_AXIS, number, _] => u32::try_from(number).map(NodeCut::Own).map_err(wrong),
         [axis, at, _] => {
             let axis = usize::try_from(axis).map_err(wrong)?;
             Ok(NodeCut::Axis { axis, at })

@@ -1,7 +1,7 @@
 //! The class `FragmentTree`: a partition tree over points, segments or polygons.
 
 mod convert;
-mod held;
+mod facet_tree;
 mod traces;
 
 use num_bigint::BigInt;
@@ -11,8 +11,10 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyType};
 
-use self::convert::{cut_rows, lenience_of, named_policy, node_cuts, padded, rows, Recipe, Wish};
-use self::held::{asked, built, sign, Inner};
+use self::convert::{
+    cut_rows, lenience_of, named_policy, node_cuts, padded, rows, BuildMethod, BuildOptions,
+};
+use self::facet_tree::{build_any, build_asking, sign, AnyFacetTree};
 use self::traces::{candidate_row, division_row, event_row, DivisionRow, EventRow};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::plane::Lattice;
@@ -22,7 +24,7 @@ use crate::mesh::grid::Pitch;
 use crate::mesh::handle::NodeId;
 use crate::python::arrays::array;
 use crate::python::calls::ending::attached;
-use crate::python::calls::errors::{blamed, to_python};
+use crate::python::calls::errors::{to_python, with_report};
 use crate::python::calls::run::run;
 use crate::python::hyperplanes::{FromRow, Row};
 use crate::query::path::{RayEvent, RayPath};
@@ -43,11 +45,11 @@ type FragmentArrays<'py> = (
 
 /// Runs the same code on the tree of whichever dimension it is.
 macro_rules! each {
-    ($inner:expr, $held:ident => $body:expr) => {
+    ($inner:expr, $facet_tree:ident => $body:expr) => {
         match $inner {
-            Inner::Line($held) => $body,
-            Inner::Plane($held) => $body,
-            Inner::Space($held) => $body,
+            AnyFacetTree::Line($facet_tree) => $body,
+            AnyFacetTree::Plane($facet_tree) => $body,
+            AnyFacetTree::Space($facet_tree) => $body,
         }
     };
 }
@@ -55,19 +57,19 @@ macro_rules! each {
 /// A partition tree over facets. See `_core.pyi`.
 #[pyclass(frozen, name = "FragmentTree", module = "bspcsg._core")]
 pub struct PyFragmentTree {
-    inner: Inner,
+    inner: AnyFacetTree,
     corners: Vec<Lattice>,
     offsets: Vec<i64>,
-    recipe: Recipe,
+    options: BuildOptions,
 }
 
 /// The same on the tree of whichever dimension it is, for what needs the dimension as a constant.
 macro_rules! each_cast {
-    ($inner:expr, $held:ident, $method:ident, $($argument:expr),*) => {
+    ($inner:expr, $facet_tree:ident, $method:ident, $($argument:expr),*) => {
         match $inner {
-            Inner::Line($held) => $held.$method::<1>($($argument),*),
-            Inner::Plane($held) => $held.$method::<2>($($argument),*),
-            Inner::Space($held) => $held.$method::<3>($($argument),*),
+            AnyFacetTree::Line($facet_tree) => $facet_tree.$method::<1>($($argument),*),
+            AnyFacetTree::Plane($facet_tree) => $facet_tree.$method::<2>($($argument),*),
+            AnyFacetTree::Space($facet_tree) => $facet_tree.$method::<3>($($argument),*),
         }
     };
 }
@@ -98,9 +100,9 @@ impl PyFragmentTree {
         own: Option<Vec<Row>>,
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
-        let wish = wish_of(policy, seed, sample, alpha, top).map_err(fail)?;
+        let method = method_of(policy, seed, sample, alpha, top).map_err(fail)?;
         let own = own.unwrap_or_default();
-        let recipe = Recipe { wish, own };
+        let options = BuildOptions { method, own };
         let pitch = pitch.map(Pitch::new).transpose().map_err(fail)?;
         let dimension = corners.as_array().ncols();
         let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
@@ -112,14 +114,14 @@ impl PyFragmentTree {
             };
             let lattice = snap_corners(dimension, &rows, pitch)?;
             let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
-            let inner = built(dimension, facets, pitch, &recipe)?;
+            let inner = build_any(dimension, facets, pitch, &options)?;
             Ok((inner, lattice))
         })?;
         Ok(Self {
             inner,
             corners,
             offsets,
-            recipe,
+            options,
         })
     }
 
@@ -149,9 +151,24 @@ impl PyFragmentTree {
             let lattice = snap_corners(dimension, &rows, pitch)?;
             let facets = facets(dimension, &lattice, &offsets, lenience_of(lenience))?;
             let inner = match dimension {
-                1 => Inner::Line(asked(facets, pitch, &own, ask(answer, slot, sample))?),
-                2 => Inner::Plane(asked(facets, pitch, &own, ask(answer, slot, sample))?),
-                _ => Inner::Space(asked(facets, pitch, &own, ask(answer, slot, sample))?),
+                1 => AnyFacetTree::Line(build_asking(
+                    facets,
+                    pitch,
+                    &own,
+                    ask(answer, slot, sample),
+                )?),
+                2 => AnyFacetTree::Plane(build_asking(
+                    facets,
+                    pitch,
+                    &own,
+                    ask(answer, slot, sample),
+                )?),
+                _ => AnyFacetTree::Space(build_asking(
+                    facets,
+                    pitch,
+                    &own,
+                    ask(answer, slot, sample),
+                )?),
             };
             Ok((inner, lattice))
         });
@@ -159,12 +176,12 @@ impl PyFragmentTree {
             return Err(error);
         }
         let (inner, corners) = made?;
-        let recipe = each!(&inner, held => held.recipe());
+        let options = each!(&inner, facet_tree => facet_tree.build_options());
         Ok(Self {
             inner,
             corners,
             offsets,
-            recipe,
+            options,
         })
     }
 
@@ -182,9 +199,9 @@ impl PyFragmentTree {
         lenience: (bool, bool),
     ) -> PyResult<Self> {
         let fail = |e: Error| to_python(py, &e);
-        let wish = wish_of(policy, seed, sample, alpha, 0).map_err(fail)?;
+        let method = method_of(policy, seed, sample, alpha, 0).map_err(fail)?;
         let own = Vec::new();
-        let recipe = Recipe { wish, own };
+        let options = BuildOptions { method, own };
         let dimension = self.dimension();
         let rows: Vec<[f64; 3]> = padded(&corners, 0.0);
         let pitch = Pitch::new(self.pitch()).map_err(fail)?;
@@ -196,35 +213,43 @@ impl PyFragmentTree {
             all_corners.extend(snap_corners(dimension, &rows, pitch)?);
             let facets = facets(dimension, &all_corners, &all_offsets, lenience_of(lenience))?;
             let inner = match &self.inner {
-                Inner::Line(held) => Inner::Line(held.grown(facets, &recipe)?),
-                Inner::Plane(held) => Inner::Plane(held.grown(facets, &recipe)?),
-                Inner::Space(held) => Inner::Space(held.grown(facets, &recipe)?),
+                AnyFacetTree::Line(facet_tree) => {
+                    AnyFacetTree::Line(facet_tree.grown(facets, &options)?)
+                }
+                AnyFacetTree::Plane(facet_tree) => {
+                    AnyFacetTree::Plane(facet_tree.grown(facets, &options)?)
+                }
+                AnyFacetTree::Space(facet_tree) => {
+                    AnyFacetTree::Space(facet_tree.grown(facets, &options)?)
+                }
             };
             Ok((inner, all_corners))
         })?;
-        let recipe = each!(&inner, held => held.recipe());
+        let options = each!(&inner, facet_tree => facet_tree.build_options());
         Ok(Self {
             inner,
             corners,
             offsets: all_offsets,
-            recipe,
+            options,
         })
     }
 
     /// Return the construction of the tree, node by node.
     fn construction(&self, py: Python<'_>) -> PyResult<Vec<DivisionRow>> {
-        let recipe = &self.recipe;
+        let options = &self.options;
         let divisions = self.run(
             py,
             self.corners.len(),
-            || each!(&self.inner, held => held.construction(recipe)),
+            || each!(&self.inner, facet_tree => facet_tree.construction(options)),
         )?;
         Ok(divisions.into_iter().map(division_row).collect())
     }
 
     /// The nodes that a point passes, with its side of each: −1, 0 or 1.
     fn path(&self, py: Python<'_>, point: [f64; 3]) -> PyResult<Vec<(u32, i8)>> {
-        self.run(py, 0, || Ok(each!(&self.inner, held => held.path(&point))))
+        self.run(py, 0, || {
+            Ok(each!(&self.inner, facet_tree => facet_tree.path(&point)))
+        })
     }
 
     /// The first facet on each ray, and what it cost.
@@ -235,8 +260,8 @@ impl PyFragmentTree {
         directions: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Paths<'py>> {
         let rays = rays_of(&origins, &directions);
-        let paths = self.run(py, rays.len() * CAST, || {
-            each_cast!(&self.inner, held, cast, &rays)
+        let paths = self.run(py, rays.len() * ELEMENTS_PER_RAY, || {
+            each_cast!(&self.inner, facet_tree, cast, &rays)
         })?;
         let count = |of: fn(&RayPath) -> u64| {
             PyArray1::from_vec(py, paths.iter().map(|p| of(p) as i64).collect())
@@ -263,15 +288,15 @@ impl PyFragmentTree {
         let [a, b, c] = origin;
         let [d, e, f] = direction;
         let ray = [a, b, c, d, e, f];
-        let path = self.run(py, CAST, || {
-            each_cast!(&self.inner, held, cast_one, &ray, &mut events)
+        let path = self.run(py, ELEMENTS_PER_RAY, || {
+            each_cast!(&self.inner, facet_tree, cast_one, &ray, &mut events)
         })?;
         Ok((path.hit, events.iter().map(event_row).collect()))
     }
 
     /// The hyperplanes that come from no facet: rows of normal and offset, in lattice steps.
     fn own(&self) -> Vec<Row> {
-        each!(&self.inner, held => held.recipe()).own
+        each!(&self.inner, facet_tree => facet_tree.build_options()).own
     }
 
     #[classmethod]
@@ -292,71 +317,77 @@ impl PyFragmentTree {
         let dimension = corners.as_array().ncols();
         let rows: Vec<Lattice> = padded(&corners, 0);
         let offsets = offsets.as_array().to_vec();
-        let wish = Wish::Given(node_cuts(&cuts).map_err(fail)?);
+        let method = BuildMethod::Given(node_cuts(&cuts).map_err(fail)?);
         let own = own.unwrap_or_default();
-        let recipe = Recipe { wish, own };
+        let options = BuildOptions { method, own };
         let inner = run(py, 0, rows.len(), || {
             check_reach(&rows)?;
             let facets = facets(dimension, &rows, &offsets, lenience_of(lenience))?;
-            built(dimension, facets, pitch, &recipe)
+            build_any(dimension, facets, pitch, &options)
         })?;
         Ok(Self {
             inner,
             corners: rows,
             offsets,
-            recipe,
+            options,
         })
     }
 
     /// The cuts of a tree over the same facets that cuts none of them.
     fn perfect_cuts<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<i64>>>> {
-        let found = self.run(py, 0, || each!(&self.inner, held => held.perfect()))?;
+        let found = self.run(
+            py,
+            0,
+            || each!(&self.inner, facet_tree => facet_tree.perfect()),
+        )?;
         found.map(|cuts| cut_rows(py, cuts.into_iter())).transpose()
     }
 
     #[getter]
     fn dimension(&self) -> usize {
         match self.inner {
-            Inner::Line(_) => 1,
-            Inner::Plane(_) => 2,
-            Inner::Space(_) => 3,
+            AnyFacetTree::Line(_) => 1,
+            AnyFacetTree::Plane(_) => 2,
+            AnyFacetTree::Space(_) => 3,
         }
     }
 
     #[getter]
     fn pitch(&self) -> i64 {
-        each!(&self.inner, held => held.pitch.exponent())
+        each!(&self.inner, facet_tree => facet_tree.pitch.exponent())
     }
 
     fn __len__(&self) -> usize {
-        each!(&self.inner, held => held.tree.nodes().len())
+        each!(&self.inner, facet_tree => facet_tree.tree.nodes().len())
     }
 
     fn nodes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);
-        let (normals, offsets) = each!(&self.inner, held => held.hyperplanes());
+        let (normals, offsets) = each!(&self.inner, facet_tree => facet_tree.hyperplanes());
         dict.set_item("normal", rows(py, normals, self.dimension())?)?;
         dict.set_item("offset", PyArray1::from_vec(py, offsets))?;
-        let links = each!(&self.inner, held => held.links());
+        let links = each!(&self.inner, facet_tree => facet_tree.links());
         for (name, list) in ["minus", "plus", "parent", "depth", "start", "end"]
             .iter()
             .zip(links)
         {
             dict.set_item(name, PyArray1::from_vec(py, list))?;
         }
-        let cuts = each!(&self.inner, held => held.cuts());
+        let cuts = each!(&self.inner, facet_tree => facet_tree.cuts());
         dict.set_item("cut", cut_rows(py, cuts.into_iter())?)?;
         Ok(dict)
     }
 
     /// The exact coefficients n, d of a node's hyperplane n·x + d = 0, in lattice steps.
     fn coefficients(&self, node: u32) -> Option<Vec<BigInt>> {
-        each!(&self.inner, held => held.coefficients(NodeId(node)))
+        each!(&self.inner, facet_tree => facet_tree.coefficients(NodeId(node)))
     }
 
     fn fragments<'py>(&self, py: Python<'py>) -> PyResult<FragmentArrays<'py>> {
-        let size = each!(&self.inner, held => held.tree.fragments().len());
-        let export = self.run(py, size, || Ok(each!(&self.inner, held => held.export())))?;
+        let size = each!(&self.inner, facet_tree => facet_tree.tree.fragments().len());
+        let export = self.run(py, size, || {
+            Ok(each!(&self.inner, facet_tree => facet_tree.export()))
+        })?;
         Ok((
             rows(py, export.vertices, self.dimension())?,
             PyArray1::from_vec(py, export.offsets),
@@ -369,11 +400,11 @@ impl PyFragmentTree {
 
     /// Each cut of a fragment as node and input facet.
     fn splits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        let pairs = each!(&self.inner, held => held
+        let pairs = each!(&self.inner, facet_tree => facet_tree
             .tree
             .crossings()
             .iter()
-            .map(|c| [i64::from(c.node), held.source(c.piece)])
+            .map(|c| [i64::from(c.node), facet_tree.source(c.piece)])
             .collect());
         array(py, pairs)
     }
@@ -382,7 +413,7 @@ impl PyFragmentTree {
     fn order<'py>(&self, py: Python<'py>, eye: [f64; 3], at_infinity: bool) -> PyResult<Ints<'py>> {
         let order = self.run(py, self.__len__(), || {
             let eye = self.viewpoint(eye, at_infinity)?;
-            Ok(each!(&self.inner, held => back_to_front(&held.tree, &eye)))
+            Ok(each!(&self.inner, facet_tree => back_to_front(&facet_tree.tree, &eye)))
         })?;
         Ok(PyArray1::from_vec(
             py,
@@ -399,7 +430,7 @@ impl PyFragmentTree {
     ) -> PyResult<Bound<'py, PyArray1<i8>>> {
         let found = self.run(py, self.__len__(), || {
             let eye = self.viewpoint(eye, at_infinity)?;
-            Ok(each!(&self.inner, held => sides(&held.tree, &eye)))
+            Ok(each!(&self.inner, facet_tree => sides(&facet_tree.tree, &eye)))
         })?;
         Ok(PyArray1::from_vec(
             py,
@@ -414,9 +445,9 @@ impl PyFragmentTree {
         margin: f64,
     ) -> PyResult<(f64, f64, Floats<'py>, Floats<'py>)> {
         let (whole, all) = self.run(py, self.__len__(), || {
-            each!(&self.inner, held => {
-                let whole = held.whole(margin)?;
-                Ok(((whole.volume(), whole.surface()), measures(&held.tree, &whole)))
+            each!(&self.inner, facet_tree => {
+                let whole = facet_tree.whole(margin)?;
+                Ok(((whole.volume(), whole.surface()), measures(&facet_tree.tree, &whole)))
             })
         })?;
         let volumes = all.iter().map(|m| m.volume).collect();
@@ -442,7 +473,7 @@ impl PyFragmentTree {
         let walls = self.run(
             py,
             0,
-            || each!(&self.inner, held => held.region(node.map(NodeId), side, margin)),
+            || each!(&self.inner, facet_tree => facet_tree.region(node.map(NodeId), side, margin)),
         )?;
         let dimension = self.dimension();
         walls.into_iter().map(|w| rows(py, w, dimension)).collect()
@@ -453,7 +484,7 @@ impl PyFragmentTree {
         let corners = self.run(
             py,
             0,
-            || each!(&self.inner, held => held.span(NodeId(node), margin)),
+            || each!(&self.inner, facet_tree => facet_tree.span(NodeId(node), margin)),
         )?;
         rows(py, corners, self.dimension())
     }
@@ -467,29 +498,35 @@ impl PyFragmentTree {
     /// Return the number of convex pieces into which the facets were taken apart.
     #[getter]
     fn piece_count(&self) -> usize {
-        each!(&self.inner, held => held.facets.len())
+        each!(&self.inner, facet_tree => facet_tree.facets.len())
     }
 
     /// The facet that each convex piece is a part of.
     fn piece_sources<'py>(&self, py: Python<'py>) -> Ints<'py> {
-        let facets = each!(&self.inner, held => &held.facets);
+        let facets = each!(&self.inner, facet_tree => &facet_tree.facets);
         let sources = facets.iter().map(|f| i64::from(f.source)).collect();
         PyArray1::from_vec(py, sources)
     }
 }
 
 /// Casting a ray costs about as much as a thousand elements of other work.
-const CAST: usize = 1000;
+const ELEMENTS_PER_RAY: usize = 1000;
 
 /// The exception that a callable raised.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
-fn wish_of(policy: &str, seed: u64, sample: usize, alpha: f64, top: usize) -> Result<Wish> {
+fn method_of(
+    policy: &str,
+    seed: u64,
+    sample: usize,
+    alpha: f64,
+    top: usize,
+) -> Result<BuildMethod> {
     if policy == "end-points" {
-        return Ok(Wish::Lines(Sample(sample)));
+        return Ok(BuildMethod::Lines(Sample(sample)));
     }
     let policy = named_policy(policy, seed, Sample(sample), alpha)?;
-    Ok(Wish::Policy(policy, (top > 0).then_some(top), 1))
+    Ok(BuildMethod::Policy(policy, (top > 0).then_some(top), 1))
 }
 
 /// Asks a Python callable; what it raises is kept.
@@ -527,7 +564,7 @@ fn rays_of(
 
 impl PyFragmentTree {
     fn source(&self, piece: u32) -> i64 {
-        each!(&self.inner, held => held.source(piece))
+        each!(&self.inner, facet_tree => facet_tree.source(piece))
     }
 
     /// Runs a method's work; the report of a defect holds the facets.
@@ -538,7 +575,7 @@ impl PyFragmentTree {
         work: impl FnOnce() -> Result<T> + Send,
     ) -> PyResult<T> {
         run(py, 0, size, work).map_err(|e| {
-            blamed(py, e, "FragmentTree", || {
+            with_report(py, e, "FragmentTree", || {
                 let inputs = PyDict::new(py);
                 let corners = rows(py, self.corners.clone(), self.dimension())?;
                 inputs.set_item("corners", corners)?;

@@ -1,7 +1,7 @@
 //! Traces of trees over facets as plain tuples.
 
 use super::convert::cut_row;
-use super::held::sign;
+use super::facet_tree::sign;
 use crate::geometry::side::Half;
 use crate::query::path::RayEvent;
 use crate::tree::fragments::{Candidate, Division, Reason};

@@ -7,16 +7,16 @@ use pyo3::types::PyDict;
 use crate::error::{Error, ErrorKind, Result};
 use crate::merge::rule::Rule;
 use crate::mesh::grid::Pitch;
-use crate::python::calls::errors::{blamed, to_python};
+use crate::python::calls::errors::{to_python, with_report};
 use crate::python::calls::in_use::InUse;
-use crate::python::calls::run::{run, SMALL};
+use crate::python::calls::run::{run, MIN_ELEMENTS_FOR_POOL};
 use crate::query::ray::answer::{Hit, Kind};
 use crate::query::ray::batch::{Inside, Rays};
 use crate::query::ray::view::{views, View};
 use crate::query::ray::Scene;
 
 /// Casting a ray costs about as much as a hundred elements of other work.
-pub(super) const WEIGHT: usize = 100;
+pub(super) const ELEMENTS_PER_RAY: usize = 100;
 
 enum Facets {
     Points(Scene<1>),
@@ -182,7 +182,7 @@ impl RayScene {
     /// Makes all that is deferred.
     #[pyo3(signature = (threads=0))]
     fn complete(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
-        self.run(py, threads, SMALL, || {
+        self.run(py, threads, MIN_ELEMENTS_FOR_POOL, || {
             with_scene!(&self.facets, scene => scene.complete());
             Ok(())
         })
@@ -218,7 +218,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<HitArrays<'py>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let columns = self.run(py, threads, origins.len() * WEIGHT, || {
+        let columns = self.run(py, threads, origins.len() * ELEMENTS_PER_RAY, || {
             let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => Ok(Columns::of_first(&rays.first(scene)?)))
         })?;
@@ -235,7 +235,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<Indices<'py>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let facets = self.run(py, threads, origins.len() * WEIGHT, || {
+        let facets = self.run(py, threads, origins.len() * ELEMENTS_PER_RAY, || {
             let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.facets(scene))
         })?;
@@ -253,7 +253,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<(Indices<'py>, HitArrays<'py>)> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let (offsets, columns) = self.run(py, threads, origins.len() * WEIGHT, || {
+        let (offsets, columns) = self.run(py, threads, origins.len() * ELEMENTS_PER_RAY, || {
             let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => {
                 let hits = rays.all(scene, merge)?;
@@ -278,7 +278,7 @@ impl RayScene {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let rule = winding_rule(rule).map_err(|e| to_python(py, &e))?;
         let outside = i32::from(unbounded);
-        let found = self.run(py, threads, origins.len() * WEIGHT, || {
+        let found = self.run(py, threads, origins.len() * ELEMENTS_PER_RAY, || {
             let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.inside(scene, rule, outside))
         })?;
@@ -301,7 +301,7 @@ impl RayScene {
         threads: usize,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, targets.as_slice()?);
-        let found = self.run(py, threads, origins.len() * WEIGHT, || {
+        let found = self.run(py, threads, origins.len() * ELEMENTS_PER_RAY, || {
             let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.hidden(scene))
         })?;
@@ -319,7 +319,7 @@ impl RayScene {
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
         let limits = limits.as_slice()?;
-        let found = self.run(py, threads, origins.len() * WEIGHT, || {
+        let found = self.run(py, threads, origins.len() * ELEMENTS_PER_RAY, || {
             let rays = Rays { origins, heads };
             with_scene!(&self.facets, scene => rays.blocked(scene, limits))
         })?;
@@ -338,7 +338,7 @@ impl RayScene {
     ) -> PyResult<T> {
         let _call = self.calls.enter(py)?;
         run(py, threads, size, work).map_err(|e| {
-            blamed(py, e, "RayScene", || {
+            with_report(py, e, "RayScene", || {
                 let corners: Vec<f64> = with_scene!(&self.facets, scene => {
                     scene.facets().iter().flatten().flatten().copied().collect()
                 });

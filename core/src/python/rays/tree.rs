@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-use super::scene::{facets, Columns, HitArrays, WEIGHT};
+use super::scene::{facets, Columns, HitArrays, ELEMENTS_PER_RAY};
 use super::store;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
@@ -113,7 +113,7 @@ impl RayTree {
     ) -> PyResult<(HitArrays<'py>, Counts<'py>)> {
         let _call = self.calls.enter(py)?;
         let (origins, heads) = (origins.as_slice()?, directions.as_slice()?);
-        let (columns, counts) = run(py, 0, origins.len() * WEIGHT, || {
+        let (columns, counts) = run(py, 0, origins.len() * ELEMENTS_PER_RAY, || {
             with_tree!(&self.tree, tree => {
                 let (hits, traces) = test_rays(tree, origins, heads)?;
                 Ok((Columns::of_first(&hits), counts(&traces)))
@@ -132,7 +132,7 @@ impl RayTree {
     ) -> PyResult<(HitArrays<'py>, Counts<'py>, Vec<StabRow>)> {
         let _call = self.calls.enter(py)?;
         let (origin, head) = (origin.as_slice()?, direction.as_slice()?);
-        let (columns, counts, events) = run(py, 0, WEIGHT, || {
+        let (columns, counts, events) = run(py, 0, ELEMENTS_PER_RAY, || {
             with_tree!(&self.tree, tree => {
                 let mut events: Vec<StabEvent> = Vec::new();
                 let (hits, traces) = test_rays_watched(tree, origin, head, &mut events)?;

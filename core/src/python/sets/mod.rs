@@ -1,7 +1,7 @@
 //! The class `ObjectTree`: sets of points of any dimension.
 
+pub mod any_set;
 pub mod each;
-pub mod held;
 pub mod input;
 pub mod objects;
 pub mod pieces;

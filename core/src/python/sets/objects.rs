@@ -19,7 +19,7 @@ use crate::merge::plane::bounded;
 use crate::merge::SetOp;
 use crate::mesh::grid::Pitch;
 use crate::python::arrays::flat;
-use crate::python::calls::errors::{blamed, to_python};
+use crate::python::calls::errors::{to_python, with_report};
 use crate::python::calls::run::{here, run};
 use crate::python::hyperplanes::Row;
 use crate::query::measure::Fraction;
@@ -61,7 +61,7 @@ impl ObjectTree {
         work: impl FnOnce(&Set, Pitch) -> Result<T> + Send,
     ) -> PyResult<T> {
         run(py, 0, self.set.size(), || work(&self.set, self.pitch))
-            .map_err(|e| self.blamed(py, e, &[self]))
+            .map_err(|e| self.with_report(py, e, &[self]))
     }
 
     fn with(&self, set: Set) -> Self {
@@ -79,7 +79,7 @@ impl ObjectTree {
         let (a, b) = (&self.set, &other.set);
         input::same_lattice(self.pitch, other.pitch).map_err(|e| to_python(py, &e))?;
         run(py, 0, a.size() + b.size(), || work(a, b))
-            .map_err(|e| self.blamed(py, e, &[self, other]))
+            .map_err(|e| self.with_report(py, e, &[self, other]))
     }
 
     /// The result of a set operation with another set, by one of the ways to carry it out.
@@ -94,8 +94,8 @@ impl ObjectTree {
         self.compared(py, other, |a, b| way(a, b, op))
     }
 
-    fn blamed(&self, py: Python<'_>, error: PyErr, operands: &[&Self]) -> PyErr {
-        blamed(py, error, "ObjectTree", || {
+    fn with_report(&self, py: Python<'_>, error: PyErr, operands: &[&Self]) -> PyErr {
+        with_report(py, error, "ObjectTree", || {
             let inputs = PyDict::new(py);
             for (k, operand) in operands.iter().enumerate() {
                 let operand = Bound::new(py, self.with(operand.set.clone()))?;
@@ -216,7 +216,7 @@ impl ObjectTree {
         let size = sets.iter().map(|set| set.size()).sum();
         let all = || Set::composed(std::iter::once(&self.set).chain(sets));
         let operands: Vec<&Self> = others.iter().map(|other| &**other).collect();
-        let set = run(py, 0, size, all).map_err(|e| self.blamed(py, e, &operands))?;
+        let set = run(py, 0, size, all).map_err(|e| self.with_report(py, e, &operands))?;
         Ok(self.with(set))
     }
 
@@ -327,7 +327,7 @@ impl ObjectTree {
             crate::python::arrays::rows(&points, "points").map_err(|e| to_python(py, &e))?;
         let size = self.set.size() + points.len();
         let found = run(py, 0, size, || self.set.nearest(&points, self.pitch))
-            .map_err(|e| self.blamed(py, e, &[self]))?;
+            .map_err(|e| self.with_report(py, e, &[self]))?;
         crate::python::arrays::array(py, found)
     }
 
@@ -351,7 +351,7 @@ impl ObjectTree {
         let found = run(py, 0, size, || {
             self.set.classify(&numbers, columns, self.pitch)
         })
-        .map_err(|e| self.blamed(py, e, &[self]))?;
+        .map_err(|e| self.with_report(py, e, &[self]))?;
         let sign = |location: &Location| match location {
             Location::In => 1i8,
             Location::On => 0,

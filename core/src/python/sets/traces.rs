@@ -4,7 +4,7 @@ use super::each::{each, Set};
 use crate::error::Result;
 use crate::geometry::spaces::affine::Affine;
 use crate::geometry::spaces::space::Space;
-use crate::merge::generic::trace::{Because, Decision, Joined, Journal, MergeStep, Name};
+use crate::merge::generic::trace::{Decision, DecisionReason, Joined, Journal, MergeStep, Name};
 use crate::merge::{merge_watched, SetOp};
 use crate::python::hyperplanes::{row_of, shape, Row};
 use crate::tree::partition::{preorder, Entry, Label, PartitionTree};
@@ -16,12 +16,16 @@ impl Set {
     /// The set operation by merging trees, and its steps.
     pub fn merge_steps(&self, other: &Self, op: SetOp) -> Result<(Self, Vec<MergeStep>)> {
         match (self, other) {
-            (Self::Line(a), Self::Line(b)) => told(a, b, op).map(|(t, s)| (Self::Line(t), s)),
+            (Self::Line(a), Self::Line(b)) => {
+                merge_traced(a, b, op).map(|(t, s)| (Self::Line(t), s))
+            }
             (Self::Plane(a), Self::Plane(b)) => {
-                let (tree, steps) = told(a.tree()?, b.tree()?, op)?;
+                let (tree, steps) = merge_traced(a.tree()?, b.tree()?, op)?;
                 Ok((Self::Plane(tree.into()), steps))
             }
-            (Self::Space(a), Self::Space(b)) => told(a, b, op).map(|(t, s)| (Self::Space(t), s)),
+            (Self::Space(a), Self::Space(b)) => {
+                merge_traced(a, b, op).map(|(t, s)| (Self::Space(t), s))
+            }
             _ => Err(shape("the sets have different dimensions")),
         }
     }
@@ -32,7 +36,7 @@ impl Set {
     }
 }
 
-fn told<S: Space>(
+fn merge_traced<S: Space>(
     a: &PartitionTree<S>,
     b: &PartitionTree<S>,
     op: SetOp,
@@ -80,10 +84,10 @@ fn number(name: Name) -> i64 {
 
 fn decided(decision: Decision) -> (&'static str, &'static str) {
     let why = |because| match because {
-        Because::FirstIsLeaf => "first-is-leaf",
-        Because::SecondIsLeaf => "second-is-leaf",
-        Because::Same => "same",
-        Because::Complement => "complement",
+        DecisionReason::FirstIsLeaf => "first-is-leaf",
+        DecisionReason::SecondIsLeaf => "second-is-leaf",
+        DecisionReason::Same => "same",
+        DecisionReason::Complement => "complement",
     };
     match decision {
         Decision::Divide => ("divide", ""),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap as HashMap;
 
-use super::near::{near_pairs, Element, Space};
+use super::near::{near_pairs, Element, LatticeBox};
 use super::surface::Surface;
 use crate::arith::convert::as_number;
 use crate::error::Result;
@@ -96,7 +96,7 @@ impl ReflexEdge {
     fn element(&self) -> Element {
         Element {
             operand: 0,
-            space: Space::around(&self.ends),
+            space: LatticeBox::around(&self.ends),
         }
     }
 }
@@ -106,7 +106,7 @@ struct Folds<'a> {
     surface: &'a Surface<'a>,
     topology: Topology,
     reflex: Vec<ReflexEdge>,
-    flats: Flats,
+    flats: FlatParts,
 }
 
 impl<'a> Folds<'a> {
@@ -134,7 +134,7 @@ impl<'a> Folds<'a> {
             surface,
             topology,
             reflex,
-            flats: Flats::of(&mut sets),
+            flats: FlatParts::of(&mut sets),
         }
     }
 
@@ -258,7 +258,7 @@ impl<'a> Folds<'a> {
 }
 
 /// The flat parts of a surface, each connected across edges.
-struct Flats {
+struct FlatParts {
     /// The triangles, grouped by part.
     order: Vec<u32>,
     /// Where each part starts in `order`, and where the last one ends.
@@ -267,7 +267,7 @@ struct Flats {
     of: Vec<u32>,
 }
 
-impl Flats {
+impl FlatParts {
     fn of(sets: &mut DisjointSets) -> Self {
         let names: Vec<u32> = (0..sets.end())
             .map(|triangle| sets.least(triangle))

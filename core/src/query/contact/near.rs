@@ -8,12 +8,12 @@ use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
 
 /// A box of lattice points, its ends included.
 #[derive(Clone, Copy)]
-pub struct Space {
+pub struct LatticeBox {
     low: Lattice,
     high: Lattice,
 }
 
-impl Space {
+impl LatticeBox {
     /// A box that holds nothing.
     pub const NOTHING: Self = Self {
         low: [i64::MAX; 3],
@@ -84,7 +84,7 @@ pub struct Element {
     /// The operand; elements are grouped by it.
     pub operand: usize,
     /// The box.
-    pub space: Space,
+    pub space: LatticeBox,
 }
 
 /// Calls `meet` for all pairs of elements of different operands whose boxes overlap; stops if it
@@ -97,7 +97,7 @@ pub fn near_pairs(
     meet: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
     let spaces = elements.iter().map(|element| element.space);
-    let around = spaces.fold(Space::NOTHING, |all, one| all.with(&one));
+    let around = spaces.fold(LatticeBox::NOTHING, |all, one| all.with(&one));
     let (origin, shift) = (around.low, shift_of(around.size()));
     let boxed = |(number, element): (usize, &Element)| {
         let [low, high] = element.space.from(&origin);

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::facet::Facet;
-use super::near::Space;
+use super::near::LatticeBox;
 use crate::error::Result;
 use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
@@ -94,25 +94,27 @@ impl<'a> Surface<'a> {
     }
 
     /// A box around all of it.
-    pub fn space(&self) -> Space {
+    pub fn space(&self) -> LatticeBox {
         let vertices = VertexId::all().take(self.mesh.vertices.len());
-        vertices.fold(Space::NOTHING, |all, vertex| {
+        vertices.fold(LatticeBox::NOTHING, |all, vertex| {
             poll();
-            all.with(&Space::around([&self.vertex(vertex)]))
+            all.with(&LatticeBox::around([&self.vertex(vertex)]))
         })
     }
 
     /// A box around some triangles.
-    pub fn space_of(&self, triangles: &[u32]) -> Space {
-        let spaces = triangles.iter().map(|t| Space::around(&self.corners(*t)));
-        spaces.fold(Space::NOTHING, |all, one| all.with(&one))
+    pub fn space_of(&self, triangles: &[u32]) -> LatticeBox {
+        let spaces = triangles
+            .iter()
+            .map(|t| LatticeBox::around(&self.corners(*t)));
+        spaces.fold(LatticeBox::NOTHING, |all, one| all.with(&one))
     }
 
     /// The triangles whose boxes overlap a box, each with its own.
-    pub fn triangles_in(&self, space: &Space) -> Vec<(u32, Space)> {
+    pub fn triangles_in(&self, space: &LatticeBox) -> Vec<(u32, LatticeBox)> {
         let boxed = |triangle: u32| {
             poll();
-            let around = Space::around(&self.corners(triangle));
+            let around = LatticeBox::around(&self.corners(triangle));
             around.overlaps(space).then_some((triangle, around))
         };
         let all = (0u32..).take(self.mesh.triangles.len());

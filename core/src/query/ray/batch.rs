@@ -15,10 +15,10 @@ use crate::merge::rule::Rule;
 use crate::mesh::tasks::in_pool;
 
 /// Rays processed at a time: some ten kB.
-const CHUNK: usize = 64;
+const RAYS_PER_CHUNK: usize = 64;
 
 /// The fewest chunks that one thread takes.
-const CHUNKS: usize = 8;
+const MIN_CHUNKS_PER_THREAD: usize = 8;
 
 /// A stretch inside, in doubles: parameters, and the facets' places in the input.
 #[derive(Clone, Copy, Debug)]
@@ -180,13 +180,13 @@ fn in_order<const D: usize, T: Send>(
     answer: &(impl Fn(&[u32], &[Ray<D>]) -> Vec<T> + Sync),
 ) -> Result<Vec<T>> {
     let chunk = carried(|numbers: &[u32]| {
-        spend(CHUNK);
+        spend(RAYS_PER_CHUNK);
         // Reads side by side, so that their cache misses overlap.
-        let mut given = [[[0.0; D]; 2]; CHUNK];
+        let mut given = [[[0.0; D]; 2]; RAYS_PER_CHUNK];
         for (place, i) in given.iter_mut().zip(numbers) {
             *place = read(*i);
         }
-        let mut rays = Vec::with_capacity(CHUNK);
+        let mut rays = Vec::with_capacity(RAYS_PER_CHUNK);
         for (given, i) in given.into_iter().zip(numbers) {
             rays.push(made(given).map_err(|e| at_ray(&e, *i as usize))?);
         }
@@ -194,12 +194,14 @@ fn in_order<const D: usize, T: Send>(
     });
     let mut all = Vec::with_capacity(order.len());
     if !in_pool() {
-        for numbers in order.chunks(CHUNK) {
+        for numbers in order.chunks(RAYS_PER_CHUNK) {
             all.extend(chunk(numbers)?);
         }
         return Ok(all);
     }
-    let chunks = order.par_chunks(CHUNK).with_min_len(CHUNKS);
+    let chunks = order
+        .par_chunks(RAYS_PER_CHUNK)
+        .with_min_len(MIN_CHUNKS_PER_THREAD);
     let answers: Vec<Result<Vec<T>>> = chunks.map(chunk).collect();
     for answers in answers {
         all.extend(answers?);

@@ -5,23 +5,23 @@
 //! main axis. So it meets the scene only at main distances t from 0 to 2, and moves by at most t on
 //! each axis. Let u = 2^-24. The distance of a box's plane is a difference times an inverse that
 //! was rounded once: off by less than 4u of itself, as if the plane had moved by 8u < 2^-21. An
-//! inverse that is cut at [`STEEP`] moves the ray by 2·2^-40. The start is found in doubles, off by
+//! inverse that is cut at [`MAX_INVERSE_SLOPE`] moves the ray by 2·2^-40. The start is found in doubles, off by
 //! less than 2^-49 of the way from the origin. The slack of [`Starts::views`] exceeds the sum of
 //! these errors and of rounding to single precision. So a ray that meets a box passes the test of
 //! each slab, which tries all starts within the slack.
 
 use super::cell::{above, Frame};
 use super::line::{Near, Ray};
-use super::treelet::{Wide, WIDTH};
+use super::treelet::{Wide, CHILDREN_PER_NODE};
 
 /// The largest inverse slope.
-const STEEP: f64 = (1u64 << 40) as f64;
+const MAX_INVERSE_SLOPE: f64 = (1u64 << 40) as f64;
 
 /// The constant part of a start's slack.
-const BLUR: f64 = 1.0 / (1u64 << 20) as f64;
+const START_SLACK: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// The slack per unit of the way to a start.
-const DRIFT: f64 = 1.0 / (1u64 << 49) as f64;
+const SLACK_PER_WAY: f64 = 1.0 / (1u64 << 49) as f64;
 
 /// A bound on what a place in the frame loses in single precision, per unit of its size.
 const NARROWING: f64 = 1.0 / (1u64 << 23) as f64;
@@ -63,7 +63,7 @@ impl<const D: usize, const N: usize> Starts<D, N> {
         }
         let mut slack = [0.0; N];
         for i in 0..N {
-            slack[i] = BLUR + DRIFT * far[i];
+            slack[i] = START_SLACK + SLACK_PER_WAY * far[i];
         }
         Self {
             at,
@@ -91,14 +91,18 @@ impl<const D: usize, const N: usize> Starts<D, N> {
     #[inline]
     fn views(&self, axis: usize) -> [[f32; N]; 3] {
         let backward = self.slope[axis][0] < 0.0;
-        let steepest = if backward { -STEEP } else { STEEP };
+        let steepest = if backward {
+            -MAX_INVERSE_SLOPE
+        } else {
+            MAX_INVERSE_SLOPE
+        };
         // Seen from beyond, near planes are nearer and far planes farther.
         let sign = if backward { -1.0 } else { 1.0 };
         let (mut near, mut far, mut inverse) = ([0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             let (at, slope) = (self.at[axis][i], self.slope[axis][i]);
             let slack = (self.slack[i] + at.abs() * NARROWING) * sign;
-            let steep = slope.abs() * STEEP < 1.0;
+            let steep = slope.abs() * MAX_INVERSE_SLOPE < 1.0;
             near[i] = (at + slack) as f32;
             far[i] = (at - slack) as f32;
             inverse[i] = (if steep { steepest } else { 1.0 / slope }) as f32;
@@ -232,24 +236,28 @@ impl<const D: usize, const N: usize> Bundle<D, N> {
 
     /// The distances at which the beam enters the boxes of a node, and whether it does.
     #[inline]
-    pub fn enters(&self, node: &Wide<D>, limit: f32) -> ([f32; WIDTH], [bool; WIDTH]) {
-        let mut from = [0.0f32; WIDTH];
-        let mut to = [limit; WIDTH];
+    pub fn enters(
+        &self,
+        node: &Wide<D>,
+        limit: f32,
+    ) -> ([f32; CHILDREN_PER_NODE], [bool; CHILDREN_PER_NODE]) {
+        let mut from = [0.0f32; CHILDREN_PER_NODE];
+        let mut to = [limit; CHILDREN_PER_NODE];
         for k in 0..D {
             let (near, far) = (
                 &node.bounds[self.first[k]][k],
                 &node.bounds[1 - self.first[k]][k],
             );
             let view = &self.beam[k];
-            for i in 0..WIDTH {
+            for i in 0..CHILDREN_PER_NODE {
                 let enter = (near[i] - view.near) * view.near_inverse;
                 let leave = (far[i] - view.far) * view.far_inverse;
                 from[i] = if enter > from[i] { enter } else { from[i] };
                 to[i] = if leave < to[i] { leave } else { to[i] };
             }
         }
-        let mut enters = [false; WIDTH];
-        for i in 0..WIDTH {
+        let mut enters = [false; CHILDREN_PER_NODE];
+        for i in 0..CHILDREN_PER_NODE {
             enters[i] = from[i] <= to[i];
         }
         (from, enters)

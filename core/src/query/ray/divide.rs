@@ -10,13 +10,13 @@ use super::cell::Span;
 const BINS: usize = 16;
 
 /// About how many facets of a longer list are sampled to choose a cut.
-const SAMPLE: usize = 4096;
+const FACETS_SAMPLED: usize = 4096;
 
 /// Lists of at most this many facets make two blocks: they are divided in the middle.
-const PAIR: usize = 2 * LANES;
+const MAX_FACETS_OF_TWO_BLOCKS: usize = 2 * LANES;
 
 /// After this many cuts lists are halved, which soon ends: no scene should get there.
-const LEVELS: u32 = 64;
+const MAX_LEVELS_OF_CUTS: u32 = 64;
 
 /// A facet and its box.
 #[derive(Clone, Copy, Debug)]
@@ -43,15 +43,15 @@ impl Item {
 /// Partitions a list into two nonempty parts; returns the length of the first and both boxes.
 pub fn divide<const D: usize>(items: &mut [Item], whole: &Span, level: u32) -> (usize, [Span; 2]) {
     let cut = match items.len() {
-        ..=PAIR => None,
-        _ if level >= LEVELS => None,
+        ..=MAX_FACETS_OF_TWO_BLOCKS => None,
+        _ if level >= MAX_LEVELS_OF_CUTS => None,
         _ => best::<D>(items),
     };
     let Some(cut) = cut else {
         return halve::<D>(items, whole);
     };
     let count = partition(items, |item| cut.below(item));
-    if items.len() < 2 * SAMPLE {
+    if items.len() < 2 * FACETS_SAMPLED {
         return (count, cut.spans);
     }
     let (below, above) = items.split_at(count);
@@ -80,7 +80,7 @@ impl<const D: usize> Cuts<D> {
             let largest = open
                 .iter()
                 .enumerate()
-                .filter(|(_, part)| part.0.len() > PAIR);
+                .filter(|(_, part)| part.0.len() > MAX_FACETS_OF_TWO_BLOCKS);
             let largest = largest.max_by(|a, b| a.1 .1.total_cmp(&b.1 .1));
             let Some(place) = largest.map(|(place, _)| place) else {
                 break;
@@ -214,7 +214,7 @@ impl Bin {
 }
 
 fn sample(items: &[Item]) -> impl Iterator<Item = &Item> {
-    items.iter().step_by((items.len() / SAMPLE).max(1))
+    items.iter().step_by((items.len() / FACETS_SAMPLED).max(1))
 }
 
 /// The cut of least cost for a sample; none if all its centres are equal.

@@ -6,16 +6,16 @@
 use super::cell::Frame;
 
 /// Bits of the place of entry on each axis.
-const BITS: u32 = 7;
+const BITS_PER_AXIS: u32 = 7;
 
 /// The smallest batch that is sorted: the nodes that fewer rays visit stay in the cache.
 const SORT_FROM: usize = 256;
 
 /// A batch stays unsorted if at least one in this many neighbouring pairs go alike.
-const ALIKE: usize = 2;
+const UNSORTED_IF_ONE_IN: usize = 2;
 
 /// One in this many pairs is sampled.
-const SAMPLE: usize = 16;
+const SAMPLED_IF_ONE_IN: usize = 16;
 
 /// The numbers of rays in the order to cast them; `None` for the order of the input.
 ///
@@ -35,8 +35,8 @@ pub fn sorted<const D: usize>(
     };
     // Alike keys share all but the last bit on each axis.
     let alike = |i: &u32| (key(*i) ^ key(*i + 1)) >> D == 0;
-    let pairs = (0..count - 1).step_by(SAMPLE);
-    if pairs.clone().filter(alike).count() * ALIKE >= pairs.len() {
+    let pairs = (0..count - 1).step_by(SAMPLED_IF_ONE_IN);
+    if pairs.clone().filter(alike).count() * UNSORTED_IF_ONE_IN >= pairs.len() {
         return None;
     }
     let mut keys: Vec<(u32, u32)> = (0..count).map(|i| (key(i), i)).collect();
@@ -58,13 +58,13 @@ fn key<const D: usize>(frame: &Frame<D>, origin: &[f64; D], direction: &[f64; D]
     let mut cells = [0u32; D];
     for k in 0..D {
         let octant = u32::from(direction[k] < 0.0);
-        key |= (octant << 1 | u32::from(k == main)) << (D as u32 * BITS + 2 * k as u32);
+        key |= (octant << 1 | u32::from(k == main)) << (D as u32 * BITS_PER_AXIS + 2 * k as u32);
         let entry = at[k] + direction[k] / lead * skipped;
         // Numbers beyond the range, and NaN, go to its ends.
-        cells[k] = ((entry + 1.0) * f64::from(1 << (BITS - 1)))
-            .clamp(0.0, f64::from((1 << BITS) - 1)) as u32;
+        cells[k] = ((entry + 1.0) * f64::from(1 << (BITS_PER_AXIS - 1)))
+            .clamp(0.0, f64::from((1 << BITS_PER_AXIS) - 1)) as u32;
     }
-    for bit in 0..BITS {
+    for bit in 0..BITS_PER_AXIS {
         for (k, cell) in cells.iter().enumerate() {
             key |= (cell >> bit & 1) << (bit * D as u32 + k as u32);
         }

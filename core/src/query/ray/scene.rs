@@ -24,7 +24,7 @@ pub struct Scene<const D: usize> {
     cell: Cell<D>,
     frame: Frame<D>,
     /// The mean size of facets, in the frame.
-    grain: f64,
+    mean_facet_size: f64,
     root: Deferred<D>,
     /// Whether the facets are closed, once asked.
     closed: OnceLock<Result<()>>,
@@ -86,7 +86,7 @@ impl<const D: usize> Scene<D> {
         }
         let cell = Cell::around(&kept);
         let frame = Frame::of(&cell);
-        let grain = grain(&kept) * frame.scale;
+        let mean_facet_size = mean_facet_size(&kept) * frame.scale;
         let root = root(&kept, &frame);
         Ok(Self {
             pitch,
@@ -94,7 +94,7 @@ impl<const D: usize> Scene<D> {
             numbers,
             cell,
             frame,
-            grain,
+            mean_facet_size,
             root,
             closed: OnceLock::new(),
         })
@@ -126,8 +126,8 @@ impl<const D: usize> Scene<D> {
     }
 
     /// Return the mean size of facets, in the frame.
-    pub fn grain(&self) -> f64 {
-        self.grain
+    pub fn mean_facet_size(&self) -> f64 {
+        self.mean_facet_size
     }
 
     /// The tree's root.
@@ -245,7 +245,7 @@ fn at_facet(error: &Error, number: usize) -> Error {
 }
 
 /// The mean of the largest extents of facets.
-fn grain<const D: usize>(facets: &[Facet<D>]) -> f64 {
+fn mean_facet_size<const D: usize>(facets: &[Facet<D>]) -> f64 {
     let extent = |facet: &Facet<D>| {
         let cell = Cell::around([facet]);
         (0..D)

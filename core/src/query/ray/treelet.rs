@@ -22,16 +22,16 @@ use crate::mesh::handle::NodeId;
 use crate::mesh::tasks::in_pool;
 
 /// Children of a node.
-pub const WIDTH: usize = 8;
+pub const CHILDREN_PER_NODE: usize = 8;
 
 /// A list of at most this many facets is one treelet: some 100 µs of work, within 100 kB.
-const TREELET: usize = 1024;
+const MAX_FACETS_PER_TREELET: usize = 1024;
 
 /// Lists of at least this length are split by a sample.
-const SAMPLED: usize = 16 * TREELET;
+const SAMPLED_FROM: usize = 16 * MAX_FACETS_PER_TREELET;
 
 /// Longer lists are deferred where only the root is made.
-const INLINE: usize = LANES * WIDTH;
+const MAX_FACETS_INLINE: usize = LANES * CHILDREN_PER_NODE;
 
 /// The child of a node in a lane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,18 +50,18 @@ pub enum Child {
 #[derive(Clone, Debug)]
 pub struct Wide<const D: usize> {
     /// Least coordinates, then largest ones: by axis and lane.
-    pub bounds: [[[f32; WIDTH]; D]; 2],
+    pub bounds: [[[f32; CHILDREN_PER_NODE]; D]; 2],
     /// The child in each box; all behind the first `None` are `None`.
-    pub children: [Child; WIDTH],
+    pub children: [Child; CHILDREN_PER_NODE],
 }
 
 impl<const D: usize> Wide<D> {
     const EMPTY: Self = Self {
         bounds: [
-            [[Span::NOTHING.low[0]; WIDTH]; D],
-            [[Span::NOTHING.high[0]; WIDTH]; D],
+            [[Span::NOTHING.low[0]; CHILDREN_PER_NODE]; D],
+            [[Span::NOTHING.high[0]; CHILDREN_PER_NODE]; D],
         ],
-        children: [Child::None; WIDTH],
+        children: [Child::None; CHILDREN_PER_NODE],
     };
 
     fn set(&mut self, lane: usize, span: &Span) {
@@ -82,7 +82,7 @@ impl<const D: usize> Wide<D> {
     }
 
     fn whole(&self) -> Span {
-        let spans: [Span; WIDTH] = std::array::from_fn(|lane| self.span(lane));
+        let spans: [Span; CHILDREN_PER_NODE] = std::array::from_fn(|lane| self.span(lane));
         Span::around(&spans)
     }
 }
@@ -206,12 +206,12 @@ impl<const D: usize> Treelet<D> {
     /// The root over a long list, with all below it deferred; `None` for a list that is short or
     /// has no cut.
     fn begun(facets: &[Facet<D>], items: &[Item]) -> Option<Self> {
-        if items.len() < SAMPLED {
+        if items.len() < SAMPLED_FROM {
             return None;
         }
         let mut treelet = Self::default();
         let mut root = Wide::EMPTY;
-        let parts = Cuts::<D>::of(items, WIDTH)?.divided(items);
+        let parts = Cuts::<D>::of(items, CHILDREN_PER_NODE)?.divided(items);
         for (lane, (list, span)) in parts.into_iter().enumerate() {
             root.set(lane, &span);
             root.children[lane] = if list.len() <= LANES {
@@ -246,7 +246,7 @@ impl<const D: usize> Treelet<D> {
         };
         let mut nodes = self.nodes.clone();
         for at in (0..nodes.len()).rev() {
-            for lane in 0..WIDTH {
+            for lane in 0..CHILDREN_PER_NODE {
                 let span = match nodes[at].children[lane] {
                     Child::None => break,
                     Child::Node(node) => nodes[node.place()].whole(),
@@ -273,8 +273,8 @@ impl<const D: usize> Treelet<D> {
 /// Return how many facets a child takes at most, so that nodes below can be full.
 fn room(facets: usize) -> usize {
     let mut room = LANES;
-    while room * WIDTH < facets {
-        room *= WIDTH;
+    while room * CHILDREN_PER_NODE < facets {
+        room *= CHILDREN_PER_NODE;
     }
     room
 }
@@ -305,7 +305,7 @@ impl Part {
 
 impl<'a, const D: usize> Making<'a, D> {
     fn new(facets: &'a [Facet<D>], items: Vec<Item>) -> Self {
-        let begun = items.len() > TREELET;
+        let begun = items.len() > MAX_FACETS_PER_TREELET;
         Self {
             facets,
             items,
@@ -349,7 +349,7 @@ impl<'a, const D: usize> Making<'a, D> {
     fn parts(&mut self, whole: Part) -> Vec<Part> {
         let room = if self.begun { LANES } else { room(whole.len()) };
         let mut parts = vec![whole];
-        while parts.len() < WIDTH {
+        while parts.len() < CHILDREN_PER_NODE {
             let large = parts.iter().enumerate().filter(|(_, p)| p.len() > room);
             let surface = |part: &Part| part.span.surface::<D>();
             let largest = large.max_by(|a, b| surface(a.1).total_cmp(&surface(b.1)));
@@ -378,7 +378,7 @@ impl<'a, const D: usize> Making<'a, D> {
             let facets = items.iter().map(|item| item.facet);
             treelet.blocks.push(Block::of(self.facets, facets));
             Child::Block(treelet.blocks.len() as u32 - 1)
-        } else if self.begun && items.len() > INLINE {
+        } else if self.begun && items.len() > MAX_FACETS_INLINE {
             treelet.deferred.push(Deferred::pending(items.to_vec()));
             Child::Deferred(treelet.deferred.len() as u32 - 1)
         } else {

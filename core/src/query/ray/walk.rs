@@ -11,7 +11,7 @@ use super::cell::Cell;
 use super::filter::ROUNDING;
 use super::line::Ray;
 use super::scene::Scene;
-use super::treelet::{Child, Treelet, WIDTH};
+use super::treelet::{Child, Treelet, CHILDREN_PER_NODE};
 use crate::mesh::handle::NodeId;
 
 /// Relative error of the depth of a plane: a difference, a quotient of two rounded numbers and a
@@ -28,10 +28,10 @@ struct Open<'a, const D: usize> {
 }
 
 /// Rays that go together.
-const TOGETHER: usize = 16;
+const RAYS_PER_BUNDLE: usize = 16;
 
 /// How far such rays may stray from each other, in mean sizes of facets.
-const WIDE: f64 = 8.0;
+const MAX_BUNDLE_WIDTH: f64 = 8.0;
 
 type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;
 
@@ -45,12 +45,12 @@ pub fn walk<const D: usize>(
     depth: impl Fn(usize) -> f64,
     mut visit: impl FnMut(usize, &Block<D>) -> f64,
 ) {
-    let (frame, width) = (scene.frame(), scene.grain() * WIDE);
-    for (number, rays) in rays.chunks(TOGETHER).enumerate() {
-        let first = number * TOGETHER;
+    let (frame, width) = (scene.frame(), scene.mean_facet_size() * MAX_BUNDLE_WIDTH);
+    for (number, rays) in rays.chunks(RAYS_PER_BUNDLE).enumerate() {
+        let first = number * RAYS_PER_BUNDLE;
         if rays.len() > 1 {
             let depth = |i| depth(first + i);
-            if let Some(mut bundle) = Bundle::<D, TOGETHER>::of(rays, frame, width, depth) {
+            if let Some(mut bundle) = Bundle::<D, RAYS_PER_BUNDLE>::of(rays, frame, width, depth) {
                 descend(scene, &mut bundle, |i, block| visit(first + i, block));
                 continue;
             }
@@ -132,7 +132,7 @@ fn enter<'a, const D: usize, const N: usize>(
     };
     let (from, enters) = bundle.enters(wide, limit);
     let base = open.len();
-    for lane in 0..WIDTH {
+    for lane in 0..CHILDREN_PER_NODE {
         if !enters[lane] {
             continue;
         }

@@ -66,16 +66,16 @@ pub fn area(boundary: &Boundary, pitch: Pitch) -> Result<Fraction> {
 /// `Unbounded`.
 pub fn area_bounds(boundary: &Boundary, pitch: Pitch) -> Result<[Fraction; 2]> {
     let doubled = Doubled::of(boundary)?;
-    let rounded = |(n, d): &Ratio| Integer::div_floor(&(n << PLACES), d);
+    let rounded = |(n, d): &Ratio| Integer::div_floor(&(n << BINARY_PLACES), d);
     let sum: BigInt = doubled.cut.iter().map(rounded).sum();
-    let low = (doubled.whole << PLACES) + sum;
+    let low = (doubled.whole << BINARY_PLACES) + sum;
     let high = &low + BigInt::from(doubled.cut.len());
-    let units = BigInt::from(2) << PLACES;
+    let units = BigInt::from(2) << BINARY_PLACES;
     Ok([low, high].map(|bound| in_powers(bound, units.clone(), pitch.exponent(), 2)))
 }
 
 /// Binary places of each quotient that bounds an area.
-const PLACES: usize = 128;
+const BINARY_PLACES: usize = 128;
 
 /// Twice an area: the sum over lattice edges, and the shares of edges with constructed corners.
 struct Doubled {

@@ -12,15 +12,15 @@ type Point = [f64; 2];
 pub struct Nearest {
     /// The segments along a space-filling curve, with their numbers.
     segments: Vec<(usize, [Point; 2])>,
-    /// The boxes around every [`FAN`] items of the level below, from the segments up.
+    /// The boxes around every [`ITEMS_PER_BOX`] items of the level below, from the segments up.
     levels: Vec<Vec<Extent>>,
 }
 
 /// Items in one box.
-const FAN: usize = 8;
+const ITEMS_PER_BOX: usize = 8;
 
 /// Steps of the curve along each axis.
-const STEPS: f64 = 65_535.0;
+const CURVE_STEPS: f64 = 65_535.0;
 
 /// A box is skipped only if it is farther by more than the rounding of doubles.
 const SLACK: f64 = 1.0 - 8.0 * f64::EPSILON;
@@ -62,7 +62,7 @@ impl Nearest {
                 continue;
             };
             let first = pending.len();
-            let places = FAN * place..FAN * place + FAN;
+            let places = ITEMS_PER_BOX * place..ITEMS_PER_BOX * place + ITEMS_PER_BOX;
             let boxes = places.filter_map(|i| Some((i, self.levels[below].get(i)?)));
             pending.extend(boxes.map(|(i, b)| (b.distance(point), below, i)));
             pending[first..].sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -72,7 +72,12 @@ impl Nearest {
 
     /// Compares the segments in a box of the lowest level.
     fn look(&self, place: usize, point: Point, best: &mut (f64, usize, Option<Point>)) {
-        for (number, segment) in self.segments.iter().skip(FAN * place).take(FAN) {
+        for (number, segment) in self
+            .segments
+            .iter()
+            .skip(ITEMS_PER_BOX * place)
+            .take(ITEMS_PER_BOX)
+        {
             let foot = foot(point, segment);
             let distance = squared(point, foot);
             let closer = distance.total_cmp(&best.0).then(number.cmp(&best.1));
@@ -86,7 +91,7 @@ impl Nearest {
 /// The boxes around every few boxes.
 fn grouped(boxes: &[Extent]) -> Vec<Extent> {
     boxes
-        .chunks(FAN)
+        .chunks(ITEMS_PER_BOX)
         .map(|some| Extent::around(some.iter().copied()))
         .collect()
 }
@@ -116,7 +121,7 @@ impl Extent {
         let step = |axis: usize| {
             let size = self.high[axis] - self.low[axis];
             let part = (p[axis] / 2.0 + q[axis] / 2.0 - self.low[axis]) / size;
-            as_whole(part.clamp(0.0, 1.0) * STEPS).unsigned_abs()
+            as_whole(part.clamp(0.0, 1.0) * CURVE_STEPS).unsigned_abs()
         };
         let (x, y) = (step(0), step(1));
         (0..16).fold(0, |place, bit| {

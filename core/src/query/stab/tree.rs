@@ -14,7 +14,7 @@ use super::cut::Cut;
 use super::heap::{Entry, Heap};
 use super::node::{Content, Growth, Inner, Node, Nodes};
 use super::trace::{StabEvent, Trace};
-use super::walk::{Wake, Walk};
+use super::walk::{PendingUpdates, Walk};
 use crate::arith::Filtered;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Split};
@@ -150,24 +150,24 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
             best: None,
             met: None,
             trace: Trace::default(),
-            wake: Wake::default(),
+            pending: PendingUpdates::default(),
             watcher,
         };
         walk.run(clip(ray, self.scene.cell()));
-        let (best, trace, wake) = (walk.best, walk.trace, walk.wake);
+        let (best, trace, pending) = (walk.best, walk.trace, walk.pending);
         drop(nodes);
-        self.learn(&wake, watcher);
+        self.apply_updates(&pending, watcher);
         (best.and_then(|best| query.found(&best)), trace)
     }
 
     /// Counts what a ray has hit, and divides the leaves that are due.
-    fn learn(&self, wake: &Wake, watcher: &mut impl Watcher<StabEvent>) {
-        if wake.hits.is_empty() && wake.due.is_empty() {
+    fn apply_updates(&self, pending: &PendingUpdates, watcher: &mut impl Watcher<StabEvent>) {
+        if pending.hits.is_empty() && pending.due.is_empty() {
             return;
         }
         let mut nodes = self.nodes_mut();
         // Ascending in each leaf, because a count changes no later place.
-        for hit in &wake.hits {
+        for hit in &pending.hits {
             // Another ray may have divided the leaf meanwhile.
             let Content::Leaf(list) = &mut nodes.all[hit.node.place()].content else {
                 continue;
@@ -176,9 +176,9 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
                 list.count_hit(place);
             }
         }
-        for leaf in &wake.due {
+        for leaf in &pending.due {
             if nodes.divide(&self.scene, *leaf).is_some() {
-                watcher.tell(|| nodes.division(&self.scene, *leaf));
+                watcher.notify(|| nodes.division(&self.scene, *leaf));
             }
         }
     }

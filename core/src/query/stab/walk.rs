@@ -19,7 +19,7 @@ use crate::query::ray::{Ray, Scene};
 use crate::tree::trace::Watcher;
 
 #[derive(Clone, Copy)]
-enum Open {
+enum StackEntry {
     Node { node: NodeId, from: f64, to: f64 },
     Cut { node: NodeId, from: f64, far: Far },
 }
@@ -33,7 +33,7 @@ enum Far {
     Child(usize),
 }
 
-type Stack = SmallVec<[Open; 64]>;
+type Stack = SmallVec<[StackEntry; 64]>;
 
 /// A leaf's list of up to this many facets is tested from end to end, as in the notes, in some 40
 /// µs; a longer list only where the ray meets the boxes of facets.
@@ -47,9 +47,9 @@ pub(super) struct Hit {
     pub(super) place: usize,
 }
 
-/// The wake of a ray: hits to count, and leaves that are due to be divided.
+/// What a ray leaves to be done: hits to count, and leaves that are due to be divided.
 #[derive(Debug, Default)]
-pub(super) struct Wake {
+pub(super) struct PendingUpdates {
     pub(super) hits: SmallVec<[Hit; 16]>,
     pub(super) due: SmallVec<[NodeId; 16]>,
 }
@@ -65,7 +65,7 @@ pub(super) struct Walk<'a, S: Cast<D>, W, const D: usize> {
     /// All facets that the ray hits, computed for the first long list.
     pub(super) met: Option<Vec<(u32, Depth)>>,
     pub(super) trace: Trace,
-    pub(super) wake: Wake,
+    pub(super) pending: PendingUpdates,
     pub(super) watcher: &'a mut W,
 }
 
@@ -73,7 +73,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
     /// Visits what the ray meets between two depths, nearest first.
     pub(super) fn run(&mut self, span: Option<(f64, f64)>) {
         let mut open = Stack::new();
-        open.extend(span.map(|(from, to)| Open::Node {
+        open.extend(span.map(|(from, to)| StackEntry::Node {
             node: NodeId::ROOT,
             from,
             to,
@@ -81,10 +81,12 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         while let Some(next) = open.pop() {
             let limit = self.best.map_or(f64::INFINITY, |best| best.high());
             match next {
-                Open::Node { node, from, to } if from <= limit => {
+                StackEntry::Node { node, from, to } if from <= limit => {
                     self.visit(node, (from, to), &mut open);
                 }
-                Open::Cut { node, from, far } if from <= limit && self.test_cut(node, far) => {
+                StackEntry::Cut { node, from, far }
+                    if from <= limit && self.test_cut(node, far) =>
+                {
                     open.pop();
                 }
                 _ => {}
@@ -96,7 +98,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         let visited = &self.nodes[node.place()];
         let visits = visited.visits.fetch_add(1, Ordering::Relaxed) + 1;
         self.trace.nodes += 1;
-        self.watcher.tell(|| StabEvent::Visit {
+        self.watcher.notify(|| StabEvent::Visit {
             node,
             visits,
             leaf: matches!(visited.content, Content::Leaf(_)),
@@ -115,7 +117,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
         for facet in &inner.coplanar {
             self.trace.tests += 1;
             let met = self.query.offer(&mut self.best, *facet).is_some();
-            self.watcher.tell(|| {
+            self.watcher.notify(|| {
                 let facet = self.scene.number(*facet);
                 StabEvent::Test { node, facet, met }
             });
@@ -140,15 +142,15 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
             return;
         };
         for hit in &hits {
-            self.watcher.tell(|| StabEvent::Count {
+            self.watcher.notify(|| StabEvent::Count {
                 node,
                 facet: self.scene.number(hit.facet),
                 hits: list.entries()[hit.place].hits + 1,
             });
         }
-        self.wake.hits.extend(hits);
+        self.pending.hits.extend(hits);
         if visits > threshold && list.len() > 1 {
-            self.wake.due.push(node);
+            self.pending.due.push(node);
         }
     }
 
@@ -159,7 +161,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
             let facet = entry.facet;
             self.trace.tests += 1;
             let depth = self.query.offer(&mut self.best, facet);
-            self.watcher.tell(|| StabEvent::Test {
+            self.watcher.notify(|| StabEvent::Test {
                 node,
                 facet: self.scene.number(facet),
                 met: depth.is_some(),
@@ -199,7 +201,7 @@ impl<S: Cast<D>, W: Watcher<StabEvent>, const D: usize> Walk<'_, S, W, D> {
             let known = met.len();
             query.try_block(best, block, |facet, depth| met.push((facet, depth)));
             for facet in block.facets() {
-                watcher.tell(|| StabEvent::Test {
+                watcher.notify(|| StabEvent::Test {
                     node,
                     facet: scene.number(*facet),
                     met: met[known..].iter().any(|(hit, _)| hit == facet),
@@ -227,14 +229,14 @@ fn push_parts<const D: usize>(
     open: &mut Stack,
 ) {
     let [minus, plus] = inner.children;
-    let child = |node, from, to| Open::Node { node, from, to };
+    let child = |node, from, to| StackEntry::Node { node, from, to };
     match inner.cut.stab(ray) {
         Stab::Beside(Side::Minus) => open.push(child(minus, from, to)),
         Stab::Beside(Side::Plus) => open.push(child(plus, from, to)),
         Stab::Beside(Side::On) => {
             open.extend([child(plus, from, to), child(minus, from, to)]);
             let far = Far::No;
-            open.push(Open::Cut { node, from, far });
+            open.push(StackEntry::Cut { node, from, far });
         }
         Stab::Through { depth, rising } => {
             let beyond = usize::from(rising);
@@ -245,7 +247,7 @@ fn push_parts<const D: usize>(
             }
             if low <= to && high >= from {
                 let (from, far) = (from.max(low), Far::Child(beyond));
-                open.push(Open::Cut { node, from, far });
+                open.push(StackEntry::Cut { node, from, far });
             }
             if high >= from {
                 open.push(child(near, from, to.min(high)));

@@ -2,7 +2,7 @@
 
 use super::choosing::Chooser;
 use super::node::{Crossing, Fragment, FragmentTree, Node, Piece};
-use super::plan::{Open, Plan};
+use super::plan::{OpenRegion, Plan};
 use super::trace::Division;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Orientation, Split};
@@ -47,7 +47,7 @@ pub fn build_watched<S: Affine, W: Watcher<Division>>(
         chooser,
         watcher,
     };
-    builder.push(Open {
+    builder.push(OpenRegion {
         pieces,
         place: None,
         depth: 0,
@@ -71,19 +71,19 @@ fn shuffle<T>(list: &mut [T], seed: u64) {
 
 struct Builder<'a, S: Affine, W> {
     tree: FragmentTree<S>,
-    open: Vec<Open<S>>,
+    open: Vec<OpenRegion<S>>,
     chooser: Chooser<S>,
     watcher: &'a mut W,
 }
 
 impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
-    fn push(&mut self, open: Open<S>) {
+    fn push(&mut self, open: OpenRegion<S>) {
         if !open.pieces.is_empty() {
             self.open.push(open);
         }
     }
 
-    fn divide(&mut self, open: Open<S>) -> Result<()> {
+    fn divide(&mut self, open: OpenRegion<S>) -> Result<()> {
         let node = self.next_number()?;
         let mut candidates = Vec::new();
         let (cut, hyperplane, reason) = if W::LISTENS {
@@ -103,7 +103,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         };
         let (start, crossed) = (self.tree.fragments.len(), self.tree.crossings.len());
         let [minus, plus] = self.distribute(open.pieces, &hyperplane, node);
-        self.watcher.tell(|| Division {
+        self.watcher.notify(|| Division {
             node,
             place: open.place,
             depth: open.depth,
@@ -116,7 +116,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             split: crossing(&self.tree.crossings[crossed..]),
             coplanar: coplanar(&self.tree.fragments[start..]),
         });
-        self.hang(open.place, node);
+        self.link(open.place, node);
         self.tree.nodes.push(Node {
             hyperplane,
             cut,
@@ -127,7 +127,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             depth: open.depth,
         });
         let chooser = &self.chooser;
-        let side = |half, pieces, region| Open {
+        let side = |half, pieces, region| OpenRegion {
             pieces,
             place: Some((node, half)),
             depth: open.depth + 1,
@@ -148,7 +148,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 
     /// Links a node to the one above.
-    fn hang(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
+    fn link(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
         let Some((above, half)) = place else {
             return;
         };

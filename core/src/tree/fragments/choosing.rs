@@ -2,7 +2,7 @@
 
 use super::axis::median_cut;
 use super::node::{FragmentTree, NodeCut, Piece};
-use super::plan::{Answer, Ask, Lines, Open, Plan};
+use super::plan::{Answer, Ask, Lines, OpenRegion, Plan};
 use super::policy::{Policy, Sample, Tally};
 use super::trace::{Candidate, Reason};
 use crate::error::{Error, ErrorKind, Result};
@@ -72,7 +72,7 @@ impl<S: Affine> Chooser<S> {
 
     pub fn choose(
         &mut self,
-        open: &Open<S>,
+        open: &OpenRegion<S>,
         own: &mut Vec<S::Hyperplane>,
         watcher: &mut impl Watcher<Candidate>,
     ) -> Result<Chosen<S>> {
@@ -112,7 +112,7 @@ fn supporting<S: Affine>(piece: &Piece<S>, reason: Reason) -> Chosen<S> {
 fn by_policy<S: Affine>(
     policy: &Policy,
     top: Option<usize>,
-    open: &Open<S>,
+    open: &OpenRegion<S>,
     watcher: &mut impl Watcher<Candidate>,
 ) -> Chosen<S> {
     let pieces = &open.pieces;
@@ -166,7 +166,7 @@ fn spaced(count: usize, Sample(sample): Sample) -> impl Iterator<Item = usize> {
 
 fn asked<S: Affine>(
     ask: &mut Ask<S>,
-    open: &Open<S>,
+    open: &OpenRegion<S>,
     own: &mut Vec<S::Hyperplane>,
     watcher: &mut impl Watcher<Candidate>,
 ) -> Result<Chosen<S>> {
@@ -180,7 +180,7 @@ fn asked<S: Affine>(
         })
         .collect();
     for candidate in &candidates {
-        watcher.tell(|| *candidate);
+        watcher.notify(|| *candidate);
     }
     match (ask.answer)(open.depth, pieces.len(), &candidates)? {
         Answer::Candidate(place) => {

@@ -84,7 +84,7 @@ pub struct Lines {
 }
 
 /// A region still to be divided, if it has pieces.
-pub(super) struct Open<S: Affine> {
+pub(super) struct OpenRegion<S: Affine> {
     pub(super) pieces: Vec<Piece<S>>,
     pub(super) place: Option<(NodeId, Half)>,
     pub(super) depth: u32,

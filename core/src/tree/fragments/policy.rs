@@ -159,7 +159,7 @@ fn best<S: Affine>(
         let cut = S::hyperplane(fragment);
         let tally = Tally::of(pieces, cut);
         let score = penalty(&tally, cut);
-        watcher.tell(|| tally.candidate(*number, score));
+        watcher.notify(|| tally.candidate(*number, score));
         (candidate, score)
     });
     judged

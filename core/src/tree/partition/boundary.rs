@@ -19,7 +19,7 @@ use crate::mesh::handle::NodeId;
 pub fn boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<S::Fragment>> {
     let mut pieces = Vec::new();
     for_each_cut(tree, |cut| {
-        pieces.extend(walls(cut, cut.sheet().span.clone())?);
+        pieces.extend(walls(cut, cut.sub_hyperplane().span.clone())?);
         Ok(())
     })?;
     Ok(pieces)
@@ -37,7 +37,7 @@ pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(NodeId, S::
     let mut pieces = Vec::new();
     let mut nodes = NodeId::all();
     for_each_cut(tree, |cut| {
-        let found = walls(cut, cut.sheet().span.clone())?;
+        let found = walls(cut, cut.sub_hyperplane().span.clone())?;
         let node = nodes.next().unwrap_or_default();
         pieces.extend(found.into_iter().map(|piece| (node, piece)));
         Ok(())
@@ -58,7 +58,7 @@ pub fn boundary_of<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<(NodeId, S::
 pub fn owned_boundary<S: Space>(tree: &PartitionTree<S>) -> Result<Vec<Facet<S>>> {
     let mut pieces = Vec::new();
     for_each_cut(tree, |cut| {
-        for Facet { fragment, source } in disjoint_facets(&cut.sheet().facets) {
+        for Facet { fragment, source } in disjoint_facets(&cut.sub_hyperplane().facets) {
             poll();
             let facet = |fragment| Facet { fragment, source };
             pieces.extend(walls(cut, fragment)?.into_iter().map(facet));

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use super::node::{Facet, Label, PartitionTree, Sheet};
+use super::node::{Facet, Label, PartitionTree, SubHyperplane};
 use super::policy::{Choice, PivotPolicy};
 use crate::error::{Error, Result};
 use crate::geometry::side::{Half, Orientation, Split};
@@ -86,15 +86,15 @@ struct Builder<S: Space, C> {
 }
 
 enum Step<S: Space> {
-    /// Build the subtree on one side of a sheet whose node is at `depth`.
+    /// Build the subtree on one side of a sub-hyperplane whose node is at `depth`.
     Side {
-        sheet: Arc<Sheet<S>>,
+        sub_hyperplane: Arc<SubHyperplane<S>>,
         half: Half,
         depth: usize,
         facets: Vec<Facet<S>>,
     },
     /// Join the two subtrees built last.
-    Join(Arc<Sheet<S>>),
+    Join(Arc<SubHyperplane<S>>),
 }
 
 impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C> {
@@ -111,25 +111,26 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
     fn advance(&mut self, step: Step<S>) -> Result<()> {
         match step {
             Step::Side {
-                sheet,
+                sub_hyperplane,
                 half,
                 facets,
                 ..
             } if facets.is_empty() => {
-                self.label(&sheet, half);
+                self.label(&sub_hyperplane, half);
                 Ok(())
             }
             Step::Side {
-                sheet,
+                sub_hyperplane,
                 half,
                 depth,
                 facets,
             } => {
                 self.region.truncate(depth);
-                self.region.push(S::hyperplane(&sheet.span).clone(), half);
+                self.region
+                    .push(S::hyperplane(&sub_hyperplane.span).clone(), half);
                 self.divide(facets)
             }
-            Step::Join(sheet) => self.join(sheet),
+            Step::Join(sub_hyperplane) => self.join(sub_hyperplane),
         }
     }
 
@@ -142,42 +143,47 @@ impl<S: Space, C: FnMut(&Region<S>, &[Facet<S>]) -> S::Hyperplane> Builder<S, C>
             .span(&cut)
             .ok_or_else(|| Error::internal("a facet lies outside the region it was given to"))?;
         let [minus, plus, coplanar] = distribute(facets, &cut);
-        let sheet = Arc::new(Sheet {
+        let sub_hyperplane = Arc::new(SubHyperplane {
             span,
             facets: coplanar,
         });
         let side = |half, facets| Step::Side {
-            sheet: Arc::clone(&sheet),
+            sub_hyperplane: Arc::clone(&sub_hyperplane),
             half,
             depth,
             facets,
         };
         let (first, second) = (side(Half::Minus, minus), side(Half::Plus, plus));
-        self.steps.push(Step::Join(sheet));
+        self.steps.push(Step::Join(sub_hyperplane));
         self.steps.extend([second, first]);
         Ok(())
     }
 
     /// Labels a region without facets by its side of the last cut.
-    fn label(&mut self, sheet: &Sheet<S>, half: Half) {
-        let cut = S::hyperplane(&sheet.span);
+    fn label(&mut self, sub_hyperplane: &SubHyperplane<S>, half: Half) {
+        let cut = S::hyperplane(&sub_hyperplane.span);
         let faces_as_cut = |facet: &Facet<S>| {
             S::coincide(S::hyperplane(&facet.fragment), cut) == Some(Orientation::Same)
         };
-        let same = sheet.facets.iter().filter(|f| faces_as_cut(f)).count();
-        self.simple &= same == 0 || same == sheet.facets.len();
+        let same = sub_hyperplane
+            .facets
+            .iter()
+            .filter(|f| faces_as_cut(f))
+            .count();
+        self.simple &= same == 0 || same == sub_hyperplane.facets.len();
         let inside = (half == Half::Minus) == (same > 0);
         self.done
             .push(PartitionTree::Leaf(Label::from_inside(inside)));
     }
 
-    fn join(&mut self, sheet: Arc<Sheet<S>>) -> Result<()> {
+    fn join(&mut self, sub_hyperplane: Arc<SubHyperplane<S>>) -> Result<()> {
         let (Some(plus), Some(minus)) = (self.done.pop(), self.done.pop()) else {
             return Err(Error::internal(
                 "a cut was joined before its sides were built",
             ));
         };
-        self.done.push(PartitionTree::cut(sheet, minus, plus));
+        self.done
+            .push(PartitionTree::cut(sub_hyperplane, minus, plus));
         Ok(())
     }
 }

@@ -136,7 +136,7 @@ impl<S: Space> Flat<S> {
         let mut contacts = Vec::new();
         for node in self.cuts() {
             poll();
-            let span = node.cut.sheet().span.clone();
+            let span = node.cut.sub_hyperplane().span.clone();
             for (part, minus) in self.beside(node.minus, span)? {
                 for (fragment, plus) in self.beside(node.plus, part)? {
                     contacts.push(Contact {

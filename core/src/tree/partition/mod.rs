@@ -47,7 +47,7 @@ pub use cells::cells;
 pub use classify::{classify, classify_corner, Location};
 pub use components::{walls, Wall};
 pub use enclose::{enclosed, Plan};
-pub use node::{Cut, Facet, Label, PartitionTree, Sheet};
+pub use node::{Cut, Facet, Label, PartitionTree, SubHyperplane};
 pub use policy::PivotPolicy;
 pub use preorder::{from_preorder, preorder, Entry};
 pub use random::SplitMix;

@@ -46,19 +46,19 @@ pub struct Facet<S: Space> {
 
 /// The contents of a node's cut: its sub-hyperplane and its coplanar set.
 #[derive(Debug)]
-pub struct Sheet<S: Space> {
+pub struct SubHyperplane<S: Space> {
     /// The cut inside the node's region, oriented as the cut.
     pub span: S::Fragment,
     /// The coplanar set S(v): input fragments that lie in the span, in either orientation.
     pub facets: Vec<Facet<S>>,
 }
 
-impl<S: Space> Sheet<S> {
-    /// The two parts of a sheet whose span was cut into `minus` and `plus` by `cut`.
+impl<S: Space> SubHyperplane<S> {
+    /// The two parts of a sub-hyperplane whose span was cut into `minus` and `plus` by `cut`.
     pub fn parted(&self, cut: &S::Hyperplane, minus: S::Fragment, plus: S::Fragment) -> [Self; 2] {
         let (inner, outer) = split_facets::<S>(&self.facets, cut);
-        let sheet = |span, facets| Self { span, facets };
-        [sheet(minus, inner), sheet(plus, outer)]
+        let sub_hyperplane = |span, facets| Self { span, facets };
+        [sub_hyperplane(minus, inner), sub_hyperplane(plus, outer)]
     }
 }
 
@@ -103,7 +103,7 @@ pub struct Cut<S: Space> {
 }
 
 struct Node<S: Space> {
-    sheet: Arc<Sheet<S>>,
+    sub_hyperplane: Arc<SubHyperplane<S>>,
     minus: PartitionTree<S>,
     plus: PartitionTree<S>,
 }
@@ -114,14 +114,18 @@ impl<S: Space> PartitionTree<S> {
     /// The whole region.
     pub const FULL: Self = Self::Leaf(Label::In);
 
-    /// The tree divided along a sheet, or a leaf if both sides are equal leaves.
-    pub fn cut(sheet: Arc<Sheet<S>>, minus: Self, plus: Self) -> Self {
+    /// The tree divided along a sub-hyperplane, or a leaf if both sides are equal leaves.
+    pub fn cut(sub_hyperplane: Arc<SubHyperplane<S>>, minus: Self, plus: Self) -> Self {
         if let (Self::Leaf(a), Self::Leaf(b)) = (&minus, &plus)
             && a == b
         {
             return minus;
         }
-        let node = Node { sheet, minus, plus };
+        let node = Node {
+            sub_hyperplane,
+            minus,
+            plus,
+        };
         Self::Cut(Cut {
             node: Arc::new(node),
             complemented: false,
@@ -173,12 +177,12 @@ impl<S: Space> PartitionTree<S> {
 impl<S: Space> Cut<S> {
     /// The hyperplane that divides the region.
     pub fn hyperplane(&self) -> &S::Hyperplane {
-        S::hyperplane(&self.node.sheet.span)
+        S::hyperplane(&self.node.sub_hyperplane.span)
     }
 
     /// Return the contents of the cut.
-    pub fn sheet(&self) -> &Arc<Sheet<S>> {
-        &self.node.sheet
+    pub fn sub_hyperplane(&self) -> &Arc<SubHyperplane<S>> {
+        &self.node.sub_hyperplane
     }
 
     /// The subtree on one side.
@@ -219,7 +223,7 @@ impl<S: Space> Cut<S> {
         if minus.is_same(&self.child(Half::Minus)) && plus.is_same(&self.child(Half::Plus)) {
             return PartitionTree::Cut(self.clone());
         }
-        PartitionTree::cut(Arc::clone(&self.node.sheet), minus, plus)
+        PartitionTree::cut(Arc::clone(&self.node.sub_hyperplane), minus, plus)
     }
 
     fn shares(&self, other: &Self) -> bool {

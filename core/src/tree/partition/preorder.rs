@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::node::{Label, PartitionTree, Sheet};
+use super::node::{Label, PartitionTree, SubHyperplane};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Split};
 use crate::geometry::spaces::space::{Region, Space};
@@ -48,18 +48,18 @@ pub fn from_preorder<S: Space>(
     frame: S::Frame,
 ) -> Result<PartitionTree<S>> {
     let plus = plus_children(entries)?;
-    let mut maker = Maker {
+    let mut reader = PreorderReader {
         entries,
         plus: &plus,
         region: Region::new(frame),
         steps: vec![Step::Visit(NodeId::ROOT, None)],
         done: Vec::new(),
     };
-    while let Some(step) = maker.steps.pop() {
+    while let Some(step) = reader.steps.pop() {
         poll();
-        maker.advance(step)?;
+        reader.advance(step)?;
     }
-    maker.done.pop().ok_or_else(bad_list)
+    reader.done.pop().ok_or_else(bad_list)
 }
 
 fn bad_list() -> Error {
@@ -90,7 +90,7 @@ fn plus_children<H>(entries: &[Entry<H>]) -> Result<Vec<NodeId>> {
     }
 }
 
-struct Maker<'a, S: Space> {
+struct PreorderReader<'a, S: Space> {
     entries: &'a [Entry<S::Hyperplane>],
     plus: &'a [NodeId],
     region: Region<S>,
@@ -99,21 +99,22 @@ struct Maker<'a, S: Space> {
 }
 
 /// The cut above a node, the node's side of it, and the depth of the cut's region.
-type Above<S> = Option<(Arc<Sheet<S>>, Half, usize)>;
+type Above<S> = Option<(Arc<SubHyperplane<S>>, Half, usize)>;
 
 enum Step<S: Space> {
     Visit(NodeId, Above<S>),
-    Join(Arc<Sheet<S>>),
+    Join(Arc<SubHyperplane<S>>),
 }
 
-impl<S: Space> Maker<'_, S> {
+impl<S: Space> PreorderReader<'_, S> {
     fn advance(&mut self, step: Step<S>) -> Result<()> {
         match step {
-            Step::Join(sheet) => {
+            Step::Join(sub_hyperplane) => {
                 let (Some(plus), Some(minus)) = (self.done.pop(), self.done.pop()) else {
                     return Err(bad_list());
                 };
-                self.done.push(PartitionTree::cut(sheet, minus, plus));
+                self.done
+                    .push(PartitionTree::cut(sub_hyperplane, minus, plus));
                 Ok(())
             }
             Step::Visit(at, above) => match &self.entries[at.place()] {
@@ -127,9 +128,10 @@ impl<S: Space> Maker<'_, S> {
     }
 
     fn divide(&mut self, at: NodeId, cut: &S::Hyperplane, above: Above<S>) -> Result<()> {
-        if let Some((sheet, half, depth)) = &above {
+        if let Some((sub_hyperplane, half, depth)) = &above {
             self.region.truncate(*depth);
-            self.region.push(S::hyperplane(&sheet.span).clone(), *half);
+            self.region
+                .push(S::hyperplane(&sub_hyperplane.span).clone(), *half);
         }
         let minus = NodeId::of(at.place() + 1);
         let Some(span) = self.region.span(cut) else {
@@ -141,10 +143,10 @@ impl<S: Space> Maker<'_, S> {
             return Ok(());
         };
         let facets = Vec::new();
-        let sheet = Arc::new(Sheet { span, facets });
+        let sub_hyperplane = Arc::new(SubHyperplane { span, facets });
         let depth = self.region.depth();
-        let below = |half| Some((Arc::clone(&sheet), half, depth));
-        self.steps.push(Step::Join(Arc::clone(&sheet)));
+        let below = |half| Some((Arc::clone(&sub_hyperplane), half, depth));
+        self.steps.push(Step::Join(Arc::clone(&sub_hyperplane)));
         self.steps
             .push(Step::Visit(self.plus[at.place()], below(Half::Plus)));
         self.steps.push(Step::Visit(minus, below(Half::Minus)));
@@ -157,13 +159,13 @@ impl<S: Space> Maker<'_, S> {
 /// The sub-hyperplane above bounds the region, and so is on that side as well.
 fn side_of_region<S: Space>(
     cut: &S::Hyperplane,
-    above: Option<&(Arc<Sheet<S>>, Half, usize)>,
+    above: Option<&(Arc<SubHyperplane<S>>, Half, usize)>,
 ) -> Result<Half> {
-    let Some((sheet, ..)) = above else {
+    let Some((sub_hyperplane, ..)) = above else {
         let text = "a moved or refined hyperplane misses the lattice of 2^53 steps";
         return Err(Error::new(ErrorKind::TooLarge, text));
     };
-    match S::split(&sheet.span, cut) {
+    match S::split(&sub_hyperplane.span, cut) {
         Split::Minus => Ok(Half::Minus),
         Split::Plus => Ok(Half::Plus),
         _ => Err(bad_list()),

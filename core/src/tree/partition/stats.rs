@@ -31,7 +31,7 @@ pub fn stats<S: Space>(tree: &PartitionTree<S>) -> TreeStats {
             }
             PartitionTree::Cut(cut) => {
                 stats.cuts += 1;
-                stats.facets += cut.sheet().facets.len();
+                stats.facets += cut.sub_hyperplane().facets.len();
                 pending.extend(cut.children().map(|child| (child, depth + 1)));
             }
         }
@@ -67,7 +67,7 @@ pub fn check<S: Space>(tree: &PartitionTree<S>, frame: &S::Frame) -> Result<()> 
 }
 
 fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
-    let span = &cut.sheet().span;
+    let span = &cut.sub_hyperplane().span;
     let broken = |what: &str| Err(Error::internal(format!("{what} at {cut:?}")));
     let Some(expected) = region.span(cut.hyperplane()) else {
         return broken("a cut misses its node's region");
@@ -78,7 +78,12 @@ fn check_cut<S: Space>(cut: &Cut<S>, region: &Region<S>) -> Result<()> {
     let in_span = |piece: &S::Fragment| {
         S::coincide(S::hyperplane(piece), cut.hyperplane()).is_some() && holds::<S>(span, piece)
     };
-    if !cut.sheet().facets.iter().all(|f| in_span(&f.fragment)) {
+    if !cut
+        .sub_hyperplane()
+        .facets
+        .iter()
+        .all(|f| in_span(&f.fragment))
+    {
         return broken("a coplanar fragment lies outside its node's span");
     }
     let [a, b] = cut.children().map(|child| child.label());

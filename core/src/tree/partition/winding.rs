@@ -121,11 +121,11 @@ struct Piece<S: Space> {
 
 fn covered_pieces<S: Space>(cut: &Cut<S>) -> Vec<Piece<S>> {
     let whole = Piece {
-        fragment: cut.sheet().span.clone(),
+        fragment: cut.sub_hyperplane().span.clone(),
         rise: 0,
         layers: 0,
     };
-    cut.sheet()
+    cut.sub_hyperplane()
         .facets
         .iter()
         .fold(vec![whole], |pieces, facet| {

@@ -9,4 +9,4 @@ mod moving;
 mod planeset;
 
 pub use boundary::{Boundary, Corner, Edge};
-pub use planeset::{tree_of, PlaneSet, Spent, TREE};
+pub use planeset::{tree_of, PlaneSet, WorkSinceRebuild, SWEEPS_PER_TREE};

@@ -26,18 +26,18 @@ pub struct PlaneSet {
     form: Form,
     size: usize,
     /// The work spent on making this set.
-    pub spent: Spent,
+    pub spent: WorkSinceRebuild,
     /// The number of sweeps over all edges for few points.
     asked: Arc<AtomicUsize>,
 }
 
 /// Building a tree of n edges costs about as much as this many sweeps over them: 16 µs an edge against half
 /// a microsecond.
-pub const TREE: usize = 32;
+pub const SWEEPS_PER_TREE: usize = 32;
 
 /// The work of the operations that made a set, since its tree was last rebuilt.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spent {
+pub struct WorkSinceRebuild {
     /// Edges of larger operands that sweeps visited to combine them with smaller ones.
     pub swept: usize,
     /// The number of nodes of the tree that merging started from; 0 without merging.
@@ -70,7 +70,7 @@ impl PlaneSet {
         Self {
             form,
             size,
-            spent: Spent::default(),
+            spent: WorkSinceRebuild::default(),
             asked: Arc::default(),
         }
     }
@@ -121,7 +121,7 @@ impl PlaneSet {
             return true;
         }
         let few = points < self.size;
-        few && self.asked.fetch_add(1, Ordering::Relaxed) >= TREE
+        few && self.asked.fetch_add(1, Ordering::Relaxed) >= SWEEPS_PER_TREE
     }
 
     /// The tree, if it is made already.

@@ -4,7 +4,7 @@ use crate::arith::convert::as_number;
 use crate::geometry::doubles::extent::Extent;
 
 /// Triangles in one block: checking a block costs about as much as a triangle.
-const ROOM: usize = 32;
+const TRIANGLES_PER_BLOCK: usize = 32;
 
 /// Blocks of neighbouring triangles, and a box around all places that each block ever had.
 #[derive(Debug, Default)]
@@ -27,7 +27,7 @@ impl Blocks {
             let Some(around) = joined(&some, extents) else {
                 continue;
             };
-            if some.len() <= ROOM {
+            if some.len() <= TRIANGLES_PER_BLOCK {
                 blocks.add(some, around);
             } else {
                 let half = some.len() / 2;

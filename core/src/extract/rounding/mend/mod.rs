@@ -19,7 +19,7 @@ pub use self::part::{Mending, Precision};
 use crate::interrupt::spend;
 
 /// Changes tried for each fault before giving up: 30 merges, 6 swaps, and 14 moves of 6 corners.
-const TRIES: usize = 120;
+const MAX_CHANGES_PER_FAULT: usize = 120;
 
 impl Mending {
     /// Removes faults until none is left or no change helps.
@@ -48,7 +48,7 @@ impl Mending {
         let edits = self.edits(fault);
         edits
             .into_iter()
-            .take(TRIES)
+            .take(MAX_CHANGES_PER_FAULT)
             .any(|edit| self.attempt(&edit))
     }
 

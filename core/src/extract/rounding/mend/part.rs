@@ -50,14 +50,14 @@ impl Precision {
 
 /// The distance by which a change may move the surface, in spacings of the largest coordinate:
 /// rounding moves a point by half a spacing on each axis, and two surfaces in opposite directions.
-const FARTHEST: f64 = 4.0;
+const MAX_SPACINGS_MOVED: f64 = 4.0;
 
 /// Comparisons of boxes, at one to six nanoseconds each, after which mending gives up.
-const WORK: usize = 2_000_000_000;
+const MAX_BOX_COMPARISONS: usize = 2_000_000_000;
 
 /// The comparisons of boxes that take as long as one of triangles: between 20, where doubles decide,
 /// and a thousand, where both lie in a plane but for rounding (benchmark `triangles in doubles`).
-pub(super) const MEETING: usize = 100;
+pub(super) const BOXES_PER_TRIANGLE_TEST: usize = 100;
 
 /// The triangles around a vertex.
 pub(super) type Star = SmallVec<[u32; 8]>;
@@ -139,7 +139,7 @@ impl Mending {
             precision,
             spacing: precision.spacing(largest),
             drifts,
-            work: WORK,
+            work: MAX_BOX_COMPARISONS,
             moved: HashSet::default(),
         }
     }
@@ -163,7 +163,7 @@ impl Mending {
     }
 
     pub(super) fn reach(&self) -> f64 {
-        FARTHEST * self.spacing
+        MAX_SPACINGS_MOVED * self.spacing
     }
 
     /// The triangles around a vertex, ascending.

@@ -1,6 +1,6 @@
 //! Changes made and undone, and the faults that are left.
 
-use super::part::{Edit, Mending, Star, MEETING};
+use super::part::{Edit, Mending, Star, BOXES_PER_TRIANGLE_TEST};
 use crate::extract::rounding::edges::crosses_at;
 use crate::geometry::doubles::extent::Extent;
 use crate::geometry::doubles::meeting::{has_no_area, meeting, Meeting};
@@ -99,7 +99,9 @@ impl Mending {
             self.work = self.work.saturating_sub(self.blocks.count() + near.len());
             near.retain(|u| !extent.misses(&self.extents[*u as usize]));
             near.retain(|u| *u > t || *u < t && some.binary_search(u).is_err());
-            self.work = self.work.saturating_sub(MEETING * near.len());
+            self.work = self
+                .work
+                .saturating_sub(BOXES_PER_TRIANGLE_TEST * near.len());
             for u in near {
                 if self.cross(t, u, &flat) {
                     crossings.push([t.min(u), t.max(u)]);

@@ -17,7 +17,7 @@ const NONE: u32 = u32::MAX;
 
 /// Up to so many times as many vertices as elements are numbered in a table of all vertices. An
 /// element looks three names up, each at the cost of clearing some fifty places of the table.
-const SPARSE: usize = 16;
+const MAX_VERTICES_PER_ELEMENT: usize = 16;
 
 /// Anchors with what is known of the other operands there. Those of an element that nothing
 /// crosses have the same labels.
@@ -182,7 +182,8 @@ fn numbers_of_vertices(elements: &[Element]) -> Option<(Slot, Vec<u32>)> {
         return None;
     };
     let count = triangle.mesh_size();
-    (count <= SPARSE * elements.len()).then(|| (triangle.face.slot, vec![NONE; count]))
+    (count <= MAX_VERTICES_PER_ELEMENT * elements.len())
+        .then(|| (triangle.face.slot, vec![NONE; count]))
 }
 
 #[cfg(test)]

@@ -245,27 +245,27 @@ mod tests {
         (0u32..).zip(triangles).map(fragment).collect()
     }
 
-    fn told(triangles: &[[Lattice; 3]]) -> Vec<(u32, i32)> {
+    fn weights_of(triangles: &[[Lattice; 3]]) -> Vec<(u32, i32)> {
         let pieces = partitioned(&fragments(triangles));
-        let mut told: Vec<_> = pieces.iter().map(|f| (f.face.id.0, f.weight)).collect();
-        told.sort_unstable();
-        told
+        let mut weights: Vec<_> = pieces.iter().map(|f| (f.face.id.0, f.weight)).collect();
+        weights.sort_unstable();
+        weights
     }
 
     #[test]
     fn the_first_keeps_the_place_and_the_sum() {
         let one = [[0, 0, 0], [8, 0, 0], [0, 8, 0]];
         let turned = [[0, 0, 0], [0, 8, 0], [8, 0, 0]];
-        assert_eq!(told(&[one]), [(0, 1)]);
-        assert_eq!(told(&[one, one, one]), [(0, 3)]);
-        assert_eq!(told(&[one, turned]), []);
-        assert_eq!(told(&[turned, one, turned]), [(0, 1)]);
+        assert_eq!(weights_of(&[one]), [(0, 1)]);
+        assert_eq!(weights_of(&[one, one, one]), [(0, 3)]);
+        assert_eq!(weights_of(&[one, turned]), []);
+        assert_eq!(weights_of(&[turned, one, turned]), [(0, 1)]);
         let beside = [[8, 8, 0], [0, 8, 0], [8, 0, 0]];
-        assert_eq!(told(&[one, beside]), [(0, 1), (1, 1)]);
+        assert_eq!(weights_of(&[one, beside]), [(0, 1), (1, 1)]);
         // The second covers a corner of the first one.
         let inner = [[0, 0, 0], [4, 0, 0], [0, 4, 0]];
-        assert_eq!(told(&[one, inner]), [(0, 1), (0, 2)]);
-        assert_eq!(told(&[inner, one]), [(0, 2), (1, 1)]);
+        assert_eq!(weights_of(&[one, inner]), [(0, 1), (0, 2)]);
+        assert_eq!(weights_of(&[inner, one]), [(0, 2), (1, 1)]);
     }
 
     /// Return whether a lattice point lies in a convex polygon; `None` on the line of an edge.
@@ -297,13 +297,13 @@ mod tests {
         let mut seen = 0;
         for point in points(500) {
             let over = |all: &[Fragment]| -> Option<Vec<(u32, i32)>> {
-                let mut told = Vec::new();
+                let mut weights = Vec::new();
                 for f in all {
                     if contains(&f.polygon, &point)? {
-                        told.push((f.face.id.0, f.weight * upward(f)));
+                        weights.push((f.face.id.0, f.weight * upward(f)));
                     }
                 }
-                Some(told)
+                Some(weights)
             };
             let (Some(given), Some(found)) = (over(&fragments), over(&pieces)) else {
                 continue;

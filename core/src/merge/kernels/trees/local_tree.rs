@@ -73,14 +73,14 @@ pub struct LocalTree {
 }
 
 /// A fragment or a piece of one during construction.
-struct Growing {
+struct PendingFragment {
     fragment: Weighted,
     extent: Extent,
 }
 
 /// The fragments and pieces to distribute among nodes, which refer to them by index.
-struct Nursery {
-    all: Vec<Growing>,
+struct TreeBuilder {
+    all: Vec<PendingFragment>,
     /// One fragment of each node's coplanar set, which relates the labels on both sides of the node.
     links: Vec<usize>,
     open: Vec<Task>,
@@ -100,20 +100,20 @@ impl LocalTree {
             nodes: Vec::new(),
             labels: Vec::new(),
         };
-        let mut nursery = Nursery::of(fragments);
-        while let Some(task) = nursery.open.pop() {
+        let mut builder = TreeBuilder::of(fragments);
+        while let Some(task) = builder.open.pop() {
             poll();
             let child = if task.pieces.is_empty() {
                 tree.labels.push(0);
                 Child::Leaf(Region(as_number(tree.labels.len()) - 1))
             } else {
-                tree.grow(task.pieces, &mut nursery)
+                tree.grow(task.pieces, &mut builder)
             };
             if let Some((node, side)) = task.parent {
                 tree.nodes[node.place()].children[side] = child;
             }
         }
-        tree.spread_labels(&nursery, corner, label);
+        tree.spread_labels(&builder, corner, label);
         tree
     }
 
@@ -138,21 +138,21 @@ impl LocalTree {
         }
     }
 
-    fn grow(&mut self, mut pieces: Vec<usize>, nursery: &mut Nursery) -> Child {
+    fn grow(&mut self, mut pieces: Vec<usize>, builder: &mut TreeBuilder) -> Child {
         let node = NodeId::of(self.nodes.len());
-        let extents = pieces.iter().map(|piece| nursery.all[*piece].extent);
+        let extents = pieces.iter().map(|piece| builder.all[*piece].extent);
         let extent = extents.reduce(|a, b| a.joined(&b));
         let pivot = pieces.swap_remove(pieces.len() / 2);
-        let cut = Arc::clone(nursery.all[pivot].fragment.polygon.support());
-        let [minus, plus] = nursery.divide(&pieces, &cut);
-        nursery.links.push(pivot);
+        let cut = Arc::clone(builder.all[pivot].fragment.polygon.support());
+        let [minus, plus] = builder.divide(&pieces, &cut);
+        builder.links.push(pivot);
         self.nodes.push(LocalNode {
             cut,
             children: [Child::Leaf(Region(0)); 2],
-            extent: extent.unwrap_or(nursery.all[pivot].extent),
+            extent: extent.unwrap_or(builder.all[pivot].extent),
         });
         for (side, pieces) in [(1, plus), (0, minus)] {
-            nursery.open.push(Task {
+            builder.open.push(Task {
                 pieces,
                 parent: Some((node, side)),
             });
@@ -164,11 +164,11 @@ impl LocalTree {
     ///
     /// The links connect all regions: there is one for each node, between a region of its minus subtree and
     /// one of its plus subtree.
-    fn spread_labels(&mut self, nursery: &Nursery, corner: &Lattice, label: i32) {
+    fn spread_labels(&mut self, builder: &TreeBuilder, corner: &Lattice, label: i32) {
         let mut neighbours: Vec<Vec<(Region, i32)>> = vec![Vec::new(); self.labels.len()];
-        for (node, link) in self.nodes.iter().zip(&nursery.links) {
+        for (node, link) in self.nodes.iter().zip(&builder.links) {
             poll();
-            let Weighted { polygon, weight } = &nursery.all[*link].fragment;
+            let Weighted { polygon, weight } = &builder.all[*link].fragment;
             let [below, above] = node.children.map(|child| self.leaf_beside(child, polygon));
             neighbours[below.place()].push((above, -weight));
             neighbours[above.place()].push((below, *weight));
@@ -244,7 +244,7 @@ impl LocalTree {
             poll();
             let (polygon, ended) = self.descend(at, polygon, &mut open);
             match ended {
-                Ended::Within(leaf) => {
+                PathEnd::Within(leaf) => {
                     let label = self.labels[leaf.place()];
                     found.push(Sided {
                         polygon,
@@ -252,7 +252,7 @@ impl LocalTree {
                         plus: label,
                     });
                 }
-                Ended::Coplanar(node, orientation) => {
+                PathEnd::Coplanar(node, orientation) => {
                     self.coplanar_sides(node, polygon, orientation, &mut found);
                 }
             }
@@ -292,9 +292,9 @@ impl LocalTree {
             poll();
             let (polygon, ended) = self.descend(at, polygon, &mut open);
             match ended {
-                Ended::Within(leaf) => found.push((polygon, self.labels[leaf.place()])),
+                PathEnd::Within(leaf) => found.push((polygon, self.labels[leaf.place()])),
                 // A polygon in a node's plane is no fragment of its subtrees.
-                Ended::Coplanar(node, _) => open.push((node.children[0], polygon)),
+                PathEnd::Coplanar(node, _) => open.push((node.children[0], polygon)),
             }
         }
         found
@@ -308,21 +308,21 @@ impl LocalTree {
         from: Child,
         polygon: Polygon,
         open: &mut Vec<(Child, Polygon)>,
-    ) -> (Polygon, Ended<'_>) {
+    ) -> (Polygon, PathEnd<'_>) {
         let (mut at, mut polygon) = (from, polygon);
         let mut extent = extent(&polygon);
         loop {
             poll();
             let node = match at {
-                Child::Leaf(leaf) => return (polygon, Ended::Within(leaf)),
+                Child::Leaf(leaf) => return (polygon, PathEnd::Within(leaf)),
                 Child::Node(node) => &self.nodes[node.place()],
             };
             if extent.misses(&node.extent) {
                 let leaf = self.leaf_beside(at, &polygon);
-                return (polygon, Ended::Within(leaf));
+                return (polygon, PathEnd::Within(leaf));
             }
             if let Some(orientation) = polygon.support().coincides(&node.cut) {
-                return (polygon, Ended::Coplanar(node, orientation));
+                return (polygon, PathEnd::Coplanar(node, orientation));
             }
             at = match polygon.split(&node.cut) {
                 PolygonSplit::Minus | PolygonSplit::Coplanar => node.children[0],
@@ -339,16 +339,16 @@ impl LocalTree {
 }
 
 /// Where the path of a polygon down a tree ends.
-enum Ended<'t> {
+enum PathEnd<'t> {
     /// In a leaf, or in several with the same label.
     Within(Region),
     /// At a node in whose plane it lies.
     Coplanar(&'t LocalNode, Orientation),
 }
 
-impl Nursery {
+impl TreeBuilder {
     fn of(fragments: Vec<Weighted>) -> Self {
-        let all: Vec<Growing> = fragments.into_iter().map(Growing::of).collect();
+        let all: Vec<PendingFragment> = fragments.into_iter().map(PendingFragment::of).collect();
         let first = Task {
             pieces: (0..all.len()).collect(),
             parent: None,
@@ -375,7 +375,7 @@ impl Nursery {
                 PolygonSplit::Both(below, above) => {
                     let part = |polygon: Polygon| {
                         let weight = *weight;
-                        Growing::of(Weighted { polygon, weight })
+                        PendingFragment::of(Weighted { polygon, weight })
                     };
                     let (below, above) = (part(below), part(above));
                     minus.push(piece);
@@ -389,7 +389,7 @@ impl Nursery {
     }
 }
 
-impl Growing {
+impl PendingFragment {
     fn of(fragment: Weighted) -> Self {
         let extent = extent(&fragment.polygon);
         Self { fragment, extent }

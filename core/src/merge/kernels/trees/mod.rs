@@ -96,7 +96,7 @@ impl Bounds<'_> {
         }
         let sides = [&piece.minus, &piece.plus].map(|labels| self.value(labels, scratch));
         let orientation = orientation(sides)?;
-        (piece.is_alone(own) || self.is_owned(piece, own)).then_some(orientation)
+        (piece.is_only_boundary_of(own) || self.is_owned(piece, own)).then_some(orientation)
     }
 
     fn is_owned(&self, piece: &Piece, own: usize) -> bool {
@@ -167,7 +167,7 @@ impl Piece {
     }
 
     /// Return whether no other operand's label differs on the two sides.
-    fn is_alone(&self, operand: usize) -> bool {
+    fn is_only_boundary_of(&self, operand: usize) -> bool {
         let differs = |k: usize| self.minus[k] != self.plus[k];
         (0..self.minus.len()).all(|k| k == operand || !differs(k))
     }

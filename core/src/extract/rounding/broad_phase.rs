@@ -11,18 +11,18 @@ use crate::mesh::tasks::{each_chunk, fill_chunks};
 
 /// The most cells along an axis: the grid then fits into a cache, and the number of a cell into
 /// sixteen bits.
-const FINEST: usize = 32;
+const MAX_CELLS_PER_AXIS: usize = 32;
 
 /// The most cells that a triangle reaches into, on average: comparing it with its neighbours costs as
 /// much. A grid of four cells along an axis has no more.
-const SPREAD: usize = 64;
+const MAX_CELLS_PER_TRIANGLE: usize = 64;
 
 /// The triangles outside `some`, which is ascending, that may meet one of these or a triangle of
 /// another party; with their parties, ascending.
 ///
 /// # Cost
 /// Two passes over vertices and triangles.
-pub fn in_company(
+pub fn triangles_near(
     faces: &Faces,
     some: &[u32],
     party: impl Fn(u32) -> u32 + Sync,
@@ -63,7 +63,7 @@ struct Cells<'a> {
 const SHARED: u32 = u32::MAX;
 
 /// For each cell the party whose triangles reach into it, from 1 on; 0 if none do.
-type Marks = Vec<AtomicU32>;
+type CellParties = Vec<AtomicU32>;
 
 impl<'a> Cells<'a> {
     /// The cells of a grid around a mesh.
@@ -74,7 +74,9 @@ impl<'a> Cells<'a> {
             faces.vertices.iter().fold(first, joined)
         };
         let (low, high) = (end(f64::min), end(f64::max));
-        let size = (faces.triangles.len() / 24).isqrt().clamp(2, FINEST);
+        let size = (faces.triangles.len() / 24)
+            .isqrt()
+            .clamp(2, MAX_CELLS_PER_AXIS);
         let bits = size.next_power_of_two().ilog2();
         let along = as_double(1usize << bits);
         let factor = each_axis(|i| along / (high[i] - low[i]).max(f64::MIN_POSITIVE));
@@ -117,7 +119,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The marks of all triangles; `None` if they reach into more cells than are worth marking.
-    fn marks(&self, some: &[u32], party: impl Fn(u32) -> u32 + Sync) -> Option<Marks> {
+    fn marks(&self, some: &[u32], party: impl Fn(u32) -> u32 + Sync) -> Option<CellParties> {
         let mut marks = Vec::new();
         marks.resize_with(1 << (3 * self.bits), AtomicU32::default);
         let marked = each_chunk(self.triangles, |first, triangles| {
@@ -133,11 +135,11 @@ impl<'a> Cells<'a> {
     /// Marks the cells of `count` triangles; returns whether they reach into few enough.
     fn mark(
         &self,
-        marks: &Marks,
+        marks: &CellParties,
         parties: impl Iterator<Item = ([VertexId; 3], u32)>,
         count: usize,
     ) -> bool {
-        let mut left = SPREAD * count;
+        let mut left = MAX_CELLS_PER_TRIANGLE * count;
         for (corners, party) in parties {
             let mut reached = 0;
             self.any_row(marks, corners, |row| {
@@ -156,7 +158,7 @@ impl<'a> Cells<'a> {
     }
 
     /// The triangles that reach into a shared cell, ascending.
-    fn shared(&self, marks: &Marks) -> Vec<u32> {
+    fn shared(&self, marks: &CellParties) -> Vec<u32> {
         let is_shared = |mark: &AtomicU32| mark.load(Ordering::Relaxed) == SHARED;
         let near = each_chunk(self.triangles, |first, triangles| {
             let numbered = (as_number(first)..).zip(triangles);
@@ -271,8 +273,8 @@ mod tests {
             triangles: &triangles,
         };
         assert!(Cells::of(&faces).marks(&[0], |_| 0).is_none());
-        let company = in_company(&faces, &[0], |_| 0);
-        assert!(company.contains(&(0, 1)) && company.len() < triangles.len() - 1);
+        let found = triangles_near(&faces, &[0], |_| 0);
+        assert!(found.contains(&(0, 1)) && found.len() < triangles.len() - 1);
     }
 
     #[test]
@@ -287,9 +289,9 @@ mod tests {
             let some: Vec<u32> = (0..count)
                 .filter(|t| faces.corners(*t)[0][1] > 0.75)
                 .collect();
-            let company = in_company(&faces, &some, party);
-            assert!(company.is_sorted());
-            assert!(company.iter().all(|(p, t)| party(*t) == *p));
+            let found = triangles_near(&faces, &some, party);
+            assert!(found.is_sorted());
+            assert!(found.iter().all(|(p, t)| party(*t) == *p));
             let is_some = |t: u32| some.binary_search(&t).is_ok();
             let meet = |t: u32, u: u32| {
                 let [t, u] = [t, u].map(|t| Extent::of(&faces.corners(t)));
@@ -299,10 +301,10 @@ mod tests {
             for t in others.clone() {
                 let asked = |u: &u32| is_some(*u) || party(*u) != party(t);
                 let is_near = (0..count).filter(asked).any(|u| meet(t, u));
-                assert!(!is_near || company.contains(&(party(t), t)), "{t}");
+                assert!(!is_near || found.contains(&(party(t), t)), "{t}");
             }
-            assert!(company.iter().all(|(_, t)| !is_some(*t)));
-            assert!(count < 1000 || company.len() < others.count());
+            assert!(found.iter().all(|(_, t)| !is_some(*t)));
+            assert!(count < 1000 || found.len() < others.count());
         }
     }
 }

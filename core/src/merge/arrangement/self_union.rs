@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use super::candidates::Operand;
-use super::kept::Kept;
+use super::keep_rule::KeepRule;
 use super::near::{Pairs, View};
 use super::scene::Scene;
 use super::segments::{contacts_among, Contacts};
 use super::shells::{distinct, is_outward, shells, Shell};
 use super::star::is_star_shaped;
 use super::surfaces::Surfaces;
-use super::POOL;
+use super::MIN_FACES_FOR_POOL;
 use crate::geometry::cell::Cell;
 use crate::geometry::side::Orientation;
 use crate::merge::rule::Rule;
@@ -55,25 +55,27 @@ pub fn united(solid: &Solid, rule: Rule) -> Option<United> {
         return Some(United::Same);
     }
     let irregular = irregular(operand.source);
-    let alone = Alone::new(operand, solid.root().cell, rule, &irregular)?;
+    let comparison = SelfComparison::new(operand, solid.root().cell, rule, &irregular)?;
     let shells = shells(operand.mesh);
     let count = shells.len();
     if count == 1 || rule == Rule::EvenOdd {
-        return alone.united(alone.pairs());
+        return comparison.united(comparison.pairs());
     }
     let shells = distinct(operand.mesh, shells);
     let found = if shells.len() < count {
         Pairs::Overlap
     } else {
-        alone.view.pairs_unless_overlapping(&alone.scene.near[0])
+        comparison
+            .view
+            .pairs_unless_overlapping(&comparison.scene.near[0])
     };
     match found {
-        few @ Pairs::Few(_) => alone.united(few),
-        Pairs::Many | Pairs::Overlap if alone.are_simple(&shells) => {
+        few @ Pairs::Few(_) => comparison.united(few),
+        Pairs::Many | Pairs::Overlap if comparison.are_simple(&shells) => {
             let branches = shells.into_iter().map(|s| s.branch(operand.source));
             Some(United::Shells(branches.collect()))
         }
-        Pairs::Many | Pairs::Overlap => alone.united(alone.pairs()),
+        Pairs::Many | Pairs::Overlap => comparison.united(comparison.pairs()),
     }
 }
 
@@ -85,10 +87,13 @@ pub fn is_simple_mesh(solid: &Solid) -> Option<bool> {
         return Some(true);
     }
     let irregular = irregular(operand.source);
-    let alone = Alone::new(operand, solid.root().cell, Rule::Positive, &irregular)?;
-    match alone.view.pairs_unless_overlapping(&alone.scene.near[0]) {
+    let comparison = SelfComparison::new(operand, solid.root().cell, Rule::Positive, &irregular)?;
+    match comparison
+        .view
+        .pairs_unless_overlapping(&comparison.scene.near[0])
+    {
         Pairs::Overlap => Some(false),
-        found => Some(matches!(alone.united(found)?, United::Same)),
+        found => Some(matches!(comparison.united(found)?, United::Same)),
     }
 }
 
@@ -104,16 +109,16 @@ fn is_star(operand: &Operand) -> bool {
 }
 
 /// A mesh to compare with itself.
-struct Alone<'a> {
+struct SelfComparison<'a> {
     scene: Scene<'a>,
     view: View<'a>,
     irregular: &'a [bool],
 }
 
-impl<'a> Alone<'a> {
+impl<'a> SelfComparison<'a> {
     fn new(operand: Operand<'a>, cell: Cell, rule: Rule, irregular: &'a [bool]) -> Option<Self> {
         Some(Self {
-            scene: Scene::alone(operand, cell, rule),
+            scene: Scene::of_one(operand, cell, rule),
             view: View::new(operand.source, irregular)?,
             irregular,
         })
@@ -163,14 +168,14 @@ impl<'a> Alone<'a> {
 
 impl<'a> Scene<'a> {
     /// A mesh to compare with itself.
-    fn alone(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
+    fn of_one(operand: Operand<'a>, cell: Cell, rule: Rule) -> Self {
         let all: Vec<FaceId> = operand.mesh.face_ids().collect();
         Self {
-            worth: Worth::pool_if(all.len() >= POOL),
+            worth: Worth::pool_if(all.len() >= MIN_FACES_FOR_POOL),
             surfaces: Surfaces::new(vec![operand], vec![all.clone()]),
             near: vec![all],
             cell,
-            kept: Kept::Alone(rule),
+            kept: KeepRule::Single(rule),
         }
     }
 }

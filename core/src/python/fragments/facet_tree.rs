@@ -2,7 +2,7 @@
 
 use num_bigint::BigInt;
 
-use super::convert::{Recipe, Wish};
+use super::convert::{BuildMethod, BuildOptions};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::side::{Half, Side};
 use crate::geometry::spaces::affine::{Affine, Polytope, Viewpoint};
@@ -24,18 +24,23 @@ use crate::tree::fragments::{
 use crate::tree::trace::Watcher;
 
 /// A tree of one of the three dimensions.
-pub enum Inner {
-    Line(Held<Dim1>),
-    Plane(Held<Dim2>),
-    Space(Held<Dim3>),
+pub enum AnyFacetTree {
+    Line(FacetTree<Dim1>),
+    Plane(FacetTree<Dim2>),
+    Space(FacetTree<Dim3>),
 }
 
 /// The tree over facets in a space of `dimension`.
-pub fn built(dimension: usize, facets: Vec<Facet>, pitch: Pitch, recipe: &Recipe) -> Result<Inner> {
+pub fn build_any(
+    dimension: usize,
+    facets: Vec<Facet>,
+    pitch: Pitch,
+    options: &BuildOptions,
+) -> Result<AnyFacetTree> {
     Ok(match dimension {
-        1 => Inner::Line(held(facets, pitch, recipe)?),
-        2 => Inner::Plane(held(facets, pitch, recipe)?),
-        3 => Inner::Space(held(facets, pitch, recipe)?),
+        1 => AnyFacetTree::Line(build_tree(facets, pitch, options)?),
+        2 => AnyFacetTree::Plane(build_tree(facets, pitch, options)?),
+        3 => AnyFacetTree::Space(build_tree(facets, pitch, options)?),
         _ => {
             let text = format!("corners must have 1, 2 or 3 coordinates, not {dimension}");
             return Err(Error::new(ErrorKind::Shape, text));
@@ -44,15 +49,19 @@ pub fn built(dimension: usize, facets: Vec<Facet>, pitch: Pitch, recipe: &Recipe
 }
 
 /// Facets, their tree, and the lattice they lie on.
-pub struct Held<S: Affine> {
+pub struct FacetTree<S: Affine> {
     pub facets: Vec<Facet>,
     pub tree: FragmentTree<S>,
     pub pitch: Pitch,
 }
 
-fn held<S: FromRow>(facets: Vec<Facet>, pitch: Pitch, recipe: &Recipe) -> Result<Held<S>> {
-    let tree = build(pieces::<S>(&facets)?, plan(&facets, recipe)?)?;
-    Ok(Held {
+fn build_tree<S: FromRow>(
+    facets: Vec<Facet>,
+    pitch: Pitch,
+    options: &BuildOptions,
+) -> Result<FacetTree<S>> {
+    let tree = build(pieces::<S>(&facets)?, plan(&facets, options)?)?;
+    Ok(FacetTree {
         facets,
         tree,
         pitch,
@@ -60,15 +69,15 @@ fn held<S: FromRow>(facets: Vec<Facet>, pitch: Pitch, recipe: &Recipe) -> Result
 }
 
 /// A tree whose cuts somebody is asked for.
-pub fn asked<S: FromRow>(
+pub fn build_asking<S: FromRow>(
     facets: Vec<Facet>,
     pitch: Pitch,
     own: &[Row],
     ask: Ask<S>,
-) -> Result<Held<S>> {
+) -> Result<FacetTree<S>> {
     let plan = Plan::Own(own_cuts::<S>(own)?, Box::new(Plan::Asked(ask)));
     let tree = build(pieces::<S>(&facets)?, plan)?;
-    Ok(Held {
+    Ok(FacetTree {
         facets,
         tree,
         pitch,
@@ -79,14 +88,14 @@ fn own_cuts<S: FromRow>(own: &[Row]) -> Result<Vec<S::Hyperplane>> {
     own.iter().map(|row| S::from_row(row)).collect()
 }
 
-fn plan<S: FromRow>(facets: &[Facet], recipe: &Recipe) -> Result<Plan<S>> {
-    let plan = match &recipe.wish {
-        Wish::Given(cuts) => Plan::Given(cuts.clone()),
-        Wish::Lines(sample) => Plan::Lines(Lines {
+fn plan<S: FromRow>(facets: &[Facet], options: &BuildOptions) -> Result<Plan<S>> {
+    let plan = match &options.method {
+        BuildMethod::Given(cuts) => Plan::Given(cuts.clone()),
+        BuildMethod::Lines(sample) => Plan::Lines(Lines {
             corners: facets.iter().map(|f| f.corners.clone()).collect(),
             sample: *sample,
         }),
-        Wish::Policy(policy, top, margin) => Plan::Policy {
+        BuildMethod::Policy(policy, top, margin) => Plan::Policy {
             policy: *policy,
             top: *top,
             region: if policy.needs_region() {
@@ -96,10 +105,10 @@ fn plan<S: FromRow>(facets: &[Facet], recipe: &Recipe) -> Result<Plan<S>> {
             },
         },
     };
-    if recipe.own.is_empty() {
+    if options.own.is_empty() {
         return Ok(plan);
     }
-    Ok(Plan::Own(own_cuts::<S>(&recipe.own)?, Box::new(plan)))
+    Ok(Plan::Own(own_cuts::<S>(&options.own)?, Box::new(plan)))
 }
 
 /// All fragments as flat lists.
@@ -112,18 +121,18 @@ pub struct Export {
     pub flipped: Vec<bool>,
 }
 
-impl<S: FromRow> Held<S> {
+impl<S: FromRow> FacetTree<S> {
     /// Return the construction of the tree, which is built once more.
-    pub fn construction(&self, recipe: &Recipe) -> Result<Vec<Division>> {
+    pub fn construction(&self, options: &BuildOptions) -> Result<Vec<Division>> {
         let mut divisions = Vec::new();
-        let plan = plan(&self.facets, recipe)?;
+        let plan = plan(&self.facets, options)?;
         build_watched(pieces::<S>(&self.facets)?, plan, &mut divisions)?;
         Ok(divisions)
     }
 
-    /// The tree with more facets: where it ends it goes on by a recipe.
-    pub fn grown(&self, facets: Vec<Facet>, recipe: &Recipe) -> Result<Self> {
-        let rest = plan(&facets, recipe)?;
+    /// The tree with more facets: where it ends it goes on by these options.
+    pub fn grown(&self, facets: Vec<Facet>, options: &BuildOptions) -> Result<Self> {
+        let rest = plan(&facets, options)?;
         let plan = Plan::Grown(Box::new(self.tree.clone()), Box::new(rest));
         let tree = build(pieces::<S>(&facets)?, plan)?;
         let pitch = self.pitch;
@@ -134,11 +143,11 @@ impl<S: FromRow> Held<S> {
         })
     }
 
-    /// The recipe that makes the tree again.
-    pub fn recipe(&self) -> Recipe {
+    /// The options that make the tree again.
+    pub fn build_options(&self) -> BuildOptions {
         let own = self.tree.own().iter().map(row_of::<S>).collect();
-        let wish = Wish::Given(self.cuts());
-        Recipe { wish, own }
+        let method = BuildMethod::Given(self.cuts());
+        BuildOptions { method, own }
     }
 
     /// The nodes that a point passes, and its sides.
@@ -194,7 +203,7 @@ pub fn sign(side: Side) -> i8 {
     }
 }
 
-impl<S: Affine> Held<S> {
+impl<S: Affine> FacetTree<S> {
     pub fn perfect(&self) -> Result<Option<Vec<NodeCut>>> {
         perfect(&pieces::<S>(&self.facets)?)
     }

@@ -8,11 +8,11 @@ use crate::merge::rule::Rule;
 
 /// The orientation in which faces stay, by the numbers of the mesh they are compared with.
 #[derive(Debug)]
-pub(super) enum Kept {
+pub(super) enum KeepRule {
     /// For two operands, by the other one's numbers.
     Pair(Pair),
     /// For a mesh compared with itself, by its own numbers.
-    Alone(Rule),
+    Single(Rule),
 }
 
 /// Which faces of two operands stay.
@@ -61,7 +61,7 @@ fn between(in_front: bool, behind: bool) -> Option<Orientation> {
     (behind != in_front).then(|| Orientation::turned_around(in_front))
 }
 
-impl Kept {
+impl KeepRule {
     /// The rule for the value of an expression over two operands.
     pub(super) fn of(expression: &Expression) -> Self {
         Self::Pair(Pair::of(expression))
@@ -71,7 +71,7 @@ impl Kept {
     pub(super) fn outside(&self) -> bool {
         match self {
             Self::Pair(pair) => pair.outside,
-            Self::Alone(_) => false,
+            Self::Single(_) => false,
         }
     }
 
@@ -82,7 +82,7 @@ impl Kept {
                 let first = of[operand][0][0];
                 of[operand].as_flattened().iter().any(|k| *k != first)
             }
-            Self::Alone(_) => true,
+            Self::Single(_) => true,
         }
     }
 
@@ -97,7 +97,7 @@ impl Kept {
     ) -> Result<Option<Orientation>, Declined> {
         match self {
             Self::Pair(pair) => pair.at(operand, [in_front; 2]),
-            Self::Alone(rule) => Ok(between(rule.inside(in_front), rule.inside(in_front + 1))),
+            Self::Single(rule) => Ok(between(rule.inside(in_front), rule.inside(in_front + 1))),
         }
     }
 
@@ -116,7 +116,7 @@ impl Kept {
         match self {
             Self::Pair(_) if cell.covers > 1 => Err(Declined::Overlap(1 - operand)),
             Self::Pair(pair) => pair.at(operand, [in_front, behind]),
-            Self::Alone(rule) => {
+            Self::Single(rule) => {
                 let stays = between(rule.inside(in_front), rule.inside(behind + 1));
                 Ok(stays.filter(|_| !cell.is_of_earlier))
             }

@@ -12,7 +12,7 @@ use crate::mesh::topology::NONE;
 use crate::mesh::triangles::TriangleMesh;
 
 /// A face prepared for quick tests of pairs.
-pub(super) struct Looked {
+pub(super) struct PreparedFace {
     vertices: [VertexId; 3],
     low: Lattice,
     high: Lattice,
@@ -27,11 +27,11 @@ pub(super) struct Looked {
     /// The corners, whose coordinates are exact in doubles.
     doubles: Triangle,
     /// The terrain of the face, or `NONE`.
-    piece: u32,
+    terrain: u32,
 }
 
-impl Looked {
-    pub(super) fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool], piece: u32) -> Self {
+impl PreparedFace {
+    pub(super) fn at(mesh: &TriangleMesh, face: FaceId, irregular: &[bool], terrain: u32) -> Self {
         let (low, high) = mesh.face_box(face);
         let corners = mesh.corners(face).map(|c| c.map(as_double));
         let u = difference(&corners[1], &corners[0]);
@@ -52,7 +52,7 @@ impl Looked {
             size,
             has_area: longest(&normal) > 16.0 * f64::EPSILON * size || !has_no_area(&corners),
             doubles: corners,
-            piece,
+            terrain,
         }
     }
 
@@ -61,7 +61,7 @@ impl Looked {
         if (0..3).any(|i| self.high[i] < other.low[i] || other.high[i] < self.low[i]) {
             return true;
         }
-        if self.piece != NONE && self.piece == other.piece {
+        if self.terrain != NONE && self.terrain == other.terrain {
             return true;
         }
         let theirs = self.shared_with(other);
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     /// Faces over these corners, elongated by a shear: volumes and common planes stay.
-    fn sheared(corners: &[Lattice], faces: &[[u32; 3]]) -> Vec<Looked> {
+    fn sheared(corners: &[Lattice], faces: &[[u32; 3]]) -> Vec<PreparedFace> {
         let shear = |[x, y, z]: Lattice| [x + (y << 22) + (z << 43), y + (z << 22), z];
         let mesh = TriangleMesh {
             vertices: corners.iter().copied().map(shear).collect(),
@@ -171,8 +171,8 @@ mod tests {
             ..TriangleMesh::default()
         };
         let irregular = vec![false; corners.len()];
-        let looked = |face| Looked::at(&mesh, face, &irregular, NONE);
-        mesh.face_ids().map(looked).collect()
+        let prepared = |face| PreparedFace::at(&mesh, face, &irregular, NONE);
+        mesh.face_ids().map(prepared).collect()
     }
 
     #[test]

@@ -20,7 +20,8 @@ use crate::mesh::grid::Pitch;
 use crate::python::hyperplanes::{in_plane, in_space, on_line, shape};
 use crate::query::region::condense::condensed_line;
 use crate::tree::partition::{
-    from_preorder, is_bounded, preorder, stats, Entry, Label, PartitionTree, Sheet, TreeStats,
+    from_preorder, is_bounded, preorder, stats, Entry, Label, PartitionTree, SubHyperplane,
+    TreeStats,
 };
 use crate::tree::plane::tree_of;
 
@@ -248,13 +249,13 @@ fn halves<S: AxisSpace>(
 ) -> Result<[PartitionTree<S>; 2]> {
     let span = span::<S>(cut)?;
     let halves = split_tree(tree, &span)?;
-    let sheet = Arc::new(Sheet {
+    let sub_hyperplane = Arc::new(SubHyperplane {
         span,
         facets: halves.coplanar,
     });
-    let other = Arc::clone(&sheet);
+    let other = Arc::clone(&sub_hyperplane);
     Ok([
-        PartitionTree::cut(sheet, halves.minus, PartitionTree::EMPTY),
+        PartitionTree::cut(sub_hyperplane, halves.minus, PartitionTree::EMPTY),
         PartitionTree::cut(other, PartitionTree::EMPTY, halves.plus),
     ])
 }

@@ -10,33 +10,33 @@ use crate::interrupt::spend;
 use crate::merge::profile::Declined;
 
 /// The number of faces compared with all faces of the other mesh.
-const SAMPLE: usize = 16;
+const FACES_SAMPLED: usize = 16;
 
 /// With fewer faces than this, all the work costs less than a sample is worth.
-const WORTH_A_LOOK: usize = 256;
+const SAMPLED_FROM: usize = 256;
 
 /// In a crowd a box meets this many faces of the other mesh on average; in real meshes about twenty.
-const CROWD: usize = 128;
+const CROWDED_FROM: usize = 128;
 
 /// Samples faces of the first mesh.
 ///
 /// # Errors
 /// `AllOver` if one of them touches another face, `Crowded` if boxes do not separate faces.
-pub(super) fn probe(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
+pub(super) fn sample(operands: &[Operand; 2], within: &[Within; 2]) -> Result<(), Declined> {
     let [first, second] = within;
-    if first.faces.len().min(second.faces.len()) < WORTH_A_LOOK {
+    if first.faces.len().min(second.faces.len()) < SAMPLED_FROM {
         return Ok(());
     }
     let mut met = 0;
     let sampled = first.faces.iter().zip(&first.boxes);
-    for (face, bounds) in sampled.step_by(first.faces.len() / SAMPLE) {
-        spend(second.faces.len() / SAMPLE);
+    for (face, bounds) in sampled.step_by(first.faces.len() / FACES_SAMPLED) {
+        spend(second.faces.len() / FACES_SAMPLED);
         let facing = Facing::of(&operands[0].triangle(*face));
         let others = second.faces.iter().zip(&second.boxes);
         for (other, _) in others.filter(|(_, others)| bounds.meets(others)) {
             met += 1;
             let other = Facing::of(&operands[1].triangle(*other));
-            if met > CROWD * SAMPLE {
+            if met > CROWDED_FROM * FACES_SAMPLED {
                 return Err(Declined::Crowded);
             }
             if matches!(contact(&facing, &other), Contact::Touching(_)) {
