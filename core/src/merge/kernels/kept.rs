@@ -23,7 +23,7 @@ use crate::tree::pieces::pieces;
 pub struct Kept {
     face: SourceFace,
     orientation: Orientation,
-    kept_region: KeptRegion,
+    region: KeptRegion,
 }
 
 #[derive(Debug)]
@@ -41,21 +41,21 @@ enum KeptRegion {
 impl Kept {
     /// All of a face in the cell.
     pub fn whole(face: SourceFace, orientation: Orientation) -> Self {
-        let kept_region = KeptRegion::Whole;
+        let region = KeptRegion::Whole;
         Self {
             face,
             orientation,
-            kept_region,
+            region,
         }
     }
 
     /// All of a part in the cell.
     pub fn part(face: SourceFace, orientation: Orientation, part: Arc<Part>) -> Self {
-        let kept_region = KeptRegion::Part(part);
+        let region = KeptRegion::Part(part);
         Self {
             face,
             orientation,
-            kept_region,
+            region,
         }
     }
 
@@ -71,28 +71,28 @@ impl Kept {
         pieces: Vec<Polygon>,
         edges: Vec<BareEdge>,
     ) -> Self {
-        let kept_region = KeptRegion::Pieces(pieces, edges);
+        let region = KeptRegion::Pieces(pieces, edges);
         Self {
             face,
             orientation,
-            kept_region,
+            region,
         }
     }
 
     /// The region inside an outline: some, but not all of a face in the cell. No two consecutive edges lie
     /// on one line.
     pub fn outlined(face: SourceFace, orientation: Orientation, edges: Vec<BareEdge>) -> Self {
-        let kept_region = KeptRegion::Outline(edges);
+        let region = KeptRegion::Outline(edges);
         Self {
             face,
             orientation,
-            kept_region,
+            region,
         }
     }
 
     /// Edges that bound some of it, besides the convex pieces.
     fn edges(&self) -> &[BareEdge] {
-        match &self.kept_region {
+        match &self.region {
             KeptRegion::Pieces(_, edges) | KeptRegion::Outline(edges) => edges,
             KeptRegion::Whole | KeptRegion::Part(_) => &[],
         }
@@ -100,7 +100,7 @@ impl Kept {
 
     /// The convex pieces inside the cell.
     fn polygons(&self, source: &Source, cell: &Cell) -> Cow<'_, [Polygon]> {
-        match &self.kept_region {
+        match &self.region {
             KeptRegion::Whole => source.clip(self.face.id, cell).into_iter().collect(),
             KeptRegion::Part(part) => {
                 let pieces = pieces(part);
@@ -138,14 +138,14 @@ pub fn assemble(
         let orientation = run[0].orientation;
         match run {
             [Kept {
-                kept_region: KeptRegion::Whole,
+                region: KeptRegion::Whole,
                 ..
             }] => {
                 list_whole(&mut leaf.groups, source, face, orientation, touching);
                 continue;
             }
             [Kept {
-                kept_region: KeptRegion::Part(part),
+                region: KeptRegion::Part(part),
                 ..
             }] => {
                 let part = Arc::clone(part);
@@ -153,7 +153,7 @@ pub fn assemble(
                 continue;
             }
             [Kept {
-                kept_region: KeptRegion::Outline(edges),
+                region: KeptRegion::Outline(edges),
                 ..
             }] => {
                 let edges = std::mem::take(edges);
