@@ -1,4 +1,4 @@
-"""Dense places, each at two sizes: many faces meet there, and cost is to grow as answers do."""
+"""Dense places, where many faces meet, at two sizes: cost should grow no faster than answers."""
 
 from collections.abc import Callable
 from dataclasses import replace
