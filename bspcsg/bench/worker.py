@@ -167,7 +167,7 @@ class _Turns:
         return cost, outcome
 
     def _plan(self, seconds: float) -> None:
-        """Choose the number of runs that fit into the budget, and of calls in each, after the first."""
+        """Plan after the first run how many more fit into the budget, and how many calls each."""
         if self._warm:
             self.left -= 1
             return
