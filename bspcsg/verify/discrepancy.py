@@ -24,8 +24,7 @@ class SetDifference:
     Parameters
     ----------
     volume : float
-        The volume between both meshes on the lattice, rounded once; zero only if the sets are
-        equal.
+        Of the difference on the lattice, rounded once; zero only if the sets are equal.
     area : float
     thickness : float
         The thickness of its thickest piece, in model units: twice the volume divided by the area.
