@@ -32,7 +32,7 @@ WindingRule: TypeAlias = Literal["positive", "nonzero", "even-odd"]
 #: A boolean of two or more operands, by name.
 SetOp: TypeAlias = Literal["union", "intersection", "difference", "xor"]
 
-#: One line of the program that the core evaluates: what to do, and with which earlier lines.
+#: One line of the program that the core evaluates: an operation, and the lines it uses.
 ProgramLine: TypeAlias = tuple[str, list[int]]
 
 #: Answers for each element: bool.

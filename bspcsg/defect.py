@@ -1,4 +1,4 @@
-"""Reports of defects: a file with what was called, on what, and how it failed."""
+"""Reports of defects: a file with the call, its inputs, and the failure."""
 
 import itertools
 import os

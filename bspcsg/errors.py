@@ -1,7 +1,7 @@
 """The exceptions of this package, and the conversion of the core's errors to them.
 
 Every failure is a `BspcsgError` with a stable `code`, the places it concerns in `where`, and a
-sentence that says what is wrong and what to do.
+sentence that describes the problem and the remedy.
 """
 
 import errno

@@ -69,7 +69,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     Raises
     ------
     FormatError
-        If the file cannot be read as what its suffix says.
+        If the file cannot be read in the format of its suffix.
     InvalidMeshError, LimitError
         If the content is not a solid: the message names the file, `where` the faces.
     """

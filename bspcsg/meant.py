@@ -38,7 +38,7 @@ _ELSEWHERE = {
 
 
 def meant(word: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a word stands for or resembles, or None."""
+    """Return the known name that a word means or resembles, or None."""
     from difflib import get_close_matches
 
     names = [name for name in known if not name.startswith("_")]

@@ -37,7 +37,7 @@ class Last(Generic[_Key, _Value]):
         self._kept: dict[_Key, _Value] = {}
 
     def get(self, key: _Key) -> _Value | None:
-        """Return what was made for this key, if it was the last."""
+        """Return the value for this key if it was made last, else None."""
         return self._kept.get(key)
 
     def keep(self, key: _Key, value: _Value) -> _Value:

@@ -48,7 +48,7 @@ class Bill:
 
     @property
     def volume(self) -> float:
-        """Volume of all parts, in cubic model units; what two have in common counts twice."""
+        """Volume of all parts, in cubic model units; volume shared by two counts twice."""
         return math.fsum(row.volume * row.count for row in self.rows)
 
     @property

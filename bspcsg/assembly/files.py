@@ -52,7 +52,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
 
 
 def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assembly:
-    """Read an assembly as what a suffix names, whatever the file's own suffix."""
+    """Read an assembly in the format of a suffix, whatever the file's own suffix."""
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:

@@ -14,7 +14,7 @@ from ..errors import Finding
 from ..solid.solid import Solid
 from .tree import Assembly
 
-#: Nodes whose children stand beside each other.
+#: Nodes that unite their children.
 _UNITING = frozenset({"group", "union", "render", "color"})
 
 

@@ -140,7 +140,7 @@ class Assembly(Movable):
         return tuple(found)
 
     def _inherited(self, path: str, around: Part | None) -> Part:
-        """Return this node as a part, with what it inherits from the assembly around it."""
+        """Return this node as a part, with properties inherited from the assembly around it."""
         outer = () if around is None else around.factors
         color = self.color if self.color is not None or around is None else around.color
         density = self.density if self.density is not None or around is None else around.density
@@ -182,7 +182,7 @@ class Assembly(Movable):
         show(self)
 
     def _repr_html_(self) -> str | None:
-        """Return what a notebook shows: an interactive view of the union."""
+        """Return the view in a notebook: an interactive view of the union."""
         from ..report.viewer.notebook import solid_html
 
         return solid_html(self.to_solid())

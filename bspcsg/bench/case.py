@@ -29,7 +29,7 @@ class BenchCase:
     cores : int
         The number of cores that the process may use; 0 for no limit.
     alone : bool
-        Each engine runs in a process of its own, and the peak of its memory is what counts.
+        Each engine runs in a process of its own, and its peak memory is measured.
     needs : str
         Path of data that may be missing, below the folder of shared data.
     limit : float

@@ -62,7 +62,7 @@ def _doubled(title: str, make: _Maker, count: int, small: int) -> BenchCase:
     )
 
 
-#: By name; sizes are what manifold3d does within seconds.
+#: By name; manifold3d takes seconds for these sizes.
 CLIFFS: dict[str, BenchCase] = {
     "dense-half-spaces": _doubled(
         "cubes around a ball, one side of each touching it, intersected",

@@ -22,7 +22,7 @@ from .shapes import (
 #: Sides of a tube.
 _TUBE_SIDES = 24
 
-#: Turns what would be aligned with axes.
+#: Rotates meshes that would be aligned with axes.
 _ASKEW = rotation((1, 2, 3), 0.4)
 
 
@@ -184,7 +184,7 @@ def combs(teeth: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def bar(sides: int) -> list[MeshArrays]:
-    """Return a long bar with a round end, with caps as fans of needles, as in STL files."""
+    """Return a long bar with a round end, in single precision as in STL: caps are needle fans."""
     return [_in_single_precision(turned(_round_bar(sides), rotation((3, 1, 2), 0.7)))]
 
 

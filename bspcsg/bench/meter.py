@@ -22,7 +22,7 @@ class Usage:
     seconds, cpu : float
         Wall time, and processor time of all threads.
     peak_mb : float
-        The memory of the largest of the processes, in 10^6 bytes.
+        The peak memory of the largest of the processes, in 10^6 bytes.
     code : int
         The exit code.
     said : str

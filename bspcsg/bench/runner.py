@@ -66,7 +66,7 @@ class Settings:
     steps: int = 0
 
 
-#: Called with a line about what is under way.
+#: Called with a line about the current work.
 Progress = Callable[[str], None]
 
 
@@ -135,7 +135,7 @@ def _bound_of_memory(case: BenchCase, label: str, settings: Settings) -> float:
 
 
 def _parts(case: BenchCase, task: Task) -> list[Task]:
-    """Return one task for all engines, or one for each if each is to be alone."""
+    """Return one task for all engines, or one for each if each runs alone."""
     if not case.alone:
         return [task]
     return [replace(task, engines=[name]) for name in task.engines]

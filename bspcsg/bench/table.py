@@ -62,7 +62,7 @@ def _or_nothing(seconds: float | None) -> str:
 
 
 def remarks(record: dict[str, Any]) -> list[str]:
-    """Return sentences about the whole: what was reached and missed, and what was left out."""
+    """Return sentences about the whole: targets reached and missed, and items left out."""
     met = [
         (row["case"], target.reached(row["items"]).met)
         for row in record["cases"]

@@ -102,7 +102,7 @@ def _geometric_mean(numbers: list[float]) -> float:
 
 @dataclass(frozen=True)
 class Within:
-    """Done in so many seconds, the median of each item."""
+    """The median of each item is at most so many seconds."""
 
     seconds: float
 
@@ -122,7 +122,7 @@ class Within:
 
 @dataclass(frozen=True)
 class WorkWithin:
-    """Done in so much processor time, of all threads and processes; the median of each item."""
+    """The median processor time of each item, of all threads and processes, is limited."""
 
     seconds: float
 
@@ -186,7 +186,7 @@ class ScratchWithin:
 
 @dataclass(frozen=True)
 class MemoryWithin:
-    """Done within so much memory, counting the whole process."""
+    """The memory of the whole process is limited."""
 
     megabytes: float
 
@@ -246,7 +246,7 @@ class GrowthTarget:
 
 
 def _of_all(met: bool, measured: int, items: Items) -> bool | None:
-    """Return whether a target is met; None where only some items say so."""
+    """Return whether a target is met; None if it is met but some items were not measured."""
     return None if met and measured < len(items) else met
 
 

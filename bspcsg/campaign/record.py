@@ -17,7 +17,7 @@ from typing import Any, Literal, NotRequired, Self, TypedDict, cast
 from ..errors import FormatError, unreadable
 from ..machine import Machine
 
-#: The name that stands for standard input.
+#: The name for standard input.
 STREAM = "-"
 
 #: Version of the lines.

@@ -99,7 +99,7 @@ def _refuse_no_values(found: tuple[Any, ...]) -> None:
 
 
 def _complaint(text: str) -> str:
-    """Return the line of openscad's output that says what is wrong."""
+    """Return the line of openscad's output that describes the error."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if "ERROR" in line.upper()]
     return (errors or lines or ["it said nothing"])[-1]

@@ -81,7 +81,7 @@ def _counts(bits: Any, things: Any, size: int = 0) -> Any:
 
 
 def _joined(links: Any, count: int) -> Any:
-    """Return the least number that links connect each of so many things to."""
+    """Return for each of `count` things the least number of a thing connected to it by links."""
     least = np.arange(count)
     while len(links):
         before = least.copy()

@@ -226,7 +226,7 @@ class _Check:
             raise
 
     def _fault(self, mesh: Mesh, ours: Facts) -> str:
-        """Return what is wrong with our own result, whatever the oracle says."""
+        """Return the defect of our own result, if any, regardless of the oracle's answer."""
         if ours.open_edges:
             return f"the result has {ours.open_edges} open edges"
         status = oracle.status_of(mesh) if self.depth == "full" else "NoError"

@@ -74,7 +74,7 @@ def _mesh_of(operand: Operand) -> MeshArrays:
 
 @lru_cache(maxsize=_MAX_FILES_KEPT)
 def _read(file: str, sha256: str) -> MeshArrays:
-    del sha256  # what tells a file from itself after it was changed
+    del sha256  # distinguishes versions of a changed file
     raw = read(file)
     return raw.vertices, raw.faces
 

@@ -123,7 +123,7 @@ def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
 
 
 def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> CaseRecord:
-    """Return what comes of a case; what the package refuses is an answer too.
+    """Return the record of a case; a refusal by the package is an answer, too.
 
     Parameters
     ----------

@@ -151,7 +151,7 @@ def _page(path: Path, dpi: float) -> _Page:
 
 
 def _length(text: str, dpi: float) -> float | None:
-    """Return a length in millimetres; None for what is missing or relative."""
+    """Return a length in millimetres; None if it is missing or relative."""
     match = _LENGTH.fullmatch(text)
     if match is None or match.group(2) == "%":
         return None

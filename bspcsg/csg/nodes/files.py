@@ -71,7 +71,7 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
 def _tell_of_unused(
     owner: Node, arguments: Arguments, run: Evaluation, used: tuple[str, ...]
 ) -> None:
-    """Warn of arguments that this kind of file does not use, unless they have those values."""
+    """Warn of arguments that this kind of file does not use, unless they have default values."""
     for name, nothing in _ASKING_NOTHING.items():
         if name not in used and arguments.value(name) not in (None, nothing):
             run.warn(owner, f"its {name} does not count for such a file, all of which is read")

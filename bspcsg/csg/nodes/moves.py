@@ -23,7 +23,7 @@ _MAX_SAFE_ENTRY = 1e15
 
 @node("multmatrix", takes=Signature(("m",)), makes_corners=False)
 def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Move the children by a matrix; what it flattens is left out."""
+    """Transform the children by a matrix; leave out those that it flattens."""
     body = union_of(owner, children, run)
     arguments = run.arguments(owner)
     matrix = _matrix(arguments)

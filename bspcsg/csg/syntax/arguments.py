@@ -12,7 +12,7 @@ from .writer import value_text
 #: The largest number that may be a length or an angle: the product of three still fits a double.
 MAX_NUMBER = 1e100
 
-#: The type of the numbers in trees and of defaults; that of true and false is another.
+#: The type of numbers in trees and of defaults; true and false have another type.
 _FLOAT = frozenset({float})
 
 #: The largest number of characters of a value that an error quotes.

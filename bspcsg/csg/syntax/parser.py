@@ -53,7 +53,7 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
 
 
 def value_of(text: str) -> Value:
-    """Return the value that a text stands for, such as ``1.5``, ``"text"`` or ``[1, 2]``.
+    """Return the value of a text such as ``1.5``, ``"text"`` or ``[1, 2]``.
 
     Raises
     ------
