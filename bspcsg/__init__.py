@@ -173,13 +173,13 @@ _MODULES = {
     "operations.setops": "boolean difference intersection union xor",
     "solid.solid": "Solid",
 }
-#: Parts of the package that need no import of their own.
+#: Submodules that are imported on first use, without an import statement.
 _PARTS = frozenset({"bsp", "csg", "errors", "io", "parts", "trimesh_engine"})
 _HOMES = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> "Any":
-    """Import what is asked for the first time."""
+    """Import a name when it is first used."""
     if name in _PARTS:
         return import_module(f".{name}", __name__)
     if name not in _HOMES:

@@ -8,13 +8,13 @@ import numpy.typing as npt
 
 from ._core import find_numpy
 
-# Here, where an interrupt waits for the end of the import, and not with the first array.
+# Imported here, so that an interrupt waits until the import ends, and not at the first array.
 find_numpy()
 
-#: Coordinates or other measures: float64, the shape is given where the name is used.
+#: Coordinates or other measures: float64; the shape is given where the name is used.
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 
-#: Indices: int64, the docstring that uses it says what they index.
+#: Indices: int64; the docstring that uses the name says what they index.
 IndexArray: TypeAlias = npt.NDArray[np.int64]
 
 #: In/on/out answers: int8, +1 inside, 0 on the boundary, -1 outside.
@@ -32,7 +32,7 @@ WindingRule: TypeAlias = Literal["positive", "nonzero", "even-odd"]
 #: A boolean of two or more operands, by name.
 SetOp: TypeAlias = Literal["union", "intersection", "difference", "xor"]
 
-#: One line of the program that the core evaluates: what to do, and with which earlier lines.
+#: One line of the program that the core evaluates: an operation, and the lines it uses.
 ProgramLine: TypeAlias = tuple[str, list[int]]
 
 #: Answers for each element: bool.

@@ -1,4 +1,4 @@
-"""Reports of defects: a file with what was called, on what, and how it failed."""
+"""Reports of defects: a file with the call, its inputs, and the failure."""
 
 import itertools
 import os
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import zipfile
 
 #: The largest number of reports that one process writes: a program that continues after a defect
-#: may meet it often.
+#: may meet the defect often.
 _MAX_REPORTS = 16
 
 _numbers = itertools.count(1)
@@ -23,7 +23,7 @@ def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
 
     The file is a ZIP archive that only its owner may read: ``report.json`` with the message, the
     call, the versions and small inputs, arrays as ``.npy`` files, trees as ``.snapshot`` files.
-    Nothing that goes wrong here becomes an error.
+    Errors in here are never raised.
     """
     try:
         return _written(message, call, inputs) if next(_numbers) <= _MAX_REPORTS else None
@@ -32,7 +32,7 @@ def report(message: str, call: str, inputs: Mapping[str, Any]) -> str | None:
 
 
 def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
-    # Late: every start needs this module, and hardly any writes a report.
+    # Imported late: every start needs this module, and hardly any writes a report.
     import json
     import platform
     import tempfile
@@ -63,7 +63,7 @@ def _written(message: str, call: str, inputs: Mapping[str, Any]) -> str:
 
 
 def _put(archive: "zipfile.ZipFile", name: str, value: Any) -> Any:
-    """Put a large input into the archive; return what `report.json` says of it."""
+    """Put a large input into the archive; return the entry for it in `report.json`."""
     import io
 
     import numpy as np

@@ -1,7 +1,7 @@
-"""The exceptions of this package, and the one place where the core's errors become them.
+"""The exceptions of this package, and the conversion of the core's errors to them.
 
 Every failure is a `BspcsgError` with a stable `code`, the places it concerns in `where`, and a
-sentence that says what is wrong and what to do.
+sentence that describes the problem and the remedy.
 """
 
 import errno
@@ -29,7 +29,7 @@ _HARMLESS = dict.fromkeys(_CONTROLS, "\N{REPLACEMENT CHARACTER}")
 
 
 def harmless(text: str) -> str:
-    """Return a text in which names and words of files cannot steer a terminal."""
+    """Return a text in which names and words from files cannot control a terminal."""
     return text.translate(_HARMLESS)
 
 
@@ -83,15 +83,15 @@ class LimitError(BspcsgError, OverflowError):
 
 
 class FormatError(BspcsgError, ValueError):
-    """A file cannot be read as what it claims to be, or cannot be written."""
+    """A file cannot be read in the format that it claims, or cannot be written."""
 
 
 class MissingFileError(FormatError, FileNotFoundError):
-    """A file is not there; as an `OSError` it has `errno` and `filename`, too."""
+    """A file is missing; as an `OSError` this has `errno` and `filename`, too."""
 
     def __init__(self, message: str, code: str = "unreadable", where: Sequence[int] = ()) -> None:
         super().__init__(message, code, where)
-        # OSError takes three arguments for its own.
+        # OSError gives a meaning of its own to three arguments.
         self.args = harmless(message), code, tuple(where)
         self.errno, self.strerror = errno.ENOENT, os.strerror(errno.ENOENT)
 
@@ -112,7 +112,7 @@ class MissingPartError(BspcsgError, RuntimeError):
 
 
 class UnboundedError(BspcsgError, ValueError):
-    """A finite answer was asked of a solid that reaches to infinity."""
+    """A solid that reaches to infinity was asked for a finite answer."""
 
 
 class InternalError(BspcsgError, RuntimeError):
@@ -156,7 +156,7 @@ _ADVICE = {
 
 
 def from_core(error: _CoreError) -> BaseException:
-    """Return the exception of this package that says what the core's error says."""
+    """Return the exception of this package for an error of the core."""
     if error.code == "cancelled":
         return KeyboardInterrupt()
     kind = _CLASSES.get(error.code, InternalError)
@@ -186,15 +186,15 @@ def _sentence(message: str, advice: str) -> str:
 
 @contextmanager
 def format_errors(name: str, what: str) -> Iterator[None]:
-    """Turn whatever a parser raises inside the block into a `FormatError`, its cause kept.
+    """Turn any error that a parser raises inside the block into a `FormatError`, with its cause.
 
-    Parsers of other libraries raise anything on damaged files, running out of memory or of stack
-    among it.
+    Parsers of other libraries raise any kind of error on damaged files, even those for exhausted
+    memory or stack.
 
     Parameters
     ----------
     name : str
-        The file's.
+        The name of the file.
     what : str
         The format it is read as, such as ``"3MF"``.
     """
@@ -232,27 +232,27 @@ def core_errors() -> AbstractContextManager[None]:
 
 
 def held(value: _Value | None, name: str) -> _Value:
-    """Return a value that is there by an invariant of this package."""
+    """Return a value that is never None by an invariant of this package."""
     if value is None:
         raise internal(f"{name} is missing")
     return value
 
 
 def words_of(error: BaseException) -> str:
-    """Return what another library's exception says: one printable line, not too long."""
+    """Return another library's error message as one printable line of limited length."""
     text = " ".join(str(error).split())
     printable = "".join(letter for letter in text if letter.isprintable())[:_MAX_QUOTED_CHARACTERS]
     return printable.rstrip(". ") or type(error).__name__
 
 
 def unreadable(name: object, error: Exception | None = None) -> FormatError:
-    """Return the error for a file that cannot be read: for this reason, or because there is none.
+    """Return the error for a file that cannot be read or is missing.
 
     Parameters
     ----------
     name : str or path
     error : Exception, optional
-        What came of reading it.
+        The error that reading raised; by default the file is missing.
     """
     if error is None or isinstance(error, FileNotFoundError):
         reason = getattr(error, "strerror", None) or os.strerror(errno.ENOENT)
@@ -285,7 +285,7 @@ class Finding:
     where : tuple of int
         Indices of the first faces or vertices concerned.
     count : int
-        The number of them in all.
+        The total number of these.
     """
 
     code: str
@@ -295,12 +295,12 @@ class Finding:
     count: int
 
     def __post_init__(self) -> None:
-        # The message may quote a file.
+        # The message may quote text from a file.
         object.__setattr__(self, "message", harmless(self.message))
 
     @classmethod
     def from_core(cls, finding: "CoreFinding") -> "Finding":
-        """Return the core's finding as a value."""
+        """Return the finding of the core as a value."""
         return cls(
             finding["code"],
             finding["severity"],
@@ -311,28 +311,28 @@ class Finding:
 
 
 class LossWarning(UserWarning):
-    """An attribute of a solid is not in the file or mesh made of it, which has no place for it."""
+    """A file or mesh made from a solid cannot store one of its attributes."""
 
 
-#: The codes of findings about attributes that are not in what was made.
+#: The codes of findings about attributes that were not stored.
 _LOSSES = frozenset({"attributes_left_out", "colors_left_out"})
 
 
 def warn_of_losses(findings: Iterable[Finding]) -> None:
-    """Warn the caller of this package about the attributes that did not come along."""
+    """Warn the caller of this package about attributes that were lost."""
     for finding in findings:
         if finding.code in _LOSSES:
             warnings.warn(finding.message, LossWarning, stacklevel=_levels_to_caller())
 
 
 def deprecated(old: str, new: str) -> None:
-    """Warn the caller of this package of what goes with the next version."""
+    """Warn the caller of this package about a name that the next version removes."""
     message = f"{old} goes with the next version; use {new}."
     warnings.warn(message, DeprecationWarning, stacklevel=_levels_to_caller())
 
 
 def _levels_to_caller() -> int:
-    """Return how far up the code is that called this package, seen from the function above."""
+    """Return the stack level of the package's caller, as seen from the function that calls this."""
     frame = sys._getframe(1)
     level = 1
     while frame.f_back is not None and _is_own(str(frame.f_globals.get("__name__", ""))):

@@ -1,8 +1,8 @@
 """Mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio, in and out.
 
-Everything is read and written in double precision where the format has it. A file that is cut off,
-or says what cannot be, is refused with its name and the line or byte; a file that is written
-appears complete or not at all, and only after it was read back and compared with the mesh.
+Everything is read and written in double precision where the format has it. A file that is cut off
+or contradicts itself is refused with its name and the line or byte. A file is written completely or
+not at all, and only after it was read back and compared with the mesh.
 """
 
 import os
@@ -59,9 +59,9 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     path : str or path
         Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
         `bspcsg.csg.load`).
-        3MF and GLB come in millimetres, the other formats in whatever
-        unit they were written in. What `save` wrote of the empty set is the empty set again; any
-        other file without faces is refused.
+        3MF and GLB are read in millimetres, the other formats in the unit in which they were
+        written. A file that `save` wrote for the empty set is read as the empty set; any other file
+        without faces is refused.
     **options
         For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``, and ``attributes=False`` to
         leave colours and the like in the file; for scripts as for `bspcsg.csg.load`.
@@ -69,12 +69,12 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     Raises
     ------
     FormatError
-        If the file cannot be read as what its suffix says.
+        If the file cannot be read in the format of its suffix.
     InvalidMeshError, LimitError
-        If what it holds is no solid: the message names the file, `where` the faces.
+        If the content is not a solid: the message names the file, `where` the faces.
     """
     if Path(file_path(path)).suffix.lower() in SCRIPTS:
-        # Scripts need much that mesh files do not.
+        # Scripts import much that mesh files do not need.
         from . import csg
 
         return csg.load(path, **options)
@@ -88,7 +88,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
     Parameters
     ----------
     data : bytes or file
-        Materials and pictures that lie beside it are read only if it is a file on disk.
+        Materials and pictures next to it are read only if it is a file on disk.
     suffix : str
         One of `FORMATS`, with or without its dot.
     **options
@@ -97,7 +97,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
     Raises
     ------
     FormatError
-        If the format is not said (code "unknown_format"), or as for `load`.
+        If no format is given (code "unknown_format"), or as for `load`.
     """
     named = f".{text_value('' if suffix is None else suffix, 'suffix').lower().removeprefix('.')}"
     if named not in FORMATS:
@@ -116,7 +116,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
 
 
 def _is_on_disk(data: Any) -> bool:
-    """Say whether something is a file of the system; members of archives have names, too."""
+    """Say whether an object is a file on disk; members of archives have names, too."""
     try:
         data.fileno()
     except (AttributeError, OSError):
@@ -139,20 +139,20 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     Returns
     -------
     tuple of Finding
-        The things that the format could not keep.
+        Findings about everything that the format could not keep.
 
     Raises
     ------
     FormatError
-        If the format is unknown, cannot hold the coordinates, or the file cannot be written; code
-        ``"write_mismatch"`` if what was written reads back as another mesh.
+        If the format is unknown or cannot hold the coordinates, or the file cannot be written; code
+        ``"write_mismatch"`` if the file reads back as another mesh.
     UnboundedError
         If the solid reaches to infinity.
 
     Warns
     -----
     LossWarning
-        If the format has no place for an attribute, or for all of a colour.
+        If the format cannot store an attribute, or not all of a colour.
     """
     is_text = truth_value(text, "text")
     own = of_kind(Solid, solid, "solid")

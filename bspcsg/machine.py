@@ -1,4 +1,4 @@
-"""The machine, and the memory of this process, as the system tells them."""
+"""The machine and the memory of this process, as reported by the system."""
 
 import os
 import platform
@@ -9,7 +9,7 @@ from typing import TypedDict
 _STATUS = Path("/proc/self/status")
 _CLEAR = Path("/proc/self/clear_refs")
 
-#: Written there, it sets the peak back to what is held now (proc_pid_clear_refs(5)).
+#: Written to that file, it resets the peak to the current memory (proc_pid_clear_refs(5)).
 _FORGET_PEAK = "5"
 
 
@@ -47,7 +47,7 @@ def _processor() -> str:
 
 
 def _installed_gb() -> float:
-    """Return the memory of this machine in 10^9 bytes; 0 where nobody says."""
+    """Return the memory of this machine in 10^9 bytes; 0 if unknown."""
     try:
         return round(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 1e9, 1)
     except (ValueError, OSError, AttributeError):
@@ -55,14 +55,14 @@ def _installed_gb() -> float:
 
 
 def held_mb() -> float:
-    """Return what this process holds now, in 10^6 bytes; its peak where nobody says."""
+    """Return the current memory of this process in 10^6 bytes; its peak if that is unknown."""
     return _status("VmRSS") or peak_mb()
 
 
 def peak_mb() -> float:
-    """Return the most that it held since it began, or since the peak was forgotten.
+    """Return the peak memory of this process since it began, or since `forget_peak`.
 
-    In 10^6 bytes; 0 where nobody says.
+    In 10^6 bytes; 0 if unknown.
     """
     return _status("VmHWM") or _used_mb()
 
@@ -85,7 +85,7 @@ def _used_mb() -> float:
 
 
 def forget_peak() -> bool:
-    """Begin the peak anew; false where the system does not offer that."""
+    """Reset the peak; return False if the system cannot."""
     try:
         _CLEAR.write_text(_FORGET_PEAK, encoding="utf-8")
     except OSError:
@@ -94,7 +94,7 @@ def forget_peak() -> bool:
 
 
 def limit_memory(size: int | None) -> None:
-    """Let this process ask for no more than so many bytes of addresses."""
+    """Limit the address space of this process, in bytes."""
     if size is None or sys.platform == "win32":
         return
     import resource

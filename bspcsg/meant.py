@@ -1,8 +1,8 @@
-"""The name that somebody meant who wrote another one."""
+"""Suggestions for mistyped or foreign names."""
 
 from collections.abc import Iterable
 
-#: What other libraries and languages call things, by the names that these have here.
+#: Names in other libraries and languages, by the names of the same things here.
 _ELSEWHERE = {
     "difference": "diff subtract subtraction minus cut sub remove",
     "union": "add fuse join merge unite combine plus append",
@@ -38,7 +38,7 @@ _ELSEWHERE = {
 
 
 def meant(word: str, known: Iterable[str]) -> str | None:
-    """Return the known name that a word stands for or resembles, or None."""
+    """Return the known name that a word means or resembles, or None."""
     from difflib import get_close_matches
 
     names = [name for name in known if not name.startswith("_")]
@@ -51,22 +51,22 @@ def meant(word: str, known: Iterable[str]) -> str | None:
 
 
 def question(word: object, known: Iterable[str]) -> str:
-    """Return a question to end an error with, or nothing if no name comes near."""
+    """Return a question to end an error with, or nothing if no known name is close."""
     name = meant(word, known) if isinstance(word, str) else None
     return f" Is {name} meant?" if name else ""
 
 
 def no_attribute(owner: object, name: str, what: str) -> AttributeError:
-    """Return the error for an attribute that is not there.
+    """Return the error for a missing attribute.
 
     Parameters
     ----------
     owner : object
-        What was asked.
+        The object that lacks it.
     name : str
     what : str
         The owner in the message: ``"'Solid' object"``.
     """
-    # Programs probe private names often, and nobody is to read of them.
+    # Programs probe private names often, and nobody reads those errors.
     asks = "" if name.startswith("_") else question(name, dir(owner))
     return AttributeError(f"{what} has no attribute {name!r}{asks and '.'}{asks}")

@@ -1,7 +1,7 @@
-"""Values that are kept once made, the same ones for all threads.
+"""Values that are made once and then shared by all threads.
 
-Nothing is locked while a value is made: in a process that is forked meanwhile the lock would stay
-taken for ever. Threads may make a value at the same time; all get the one that was ready first.
+No lock is held while a value is made, because a process forked meanwhile would keep it locked
+forever. Threads may make a value at the same time; all get the one that was ready first.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ class Once(Generic[_Value]):
     def of(self, make: Callable[[], _Value]) -> _Value:
         """Return the value; `make` is called if there is none yet."""
         if not self._made:
-            # Threads append one after the other, and the first stays the first.
+            # Appends of threads are atomic, and the first entry stays first.
             self._made.append(make())
             del self._made[1:]
         return self._made[0]
@@ -37,11 +37,11 @@ class Last(Generic[_Key, _Value]):
         self._kept: dict[_Key, _Value] = {}
 
     def get(self, key: _Key) -> _Value | None:
-        """Return what was made for this key, if it was the last."""
+        """Return the value for this key if it was made last, else None."""
         return self._kept.get(key)
 
     def keep(self, key: _Key, value: _Value) -> _Value:
-        """Return what is kept for this key: the value, but for one that another thread has made."""
+        """Return the value kept for this key: this one, unless another thread was faster."""
         kept = self._kept.setdefault(key, value)
         for other in list(self._kept):
             if other != key:

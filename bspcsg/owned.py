@@ -1,4 +1,4 @@
-"""Methods named after the class that users know, and not after the one that holds them."""
+"""Names methods after the class that users know, and not after the class that defines them."""
 
 from types import CellType, FunctionType
 from typing import Any, TypeVar
@@ -9,7 +9,7 @@ _Kind = TypeVar("_Kind", bound=type)
 def owning(kind: _Kind) -> _Kind:
     """Give a class copies of the public methods that it inherits from this package.
 
-    What Python says of a call, such as that an argument is missing, then names the class.
+    Python's messages about calls, such as one about a missing argument, then name the class.
     """
     for base in kind.__mro__[1:]:
         if base.__module__.partition(".")[0] != __package__:
@@ -31,7 +31,7 @@ def _owned(held: object, kind: type) -> Any:
 
 
 def _copied(function: FunctionType, kind: type) -> FunctionType:
-    """Return the same function with its home in another class, and so what it wraps."""
+    """Return a copy of a function for another class, with a copy of what it wraps."""
     cells, state = function.__closure__, dict(function.__dict__)
     wrapped = state.get("__wrapped__")
     if isinstance(wrapped, FunctionType) and cells:

@@ -1,7 +1,7 @@
-"""The checks of parameters: one for each kind, used wherever such a parameter is taken.
+"""The checks of parameters: one for each kind of parameter, used everywhere.
 
-Each returns the value as the type that the rest of the package works with, or raises an error that
-names the parameter. Truth values and texts are no numbers here.
+Each check returns the value in the type that the package uses, or raises an error that names the
+parameter. Truth values and texts do not count as numbers.
 """
 
 import math
@@ -25,9 +25,9 @@ MAX_PITCH = 22
 #: The largest number of threads. Each has a stack of 64 MB, so this many take 64 GB of addresses.
 MAX_THREADS = 1024
 
-#: The largest number of sides of a circle. This many lie within 1.2e-9 of the radius of the true
-#: circle, π²/2 / 2**32. In a body of radius one that is less than two steps of its lattice, so more
-#: sides would make it no rounder.
+#: The largest number of sides of a circle. Such a polygon is within 1.2e-9 of the radius of the
+#: true circle, π²/2 / 2**32. In a body of radius one that is less than two steps of its lattice, so
+#: more sides would make it no rounder.
 MAX_SEGMENTS = 1 << 16
 
 #: Sides of a full circle, unless the caller says otherwise.
@@ -37,14 +37,14 @@ SEGMENTS = 32
 #: of them 2.4 GB.
 MAX_CORNERS = 4_000_000
 
-#: The longest time that a caller may choose, in seconds: some twelve days. System calls take no
-#: more than 2**31 milliseconds.
+#: The longest time that a caller may choose, in seconds: some twelve days. System calls accept at
+#: most 2**31 milliseconds.
 MAX_SECONDS = 10**6
 
 #: The highest dimension: trees divide lines, planes and spaces.
 _MAX_DIMENSION = 3
 
-#: Messages show all digits of smaller numbers than this.
+#: Messages show all digits of numbers below this.
 _MAX_COUNT_SHOWN = 10**15
 
 #: The largest number of characters of a value that a message quotes.
@@ -55,7 +55,7 @@ _SEED_MODULUS = 2**64
 
 _Kind = TypeVar("_Kind")
 
-#: The set operations on any number of operands, in the order in which cases of them are made.
+#: The set operations on any number of operands, in the order in which campaigns try them.
 SET_OPS: "tuple[SetOp, ...]" = ("union", "difference", "intersection", "xor")
 
 _WINDING_RULES: "tuple[WindingRule, ...]" = ("positive", "nonzero", "even-odd")
@@ -97,7 +97,7 @@ def not_negative(value: Any, name: str) -> float:
 
 
 def seconds(value: Any, name: str) -> float | None:
-    """Return a time above 0, up to `MAX_SECONDS`; None, as infinity does, stands for ever."""
+    """Return a time above 0, up to `MAX_SECONDS`; None, also for infinity, means no limit."""
     if value is None or (isinstance(value, float) and value == math.inf):
         return None
     time = positive(value, name)
@@ -131,7 +131,7 @@ def sides_around(least: int, value: Any, name: str) -> int:
     Raises
     ------
     InvalidParameterError
-        If it is no whole number, or fewer.
+        If it is not a whole number, or below `least`.
     LimitError
         If it is beyond `MAX_SEGMENTS`.
     """
@@ -154,7 +154,7 @@ def refuse_many_corners(count: float, what: str) -> None:
 
 
 def truth_value(value: Any, name: str) -> bool:
-    """Return True or False; 1 and 0 count as them."""
+    """Return True or False; 1 and 0 are accepted."""
     if isinstance(value, bool) or (_is_truth_value(value) and value.shape == ()):
         return bool(value)
     if isinstance(value, int) and value in (0, 1):
@@ -168,15 +168,15 @@ def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
     Parameters
     ----------
     r, d : float or None
-        One of them, or none if there is a default.
+        One of them, or neither if there is a default.
     owner : str
-        What has the radius, for errors: ``"A sphere"``.
+        The owner of the radius, for errors: ``"A sphere"``.
     default : float, optional
 
     Raises
     ------
     InvalidParameterError
-        If both are given, or none and there is no default.
+        If both are given, or neither without a default.
     """
     if r is not None and d is not None:
         raise invalid_parameter("Give a radius or a diameter, not both.")
@@ -187,7 +187,7 @@ def radius(r: Any, d: Any, owner: str, *, default: Any = None) -> Any:
 
 
 def pair(value: Any, name: str) -> tuple[Any, Any]:
-    """Return two entries, still unchecked: one alone stands for both."""
+    """Return two entries, still unchecked; a single value stands for both."""
     try:
         entries = tuple(value)
     except TypeError:
@@ -216,14 +216,14 @@ def text_value(value: Any, name: str) -> str:
 
 
 def texts(value: Any, name: str) -> list[str]:
-    """Return a list of texts; one alone is no list."""
+    """Return a list of texts; a single text is refused."""
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
         raise invalid_parameter(f"{name} must be a list of texts, not {shown(value)}.")
     return [text_value(entry, f"each of {name}") for entry in value]
 
 
 def values_by_name(value: Any, name: str) -> dict[str, Any]:
-    """Return a dict whose keys are texts; None stands for an empty one."""
+    """Return a dict with texts as keys; None stands for an empty one."""
     if value is None:
         return {}
     if not isinstance(value, Mapping):
@@ -232,7 +232,7 @@ def values_by_name(value: Any, name: str) -> dict[str, Any]:
 
 
 def word(known: Iterable[str], value: Any, name: str) -> str:
-    """Return one of the words that are known."""
+    """Return one of the known words."""
     words = tuple(known)
     if isinstance(value, str) and value in words:
         return str(value)
@@ -241,7 +241,7 @@ def word(known: Iterable[str], value: Any, name: str) -> str:
 
 
 def function_of(value: Any, name: str) -> Callable[..., Any]:
-    """Return what can be called."""
+    """Return a callable."""
     if callable(value):
         called: Callable[..., Any] = value
         return called
@@ -256,7 +256,7 @@ def of_kind(kind: type[_Kind], value: Any, name: str) -> _Kind:
 
 
 def no_options(options: Mapping[str, Any], solid: object) -> None:
-    """Refuse options that say how a mesh is read, given with what is a solid already."""
+    """Refuse options for reading a mesh when the argument is a solid already."""
     if options:
         given = ", ".join(options)
         raise invalid_parameter(
@@ -271,7 +271,7 @@ def pitch_exponent(value: Any) -> int:
     Raises
     ------
     InvalidParameterError
-        If it is no whole number.
+        If it is not a whole number.
     LimitError
         If it is out of range.
     """
@@ -288,7 +288,7 @@ def pitch_exponent(value: Any) -> int:
 
 
 def optional_pitch(value: Any) -> int | None:
-    """Return the exponent of a lattice step, or None where nobody has chosen one."""
+    """Return the exponent of a lattice step, or None if none was chosen."""
     return None if value is None else pitch_exponent(value)
 
 
@@ -303,7 +303,7 @@ def thread_count(value: Any) -> int:
 
 
 def set_threads(n: int) -> None:
-    """Set how many threads operations use that do not say so.
+    """Set the default number of threads of operations.
 
     Parameters
     ----------
@@ -314,7 +314,7 @@ def set_threads(n: int) -> None:
 
 
 def seed_number(value: Any) -> int:
-    """Return what names a random order: a whole number from 0 on, below 2**64."""
+    """Return a seed: a whole number from 0 on, below 2**64."""
     return at_least(0, value, "seed") % _SEED_MODULUS
 
 
@@ -339,7 +339,7 @@ def _whole(value: Any, name: str) -> int | None:
 
 
 def shown(value: Any) -> str:
-    """Return what a message shows of a value: its beginning and its end if it is long."""
+    """Return a value as messages quote it: its beginning and its end if it is long."""
     try:
         text = repr(value)
     except ValueError:  # an integer of thousands of digits

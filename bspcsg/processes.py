@@ -1,7 +1,7 @@
 """Child processes that end with this one, however it ends.
 
-``processes.py PIPE PROGRAM ARGUMENT…`` becomes a program that does. As a script it imports nothing
-of this package.
+``processes.py PIPE PROGRAM ARGUMENT…`` becomes such a child and runs the program. As a script it
+imports nothing of this package.
 """
 
 import contextlib
@@ -22,7 +22,7 @@ _PARENT_DEATH_SIGNAL = 1
 
 @contextlib.contextmanager
 def watched() -> Iterator[tuple[int, ...]]:
-    """Yield what tells a child of the end of this process, where a child can be told."""
+    """Yield the file descriptors by which a child notices the end of this process, if any."""
     if os.name != "posix":
         yield ()
         return
@@ -35,13 +35,13 @@ def watched() -> Iterator[tuple[int, ...]]:
 
 
 def end_with_parent(pipe: int | None = None) -> None:
-    """Have this process killed when its parent ends in any way, or at once if it has ended.
+    """Have this process killed when its parent ends, or at once if that has ended already.
 
     Parameters
     ----------
     pipe : int, optional
-        The end to be read of a pipe to which the parent alone can write; without it nothing is
-        done. On Linux the thread that started this process must wait for its end.
+        The read end of a pipe to which the parent alone can write; without it nothing is done. On
+        Linux the thread that started this process must wait for its end.
     """
     if pipe is None:
         return
@@ -64,7 +64,7 @@ def _end_without_writer(pipe: int, patience: int | None) -> None:
 def run_program(
     command: Sequence[str], timeout: float | None, environment: Mapping[str, str] | None = None
 ) -> "subprocess.CompletedProcess[str]":
-    """Run a program to its end, and return what it wrote; on Linux it ends with this process.
+    """Run a program to its end, and return its output; on Linux it ends with this process.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def run_program(
     with watched() as read_by_child:
         start: list[str] = []
         if sys.platform == "linux":
-            # What a process asked of the system stays when it becomes another program.
+            # Settings like the death signal survive when a process becomes another program.
             start = [sys.executable, "-I", "-S", __file__, *map(str, read_by_child)]
         return subprocess.run(
             [*start, *command],

@@ -1,7 +1,7 @@
 """A boolean engine of trimesh, which keeps double precision.
 
-trimesh itself rounds vertices to single precision before it asks manifold3d. One line makes
-scripts that are there already exact::
+trimesh itself rounds vertices to single precision before it calls manifold3d. One line makes
+existing scripts exact::
 
     import bspcsg.trimesh_engine
 
@@ -35,7 +35,7 @@ def register(default: bool = False) -> None:
     Parameters
     ----------
     default : bool
-        True if operations that name no engine are to use this one.
+        True to use this engine where an operation names none.
 
     Raises
     ------
@@ -74,19 +74,20 @@ def boolean(
     check_volume: bool = True,
     **options: Any,
 ) -> "trimesh.Trimesh":
-    """Combine meshes as trimesh asks its engines to.
+    """Combine meshes, with the signature of trimesh's engines.
 
     Parameters
     ----------
     meshes : iterable of trimesh.Trimesh
         Or anything else that `Solid.from_mesh` takes.
     operation : {"difference", "intersection", "union"}
-        A difference takes all others from the first.
+        A difference subtracts all others from the first.
     check_volume : bool
         Refuse meshes whose ``is_volume`` is false: open, inconsistent or inside out. Without it,
         meshes still have to be closed.
     **options
-        As for `Solid`: ``pitch``, ``trusted``, ``winding``; of meshes, not of a `Solid` among them.
+        As for `Solid`: ``pitch``, ``trusted``, ``winding``; they apply to meshes, not to a `Solid`
+        among them.
 
     Returns
     -------
@@ -116,7 +117,7 @@ def boolean(
 
 
 def _refuse_surfaces(meshes: list[Any]) -> None:
-    """Refuse what trimesh does not call a volume; what is no trimesh has nothing to ask."""
+    """Refuse meshes that are not volumes for trimesh; objects of other types pass."""
     bad = [number for number, mesh in enumerate(meshes) if not getattr(mesh, "is_volume", True)]
     if bad:
         which = ", ".join(map(str, bad))

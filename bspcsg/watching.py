@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from ._core import watch
 from .parameters import at_least, function_of, not_negative
 
-#: Signs of a whole bar.
+#: The number of characters of a full bar.
 _WIDTH = 30
 
 #: A bar appears after this many seconds: short work needs none.
@@ -16,7 +16,7 @@ _BAR_DELAY = 0.5
 
 
 class Steps:
-    """The steps of a block that are done, of a number that the block was given.
+    """The steps done in a block, of a total that may be known.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Steps:
         self._tell: Callable[[], object] = lambda: None
 
     def __call__(self, count: int = 1) -> None:
-        """Say that a step is done, or so many of them."""
+        """Record that a step is done, or so many of them."""
         self.done += at_least(0, count, "count")
         self._tell()
 
@@ -40,12 +40,12 @@ class Steps:
         return None if not self.of else min(self.done / self.of, 1.0)
 
     def told_to(self, tell: Callable[[], object]) -> None:
-        """Let a function be called after each step."""
+        """Set a function to call after each step."""
         self._tell = tell
 
 
 class _Bar:
-    """One line of standard error, written anew again and again."""
+    """One line of standard error, rewritten again and again."""
 
     def __init__(self, steps: Steps) -> None:
         self._steps = steps
@@ -53,12 +53,12 @@ class _Bar:
         self._can_go_back = sys.stderr.isatty() or "ipykernel" in sys.modules
 
     def tell(self, seconds: float) -> None:
-        """Write the line if somebody sees it, and it is time."""
+        """Write the line if a terminal or notebook shows it and the delay has passed."""
         if self._can_go_back and (self._shown or seconds >= _BAR_DELAY):
             self._put(self._line(seconds))
 
     def end(self, seconds: float) -> None:
-        """Leave the last line where it is."""
+        """Write the line a last time, and leave it there."""
         if self._shown:
             self._put(self._line(seconds) + "\n")
 
@@ -87,11 +87,12 @@ def progress(
     Parameters
     ----------
     tell : callable, optional
-        Is given the seconds since the block began, instead of the bar. An exception that it raises
-        ends the operation soon, and comes out of the call that was under way; the solids are as
-        they were before it.
+        Called with the seconds since the block began, instead of the bar. An exception that it
+        raises stops the operation soon, and is raised from the call that was running; the solids
+        are unchanged.
     every : float
-        Seconds between two calls, at least; they come from the thread that opened the block.
+        The least number of seconds between two calls, which are made in the thread that opened the
+        block.
     of : int, optional
         The number of steps in the block, for a share of work done.
 
@@ -102,12 +103,12 @@ def progress(
 
     Notes
     -----
-    The bar is on standard error, on a terminal and in notebooks; it shows the share if `of` says
-    how many steps there are, and the seconds. Work of less than half a second shows none.
+    The bar is written to standard error, in terminals and notebooks. It shows the seconds, and the
+    share if `of` is given. Work of less than half a second shows no bar.
 
-    Other threads stop an operation by what `tell` looks at, such as a `threading.Event`. Operations
-    that `tell` starts itself are not watched. What happens outside the core, as in manifold3d while
-    a result is validated, is not interrupted.
+    Another thread can stop an operation through something that `tell` checks, such as a
+    `threading.Event`. Operations that `tell` itself starts are not watched. Work outside the core,
+    such as manifold3d's when a result is validated, is not interrupted.
 
     Examples
     --------
@@ -142,7 +143,7 @@ def progress(
 
 
 class _PacedCall:
-    """The call of a function at times, not inside of itself."""
+    """Calls a function at intervals, and never while it runs already."""
 
     def __init__(self, told: Callable[[float], object], pause: float, began: float) -> None:
         self._told, self._pause, self._began = told, pause, began

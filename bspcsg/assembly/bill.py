@@ -1,4 +1,4 @@
-"""`Bill`: how often each part of an assembly is there, and what it weighs."""
+"""`Bill`: the count, volume and mass of the parts of an assembly."""
 
 import math
 from collections.abc import Iterable
@@ -48,7 +48,7 @@ class Bill:
 
     @property
     def volume(self) -> float:
-        """Volume of all parts, in cubic model units; what two have in common counts twice."""
+        """Volume of all parts, in cubic model units; volume shared by two counts twice."""
         return math.fsum(row.volume * row.count for row in self.rows)
 
     @property
@@ -90,7 +90,7 @@ def bill_of(parts: Iterable["Part"]) -> Bill:
 
 
 def _growth(part: "Part") -> float:
-    """Return by what its place multiplies the volume of a part; 1 for turns but for rounding."""
+    """Return the factor by which a part's place multiplies its volume; 1 for rotations."""
     factor = 1.0
     for one in part.factors:
         size = abs(float(transform.determinant(transform.exact_linear(one.matrix))))
@@ -98,7 +98,7 @@ def _growth(part: "Part") -> float:
     return factor
 
 
-#: Determinants of rotations are off by less, each of their nine entries being rounded.
+#: Determinants of rotations differ from 1 by less, with each of their nine entries rounded.
 _TURN = 2.0**-48
 
 

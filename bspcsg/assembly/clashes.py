@@ -1,4 +1,4 @@
-"""Clashes: the places where parts of an assembly share volume, or come too near each other."""
+"""Clashes: places where parts of an assembly share volume, or come too close to each other."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Clash:
-    """Two parts that are in each other's way.
+    """Two parts that overlap, or are too close to each other.
 
     Parameters
     ----------
     first, second : str
         Their paths.
     volume : float
-        The volume that they share, in cubic model units; 0 if they are too near only.
+        The volume that they share, in cubic model units; 0 if they are only too close.
     gap : float
         The distance between them; 0 if they have something in common.
     place : (3,) float64
@@ -38,7 +38,7 @@ class Clash:
     place: FloatArray
 
     def __repr__(self) -> str:
-        """Say who, how much, and where."""
+        """Show the parts, how much they overlap, and where."""
         x, y, z = (f"{value:.6g}" for value in self.place.tolist())
         much = f"volume {self.volume:.6g}" if self.volume else f"gap {self.gap:.6g}"
         return f"Clash({self.first!r}, {self.second!r}, {much}, at ({x}, {y}, {z}))"

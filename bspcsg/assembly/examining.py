@@ -1,7 +1,7 @@
-"""Diagnoses of files with several objects: each by itself, and what they have in common.
+"""Diagnoses of files with several objects: of each object, and of what they share.
 
-Objects that touch are solids that touch. Objects that share open edges are patches of one surface,
-and are judged together.
+Objects that touch are separate solids that touch. Objects that share open edges are patches of one
+surface, and are judged together.
 """
 
 from collections import Counter
@@ -27,8 +27,8 @@ from .tree import Part
 _Any = TypeVar("_Any")
 _Number = TypeVar("_Number", int, float)
 
-#: What separates the names of patches that become one object, and the largest number of names that
-#: are shown.
+#: The separator of the names of patches that become one object, and the largest number of names
+#: that are shown.
 _NAME_SEPARATOR, _MAX_NAMES_SHOWN = " + ", 3
 
 #: From the worst verdict to the best.
@@ -42,7 +42,7 @@ class ExaminedObject:
     Parameters
     ----------
     name : str
-        No two objects of a file have the same.
+        Unique among the objects of a file.
     mesh : RawMesh
     found : Diagnosis
     """
@@ -54,17 +54,17 @@ class ExaminedObject:
 
 @dataclass(frozen=True, eq=False)
 class Examination:
-    """What is found about a file.
+    """The findings about a file.
 
     Parameters
     ----------
     mesh : RawMesh
     found : Diagnosis
-        Of all of it: the worst verdict, and the findings about each object.
+        Of the whole file: the worst verdict, and the findings about each object.
     objects : tuple of ExaminedObject
         Empty if the file is one object.
     clashes : tuple of Clash
-        The objects that have volume in common.
+        The objects that share volume.
     """
 
     mesh: RawMesh
@@ -75,7 +75,7 @@ class Examination:
 
 @uncounted
 def examine(raw: RawMesh) -> Examination:
-    """Say what is wrong with a mesh, or with each object of it by itself."""
+    """Diagnose a mesh, or each object of it separately."""
     groups = _objects_of(raw)
     if len(groups) < 2:
         return Examination(raw, diagnose(raw))
@@ -94,7 +94,7 @@ def examine(raw: RawMesh) -> Examination:
 
 
 def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
-    """Return names and triangles of the objects of a mesh, patches of one surface together."""
+    """Return names and triangles of the objects of a mesh, joining patches of one surface."""
     parts = [(name, count) for name, count in raw.objects if count]
     counts = [count for _, count in parts]
     if len(parts) < 2 or sum(counts) != len(raw.faces):
@@ -114,16 +114,16 @@ def _objects_of(raw: RawMesh) -> list[tuple[str, IndexArray]]:
 
 
 def _surfaces(raw: RawMesh, owner: IndexArray, count: int) -> IndexArray:
-    """Return for each of so many objects the number of the surface that it is a patch of."""
+    """Return the number of the surface that each object is a patch of."""
     vertices, same = welded(raw.vertices)
     edges = EdgeUses(same[raw.faces], len(vertices))
     uses, times = np.unique(edges.edge * count + owner[edges.face], return_counts=True)
-    # Open edges of objects, by edge: who shares one with the next is a patch beside it.
+    # Open edges of objects, by edge: two objects that share one are patches of one surface.
     edge, patch = np.divmod(uses[times == 1], count)
     shared = np.flatnonzero(edge[1:] == edge[:-1])
     links = np.stack([patch[shared], patch[shared + 1]], axis=1)
     alone = np.repeat(np.arange(count)[:, None], 2, axis=1)
-    # A link is a triangle with a corner twice.
+    # Represent a link as a triangle that repeats a corner.
     return surfaces_of(np.concatenate([alone, links])[:, [0, 1, 1]], count)[:count]
 
 
@@ -138,7 +138,7 @@ def _with_numbers(names: Sequence[str]) -> list[str]:
 
 
 def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> Iterator[Finding]:
-    """Yield what was found about objects, with their names and the triangles of the file."""
+    """Yield the findings about objects, with their names and with triangle numbers of the file."""
     for one, faces in zip(objects, rows, strict=True):
         for found in one.found.findings:
             where = tuple(faces[list(found.where)].tolist()) if found.where else ()
@@ -146,7 +146,7 @@ def _findings(objects: Sequence[ExaminedObject], rows: Sequence[IndexArray]) -> 
 
 
 def _clashes(objects: Sequence[ExaminedObject]) -> list[Clash]:
-    """Return which solids have volume in common; a box that only touches others has none."""
+    """Return the solids that share volume; solids whose boxes only touch share none."""
     solids = [one for one in objects if one.found.is_solid]
     boxes = np.array([one.found.bounds for one in solids]).reshape(-1, 2, 3)
     near: set[int] = set()
@@ -207,7 +207,7 @@ def _summed(
 
 
 def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
-    """Return the coarsest numbers that hold what these hold."""
+    """Return the coarsest precision that can represent all of these."""
     found = {one.precision for one in each}
     if None in found:
         return None
@@ -215,7 +215,7 @@ def _coarsest(each: Sequence[Diagnosis]) -> Precision | None:
 
 
 def _volume(objects: Sequence[ExaminedObject], clashes: Sequence[Clash]) -> float | None:
-    """Return the volume of all objects, what they have in common once."""
+    """Return the volume of all objects, counting shared volume once."""
     total = _sum([one.found.volume for one in objects])
     if total is None or not clashes:
         return total

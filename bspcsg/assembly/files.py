@@ -33,7 +33,7 @@ from ..solid.solid import Solid
 from . import scripts
 from .tree import Assembly, moved
 
-#: Formats that hold a tree: how it is read and written.
+#: Formats that hold a tree, each with its reader and writer.
 _TREES: dict[str, tuple[Callable[[Source], SceneNode], Callable[[SceneNode], Iterator[bytes]]]] = {
     ".3mf": (threemf.read, threemf.encode),
     ".glb": (glb.read, glb.encode),
@@ -52,7 +52,7 @@ def load(path: str | os.PathLike[str], **options: Any) -> Assembly:
 
 
 def load_as(path: str | os.PathLike[str], suffix: str, **options: Any) -> Assembly:
-    """Read an assembly as what a suffix names, whatever the file's own suffix."""
+    """Read an assembly in the format of a suffix, whatever the file's own suffix."""
     if suffix in _SCRIPTS:
         return scripts.load(path, Path(path).stem, **options)
     if suffix in _TREES:
@@ -87,14 +87,14 @@ class _Reading:
         self._solids: dict[int, Solid] = {}
 
     def assembly(self, root: SceneNode) -> Assembly:
-        """Return the tree; a file of nothing but what is passed by is refused as a mesh is."""
+        """Return the tree; a file with nothing usable is refused as for a mesh."""
         made = self._node(root) or Assembly(root.name)
         if not made.parts:
             solid_of(read_as(self._path, self._suffix), self._path, **self._options)
         return made
 
     def _node(self, node: SceneNode) -> Assembly | None:
-        """Return what is at a node, or None if that is flat."""
+        """Return the assembly of a node, or None if the node is flat."""
         if _is_flat(node.matrix):
             return None
         inner = (self._node(child) for child in node.children)
@@ -122,7 +122,7 @@ def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...
 
 
 def _written(assembly: Assembly, path: str | os.PathLike[str], suffix: str) -> tuple[Finding, ...]:
-    """Write an assembly, and return what could not be kept of all but densities."""
+    """Write an assembly, and return the findings about losses other than densities."""
     if suffix == ".csg":
         return scripts.save(assembly, path)
     if suffix == ".obj":
@@ -169,18 +169,18 @@ def _densities(assembly: Assembly) -> tuple[Finding, ...]:
 
 
 class _Describing:
-    """The words of files about an assembly; solids that parts share are meshes that nodes share."""
+    """Describes an assembly for files; parts that share a solid become nodes that share a mesh."""
 
     def __init__(self, form: Form) -> None:
-        #: The number of parts without volume, which files have no place for.
+        #: The number of parts without volume, which files cannot store.
         self.empty = 0
-        #: The findings about what the format changes of meshes.
+        #: The findings about changes that the format makes to meshes.
         self.changes: list[Finding] = []
         self._form = form
         self._meshes: dict[int, tuple[Solid, RawMesh]] = {}
 
     def node(self, assembly: Assembly, color: tuple[float, ...] | None) -> SceneNode | None:
-        """Return what is said of an assembly, or None if there is nothing in it."""
+        """Return the description of an assembly, or None if it is empty."""
         name = called(assembly.name)
         color = color if assembly.color is None else assembly.color
         matrix = transform.product(assembly.factors) if assembly.factors else np.eye(4)
@@ -205,7 +205,7 @@ class _Describing:
         return self._meshes[id(solid)][1]
 
     def _tell(self, name: str, findings: tuple[Finding, ...]) -> None:
-        """Take in findings about a part; that of the unit is about all of them."""
+        """Add the findings about a part; the one about the unit concerns all parts."""
         for one in findings:
             is_common = one.code == "unit"
             told = one if is_common else replace(one, message=f"“{name or 'part'}”: {one.message}")
@@ -220,12 +220,12 @@ def _raw(mesh: Mesh, name: str, in_single: bool) -> RawMesh:
 
 
 def _is_painted(said: Attributes | None) -> bool:
-    """Say whether faces have colours of their own, which go before that of the part."""
+    """Say whether faces have colours of their own, which override that of the part."""
     return said is not None and not {"color", "material"}.isdisjoint(said.names)
 
 
 class _As3mf:
-    """A tree with the colours and attributes that 3MF holds; what nodes share stays shared."""
+    """A tree with the colours and attributes that 3MF can hold; shared meshes stay shared."""
 
     def __init__(self) -> None:
         self._meshes: dict[int, RawMesh] = {}
@@ -245,7 +245,7 @@ class _As3mf:
 
 
 def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes that a format has no room for."""
+    """Return the finding about attributes that a format cannot store."""
     lost: set[str] = set()
     for node, held in zip(given.walk(), written.walk(), strict=True):
         if node.mesh is not None and held.mesh is not None and node.mesh.attributes is not None:
@@ -255,14 +255,15 @@ def _lost(given: SceneNode, written: SceneNode, suffix: str) -> tuple[Finding, .
 
 
 def _left_out(lost: set[str], suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes of some names, if there are any."""
+    """Return the finding about attributes with these names, if there are any."""
     return not_held([f"“{name}”" for name in sorted(lost)], suffix)
 
 
 def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
     """Return all parts as one mesh, each an object where it is, and the attributes left out.
 
-    What OBJ does not hold is left out first: parts may have it in types that do not go together.
+    Attributes that OBJ cannot store are left out first, because parts may have them in types that
+    do not go together.
     """
     pieces: list[RawMesh] = []
     lost: set[str] = set()
@@ -278,6 +279,6 @@ def _in_place(assembly: Assembly) -> tuple[RawMesh, set[str]]:
         own = None if held.is_empty else held
         pieces.append(RawMesh(mesh.vertices, mesh.faces, part.path, attributes=own))
     if any(one.attributes and "material" in one.attributes.face for one in pieces):
-        # Colours of faces go beside materials of other parts.
+        # Colours of faces are stored next to materials of other parts.
         pieces = [replace(one, attributes=obj.with_materials(one.attributes)) for one in pieces]
     return joined(pieces), lost

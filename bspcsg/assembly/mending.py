@@ -1,4 +1,4 @@
-"""Repairs of files with several objects: each by itself, for those that touch are two solids."""
+"""Repairs of files with several objects: each on its own, since touching objects are two solids."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ def mended(raw: RawMesh, **options: Any) -> Repair:
 
 
 def mended_as_found(whole: Examination, **options: Any) -> Repair:
-    """Return the repair of what was examined; its objects keep their names."""
+    """Return the repair of a mesh that was examined; its objects keep their names."""
     raw = whole.mesh
     if not whole.objects:
         return repair(raw, **options)
@@ -37,6 +37,6 @@ def mended_as_found(whole: Examination, **options: Any) -> Repair:
 
 def _mended(one: ExaminedObject, **options: Any) -> Repair:
     if all(found.severity == "note" for found in one.found.findings):
-        # Nothing is wrong with it.
+        # The object needs no repair.
         return Repair(RawMesh(one.mesh.vertices, one.mesh.faces, one.name), {}, 0)
     return repair(one.mesh, **options)

@@ -1,4 +1,4 @@
-"""Assemblies in `.csg` scripts: nodes that unite are the tree, and colours are those of parts."""
+"""Assemblies in `.csg` scripts: nodes that unite form the tree, colours apply to parts."""
 
 import os
 from collections.abc import Iterable
@@ -14,22 +14,22 @@ from ..errors import Finding
 from ..solid.solid import Solid
 from .tree import Assembly
 
-#: Nodes whose children stand beside each other.
+#: Nodes that unite their children.
 _UNITING = frozenset({"group", "union", "render", "color"})
 
 
-#: The largest number of these nodes inside one another; what lies deeper becomes one part.
+#: The largest number of such nodes inside one another; anything deeper becomes one part.
 _MAX_PART_DEPTH = 60
 
 
 def load(path: str | os.PathLike[str], name: str, **options: Any) -> Assembly:
-    """Return the assembly of a script; what is neither united, coloured nor moved is a part."""
+    """Return the assembly of a script; any node that does not unite, colour or move is a part."""
     reading = _Reading(csg.read_tree(path), options)
     return Assembly(name, reading.assemblies(reading.tree.roots(), None, (), 0))
 
 
 class _Reading:
-    """A script, and how its nodes are evaluated."""
+    """A script, and the options with which its nodes are evaluated."""
 
     def __init__(self, tree: CsgTree, options: dict[str, Any]) -> None:
         self.tree = tree
@@ -38,7 +38,7 @@ class _Reading:
     def assemblies(
         self, nodes: Iterable[Node], color: tuple[float, ...] | None, scope: Scope, depth: int
     ) -> list[Assembly]:
-        """Return what is there of some nodes."""
+        """Return the assemblies of some nodes, without empty ones."""
         there = (node for node in nodes if not node.is_ignored)
         found = (self._assembly(node, color, scope, depth) for node in there)
         return [made for made in found if made is not None]
@@ -46,7 +46,7 @@ class _Reading:
     def _assembly(
         self, node: Node, color: tuple[float, ...] | None, scope: Scope, depth: int
     ) -> Assembly | None:
-        """Return a node as a tree; of colours in one another the outermost counts."""
+        """Return a node as a tree; of nested colours the outermost counts."""
         is_moving = node.name == "multmatrix" and len(node.arguments) > 0
         if depth > _MAX_PART_DEPTH or not (node.name in _UNITING or is_moving):
             one = CsgTree((Node("group", scope, (node,)),), self.tree.name, self.tree.folder)
@@ -59,14 +59,14 @@ class _Reading:
 
 
 def _color(node: Node) -> tuple[float, ...] | None:
-    """Return what colour a node says, if it is one; a second argument is its opacity."""
+    """Return the colour that a node gives, if it gives one; a second argument is the opacity."""
     named = {
         argument.name or str(place): argument.value for place, argument in enumerate(node.arguments)
     }
     given: Any = named.get("c", named.get("0"))
     alpha: Any = named.get("alpha", named.get("1"))
     try:
-        # Scripts count from 0 to 1, however a number is written.
+        # Scripts give colours from 0 to 1, however the numbers are written.
         found = color_of(given if isinstance(given, str) else [float(value) for value in given])
         return found if alpha is None else color_of([*found[:3], float(alpha)])
     except (TypeError, ValueError):
@@ -74,7 +74,7 @@ def _color(node: Node) -> tuple[float, ...] | None:
 
 
 def save(assembly: Assembly, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
-    """Write each part in its place, under its colour; scripts have no names."""
+    """Write each part in its place, with its colour; scripts have no names."""
     nodes: list[Node] = []
     for part in assembly.parts:
         inner = tree_of(part.solid).nodes

@@ -35,14 +35,14 @@ class Part:
     Parameters
     ----------
     path : str
-        The names on the way to it, with ``/`` between them; no two parts have the same.
+        The names on the path to it, separated by ``/``; unique among the parts.
     name : str
     shape : Solid
-        As it was given; instances have the same object.
+        As given; instances share one object.
     factors : tuple of Factor
         The motions that put it in its place, outermost first.
     color : (4,) tuple of float or None
-        Its own, or that of the assembly around it.
+        Its own, or that of an assembly around it.
     density : float or None
         Mass of a cubic model unit.
     """
@@ -64,7 +64,7 @@ class Part:
 class Assembly(Movable):
     """A tree of named, coloured, placed solids.
 
-    Solids and assemblies may appear several times: instances share their geometry, in files, too.
+    Solids and assemblies may appear several times: instances share their geometry, also in files.
     Iterating yields the parts, each with its solid in its place.
 
     Parameters
@@ -73,16 +73,16 @@ class Assembly(Movable):
     content : Solid or sequence of Solid and Assembly
         Whatever `Solid.from_mesh` takes counts as a solid.
     color : optional
-        For everything inside that has none: ``"orange"``, ``"#ff8800"``, or red, green, blue and
-        perhaps opacity as floats from 0 to 1 or whole numbers from 0 to 255. Whole numbers of which
-        none is above 1 count from 0 to 1. It is kept as four floats.
+        For everything inside without a colour of its own: ``"orange"``, ``"#ff8800"``, or red,
+        green, blue and optionally opacity, as floats from 0 to 1 or whole numbers from 0 to 255.
+        Whole numbers count from 0 to 1 if none is above 1. The colour is stored as four floats.
     density : float, optional
-        Mass of a cubic model unit, for everything inside that has none.
+        Mass of a cubic model unit, for everything inside without a density of its own.
 
     Raises
     ------
     InvalidParameterError
-        If assemblies lie more than 64 deep, the density is negative, or the colour is none.
+        If assemblies nest more than 64 deep, the density is negative, or the colour is invalid.
 
     Examples
     --------
@@ -140,7 +140,7 @@ class Assembly(Movable):
         return tuple(found)
 
     def _inherited(self, path: str, around: Part | None) -> Part:
-        """Return this node as a part, with what it has from the assembly around it."""
+        """Return this node as a part, with properties inherited from the assembly around it."""
         outer = () if around is None else around.factors
         color = self.color if self.color is not None or around is None else around.color
         density = self.density if self.density is not None or around is None else around.density
@@ -156,7 +156,7 @@ class Assembly(Movable):
         return len(self.parts)
 
     def __getitem__(self, path: str) -> Part:
-        """Return the part of a path, or of a name that only one part has.
+        """Return the part with a path, or with a name that only one part has.
 
         Raises
         ------
@@ -182,7 +182,7 @@ class Assembly(Movable):
         show(self)
 
     def _repr_html_(self) -> str | None:
-        """Return what a notebook shows: an interactive view of the union."""
+        """Return the view in a notebook: an interactive view of the union."""
         from ..report.viewer.notebook import solid_html
 
         return solid_html(self.to_solid())
@@ -196,17 +196,17 @@ class Assembly(Movable):
     # Operations, object by object
 
     def __sub__(self, tool: Any) -> "Assembly":
-        """Take a solid, or another assembly, from every part; parts that it misses stay shared."""
+        """Subtract a solid or an assembly from every part; parts that it misses stay shared."""
         other = _as_solid(tool)
         return self._each((), lambda part: part if are_apart(part, other) else part - other)
 
     def __and__(self, tool: Any) -> "Assembly":
-        """Return what of every part lies in a solid or another assembly."""
+        """Intersect every part with a solid or another assembly."""
         other = _as_solid(tool)
         return self._each((), lambda part: part & other)
 
     def _each(self, outer: Factors, change: Callable[[Solid], Solid]) -> "Assembly":
-        """Return the tree with another solid for each part in its place, where that changes it."""
+        """Return the tree with each part's solid changed in its place, if that changes it."""
         factors = outer + self.factors
         if self.shape is None:
             children = tuple(child._each(factors, change) for child in self.children)
@@ -217,19 +217,19 @@ class Assembly(Movable):
             return self._with(factors=factors)
         return self._with(shape=made, factors=())
 
-    # What it comes to
+    # Results
 
     @uncounted
     def to_solid(self) -> Solid:
         """Return the union of all parts.
 
-        Its faces say where they are from: the face attribute ``"part"`` is the path, and
-        ``"color"`` the colour of parts that have one and no attribute ``"color"``, in bytes.
+        Its faces record their origin: the face attribute ``"part"`` is the path, and ``"color"``
+        the colour, in bytes, of parts that have one and no attribute ``"color"``.
         """
         return union([_tagged(part) for part in self.parts]) if self.parts else Solid.empty()
 
     def clashes(self, clearance: Scalar = 0.0) -> list[Clash]:
-        """Return the pairs of parts that have volume in common, or come too near each other.
+        """Return the pairs of parts that share volume, or come too close to each other.
 
         Parameters
         ----------
@@ -239,12 +239,12 @@ class Assembly(Movable):
         Returns
         -------
         list of Clash
-            In the order of the parts. Pairs whose boxes are farther apart are not looked at.
+            In the order of the parts. Pairs whose boxes are farther apart are skipped.
         """
         return clashes_of(self.parts, not_negative(clearance, "clearance"))
 
     def bill(self) -> Bill:
-        """Return the bill: how often each part is there, volumes, and masses by the densities."""
+        """Return the bill: the count, volume and mass of each kind of part."""
         return bill_of(self.parts)
 
     @property
@@ -261,19 +261,19 @@ class Assembly(Movable):
     def save(self, path: str | os.PathLike[str]) -> tuple[Finding, ...]:
         """Write the assembly; the suffix names the format.
 
-        3MF and GLB keep the tree, its names and colours, that instances share geometry, and what
-        faces say as far as `bspcsg.save` does; OBJ holds each part as an object in its place,
-        ``.csg`` each part under its colour.
+        3MF and GLB keep the tree, names, colours and shared geometry of instances, and attributes
+        of faces as far as `bspcsg.save` does. OBJ stores each part as an object in its place,
+        ``.csg`` each part with its colour.
 
         Returns
         -------
         tuple of Finding
-            The things that the format could not keep; no format keeps densities.
+            Findings about everything that the format could not keep; no format keeps densities.
 
         Raises
         ------
         FormatError
-            If the suffix is another one (code "unknown_format"), or as for `bspcsg.save`.
+            If the suffix is unknown (code "unknown_format"), or as for `bspcsg.save`.
 
         Warns
         -----
@@ -290,9 +290,10 @@ class Assembly(Movable):
     def load(cls, path: str | os.PathLike[str], **options: Any) -> "Assembly":
         """Read an assembly; the suffix names the format.
 
-        Components of 3MF, nodes of GLB, and what scripts unite are the tree; objects of OBJ are its
-        parts. Any other mesh file is an assembly of one part. Support and surfaces of 3MF, lines of
-        GLB, and what is scaled to nothing are no parts, as they are passed by by `bspcsg.load`.
+        The tree consists of the components of 3MF, the nodes of GLB, or the united nodes of
+        scripts; the objects of OBJ are parts. Any other mesh file is an assembly of one part.
+        Support and surfaces of 3MF, lines of GLB, and anything scaled to nothing are ignored, as by
+        `bspcsg.load`.
 
         Parameters
         ----------
@@ -334,9 +335,10 @@ def _as_solid(tool: Any) -> Solid:
 
 
 def _free(path: str, taken: dict[str, int]) -> str:
-    """Take a path, with a number behind it if need be; each taken one has the last that it needed.
+    """Take a path, with a number appended if it is taken; `taken` has the last number of each.
 
-    Counting from there on, many parts of one name take as long as those of different ones.
+    Counting continues from there, so many parts of one name take no longer than parts of different
+    names.
     """
     number, free = taken.get(path, 1), path
     while free in taken:

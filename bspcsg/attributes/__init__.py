@@ -1,1 +1,1 @@
-"""The attributes of a mesh besides its shape: named arrays of vertices, corners and faces."""
+"""The attributes of a mesh other than its shape: named arrays of vertices, corners and faces."""

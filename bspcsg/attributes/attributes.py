@@ -14,10 +14,10 @@ from ..geometry.arrays import is_masked
 from .colours import COLOR, colors_of, in_bytes
 from .material import Material
 
-#: Values of any type, one or an array of them for each element.
+#: Values of any type, one value or an array of values per element.
 Values: TypeAlias = npt.NDArray[Any]
 
-#: The elements of a mesh that an array has a value for.
+#: The kinds of elements that an array can have values for.
 Kind: TypeAlias = Literal["vertex", "corner", "face"]
 
 KINDS: tuple[Kind, ...] = ("vertex", "corner", "face")
@@ -25,18 +25,18 @@ KINDS: tuple[Kind, ...] = ("vertex", "corner", "face")
 #: Types of values: truth values, whole numbers, floats, text.
 _TYPES = "biufU"
 
-#: Names of attributes that turn with the solid, and turn around where it is subtracted.
+#: Names of attributes that rotate with the solid, and are reversed where it is subtracted.
 NORMALS = frozenset({"normal", "normals"})
 
 
 @dataclass(frozen=True, eq=False)
 class Attributes:
-    """Named arrays over a mesh; each name is that of one array.
+    """Named arrays over a mesh; each name has one array.
 
     Parameters
     ----------
     faces : (m, 3) int64
-        The triangles, by which values of vertices become values of corners.
+        The triangles, which map values of vertices to values of corners.
     vertex : dict of str to (n, …) array
     corner : dict of str to (m, 3, …) array
     face : dict of str to (m, …) array
@@ -57,7 +57,7 @@ class Attributes:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """All names, those of vertices first and those of faces last."""
+        """All names, in the order vertices, corners, faces."""
         return (*self.vertex, *self.corner, *self.face)
 
     def of(self, kind: Kind) -> Mapping[str, Values]:
@@ -65,7 +65,7 @@ class Attributes:
         return {"vertex": self.vertex, "corner": self.corner, "face": self.face}[kind]
 
     def kind_of(self, name: str) -> Kind | None:
-        """Return what a name has values for, or None if there is no such array."""
+        """Return the kind of elements that a name has values for, None if there is no array."""
         return next((kind for kind in KINDS if name in self.of(kind)), None)
 
     def at_corners(self, name: str, faces: IndexArray | None = None) -> Values:
@@ -90,13 +90,13 @@ class Attributes:
         )
 
     def with_used_materials(self) -> "Attributes":
-        """Return the attributes with only the materials that a face has."""
+        """Return the attributes with only the materials that faces use."""
         used = set(np.unique(self.face.get("material", np.array([""]))).tolist())
         kept = {name: one for name, one in self.materials.items() if name in used}
         return replace(self, materials=kept)
 
     def without(self, names: Container[str]) -> "Attributes":
-        """Return the attributes of other names."""
+        """Return the attributes without the given names."""
         vertex, corner, face = (
             {name: values for name, values in self.of(kind).items() if name not in names}
             for kind in KINDS
@@ -104,13 +104,13 @@ class Attributes:
         return replace(self, vertex=vertex, corner=corner, face=face)
 
     def without_empty_material(self) -> "Attributes":
-        """Return the attributes without ``"material"`` if no face has one."""
+        """Return the attributes without ``"material"`` if no face has a material."""
         names = self.face.get("material")
         is_empty = names is not None and names.dtype.kind == "U" and not (names != "").any()
         return self.without({"material"}) if is_empty else self
 
     def turned(self, linear: FloatArray) -> "Attributes":
-        """Return the attributes after a linear map of the mesh: normals turn, and keep length."""
+        """Return the attributes after a linear map of the mesh; normals turn, and keep length."""
         if not NORMALS.intersection(self.names):
             return self
         vertex, corner, face = (
@@ -123,18 +123,18 @@ class Attributes:
         return replace(self, vertex=vertex, corner=corner, face=face)
 
     def reordered(self, order: list[int]) -> "Attributes":
-        """Return the attributes with the three corners of every face in another order."""
+        """Return the attributes with the three corners of every face permuted."""
         corner = {name: values[:, order] for name, values in self.corner.items()}
         return replace(self, faces=self.faces[:, order], corner=corner)
 
     def onto(self, faces: IndexArray, kept: IndexArray) -> "Attributes":
-        """Return the attributes of other triangles, each of which stands for one of these."""
+        """Return the attributes of other triangles, each of which replaces one of these."""
         corner = {name: self.at_corners(name, kept) for name in (*self.vertex, *self.corner)}
         face = {name: values[kept] for name, values in self.face.items()}
         return Attributes(faces, {}, corner, face, self.materials)
 
     def among(self, taken: dict[str, Material]) -> "Attributes":
-        """Put the materials among others; one whose name is taken gets a number behind it."""
+        """Add the materials to others; one with a name that is taken gets a number appended."""
         names = {}
         for name, material in self.materials.items():
             names[name] = _free(name, partial(_means_another, taken, material))
@@ -147,7 +147,7 @@ class Attributes:
         return replace(self, face={**self.face, "material": image})
 
     def with_materials_called(self, called: Callable[[str], str]) -> "Attributes":
-        """Return the attributes with other names of materials; those of one name get numbers."""
+        """Return the attributes with renamed materials; equal new names get numbers appended."""
         values = self.face.get("material")
         if values is None:
             return self
@@ -166,7 +166,7 @@ class Attributes:
 
     @cached_property
     def patches(self) -> tuple[IndexArray, list[bytes]]:
-        """The faces that have the same values everywhere: (m,) numbers, and the values behind them.
+        """Groups of faces with equal values: (m,) numbers, and the values that they stand for.
 
         Faces whose corners differ have numbers of their own, above those that stand for values.
         """
@@ -202,7 +202,7 @@ def _means_another(taken: Mapping[str, Material], material: Material, name: str)
 
 
 def _free(name: str, is_taken: Callable[[str], bool]) -> str:
-    """Return a name that is not taken, with a number behind it if need be."""
+    """Return a free name, with a number appended if need be."""
     number, free = 1, name
     while is_taken(free):
         number += 1
@@ -217,18 +217,18 @@ def _bytes_of(values: Values, count: int) -> npt.NDArray[np.uint8]:
 
 
 def is_normal(name: str, values: Values) -> bool:
-    """Say whether an array turns with the mesh: by its name, three floats for each element."""
+    """Say whether an array rotates with the mesh: by name, with three floats per element."""
     return name in NORMALS and values.dtype.kind == "f" and values.shape[-1:] == (3,)
 
 
 def _turned(values: Values, linear: FloatArray) -> Values:
-    """Return normals under a linear map, by its cofactors, each as long as before."""
+    """Return normals under a linear map, by its cofactors, with their lengths kept."""
     a, b, c = np.asarray(linear, dtype=np.float64)
     cofactors = np.array([np.cross(b, c), np.cross(c, a), np.cross(a, b)])
     if np.dot(a, cofactors[0]) < 0:
         cofactors = -cofactors
     if np.abs(linear).sum() == 3 and (np.abs(linear).sum(axis=0) == 1).all():
-        # Axes that are exchanged and mirrored leave every bit of a coordinate.
+        # Permuting and mirroring axes changes no bits of a coordinate except its sign.
         axes = np.abs(linear).argmax(axis=1)
         signs = linear[np.arange(3), axes].astype(values.dtype)
         return np.ascontiguousarray(values[..., axes] * signs)
@@ -241,13 +241,13 @@ def _turned(values: Values, linear: FloatArray) -> Values:
 
 
 def with_even_faces(said: Attributes, only: str | None = None) -> Attributes:
-    """Return the attributes, those of corners as ones of faces where all three corners agree.
+    """Return the attributes; those of corners become those of faces if every face's corners agree.
 
     Parameters
     ----------
     said : Attributes
     only : str, optional
-        The one name that is to be so.
+        The only name to change.
     """
     even = {}
     for name, values in said.corner.items():
@@ -281,8 +281,7 @@ class Given:
         Raises
         ------
         InvalidMeshError
-            If an array is of another length or type, or a name stands for two; code
-            ``"attributes"``.
+            If an array has a wrong length or type, or a name is used twice; code ``"attributes"``.
         """
         tables = [_named(given, kind) for kind, given in zip(KINDS, self._by_kind, strict=True)]
         materials = _materials(self.materials)
@@ -314,7 +313,7 @@ def _named(given: Mapping[str, Any] | None, kind: Kind) -> list[tuple[str, Any]]
 
 
 def array_of(values: Any, name: str) -> Values:
-    """Return the values of an attribute as an array of their own."""
+    """Return the values of an attribute as a new array."""
     if is_masked(values):
         raise _refused(f"“{name}” has values that are masked out.")
     try:
@@ -338,7 +337,7 @@ def _array(values: Any, name: str, kind: Kind, shape: tuple[int, ...]) -> Values
 
 
 def _colors(given: Any, shape: tuple[int, ...]) -> Values:
-    """Return an array called "color" as colours, if it is any; one of them is that of all."""
+    """Return the array "color" as colours, if it is one; a single colour is for all elements."""
     is_mixed = isinstance(given, (list, tuple)) and any(isinstance(one, str) for one in given)
     array = colors_of(given) if is_mixed else array_of(given, COLOR)
     if array.dtype.kind == "U":
@@ -365,7 +364,7 @@ def _refused(message: str) -> InvalidMeshError:
 
 
 class Later:
-    """Attributes that are made when somebody asks, once.
+    """Attributes that are computed on first use, once.
 
     Parameters
     ----------
@@ -377,7 +376,7 @@ class Later:
         self._made: Attributes | None = None
 
     def now(self) -> Attributes:
-        """Return them."""
+        """Return the attributes."""
         make = self._make
         if make is not None:
             self._made, self._make = make(), None
@@ -386,12 +385,12 @@ class Later:
         return self._made
 
     def __reduce__(self) -> tuple[Any, tuple[Attributes]]:
-        """Pickle what was made."""
+        """Pickle the computed attributes."""
         return made, (self.now(),)
 
 
 def made(attributes: Attributes) -> Later:
-    """Return attributes that are made already."""
+    """Return attributes that are computed already."""
     later = Later(lambda: attributes)
     later.now()
     return later

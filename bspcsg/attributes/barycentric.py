@@ -1,6 +1,6 @@
-"""Barycentric coordinates in two doubles each, and in fractions where those do not suffice.
+"""Barycentric coordinates in double-doubles, and in fractions where those do not suffice.
 
-A point lies in the plane of its triangle but for rounding, so it is seen along the main axis.
+A point lies in its triangle's plane up to rounding, so both are projected along the main axis.
 """
 
 from fractions import Fraction
@@ -10,7 +10,7 @@ import numpy as np
 
 from .._types import FloatArray
 
-#: Sums of two doubles: the rounded one and what it lacks.
+#: Double-doubles: the rounded sum and its error.
 _Pair: TypeAlias = tuple[FloatArray, FloatArray]
 
 #: Splits the 53 bits of a double into two halves whose products are exact.
@@ -24,8 +24,8 @@ _MAX_EXACT_THINNESS = 2.0**40
 def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
     """Return (k, 3) weights of the corners of (k, 3, 3) triangles at (k, 3) points.
 
-    They are off by a few units in the last place of 1. Triangles without area have weights that are
-    not finite.
+    Their error is a few units in the last place of 1. Weights of triangles without area are not
+    finite.
     """
     flat, seen = _seen(points, triangles)
     a, b, c = seen[:, 0], seen[:, 1], seen[:, 2]
@@ -42,7 +42,7 @@ def weights(points: FloatArray, triangles: FloatArray) -> FloatArray:
 
 
 def _seen(points: FloatArray, triangles: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return points (k, 2) and triangles (k, 3, 2) without the coordinate that varies least."""
+    """Return (k, 2) points and (k, 3, 2) triangles without the coordinate that varies least."""
     edges = triangles[:, 1:] - triangles[:, :1]
     normals = np.abs(np.cross(edges[:, 0], edges[:, 1]))
     axes = np.array([[1, 2], [2, 0], [0, 1]])[normals.argmax(axis=1)]
@@ -85,7 +85,7 @@ def _halves(values: FloatArray) -> _Pair:
 
 
 def _quotient(part: _Pair, whole: _Pair) -> FloatArray:
-    """Return quotients of pairs; the second step makes up for what the first double lacks."""
+    """Return quotients of pairs; the second step corrects the error of the first double."""
     first = part[0] / whole[0]
     taken = _product((first, np.zeros_like(first)), whole)
     rest = (part[0] - taken[0]) + (part[1] - taken[1])

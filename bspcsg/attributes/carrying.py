@@ -1,8 +1,8 @@
-"""Attributes of a result: those of the faces that its triangles lie in, by exact places.
+"""Attributes of a result, from the source faces in which its triangles lie, by exact places.
 
 Each triangle of a result lies in one face of one source. Values of faces are copied. At a corner
-that is a corner of the source's face, bit by bit, the value there is copied, too; at any other
-place it is interpolated between the three corners of the face, on the lattice, where the solid is.
+that equals a corner of the source's face, bit by bit, the value there is copied too; elsewhere it
+is interpolated between the three corners of the face, in lattice coordinates.
 """
 
 import math
@@ -20,14 +20,14 @@ from .barycentric import weights
 from .colours import is_color, opaque
 from .material import Material
 
-#: Doubles of a source, its vertices on the lattice, its faces, and their numbers in the input.
+#: The doubles of a source, its vertices on the lattice, its faces, and their input numbers.
 SourceArrays: TypeAlias = tuple[FloatArray, FloatArray, IndexArray, IndexArray]
 
-#: A weight below minus this is that of a place outside the face: mending moved it there.
+#: A weight below minus this means that mending moved the place outside its face.
 _OUTSIDE = 0.125
 
-#: Values at one vertex that differ by less, in units of the largest, are those of one field: each
-#: is interpolated within 2**-49 of it, and the place was rounded within a spacing.
+#: Values at one vertex whose difference is smaller, in units of the largest, belong to one field:
+#: each is interpolated within 2**-49 of it, and the place was rounded within a spacing.
 _ONE_FIELD = 2.0**-40
 
 
@@ -42,7 +42,7 @@ class Surface:
     source : (m, 2) int64
         Slot and number of the face that each triangle lies in.
     flips : (m,) bool
-        True if it faces the other way.
+        True if it is reversed.
     """
 
     vertices: FloatArray
@@ -53,14 +53,14 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class _Inner:
-    """Corners of triangles that are no corners of the faces these lie in.
+    """Corners of triangles that are not corners of the faces around them.
 
     Parameters
     ----------
     triangles, corners : (j,) int64
-        Triangles of a lot, and one corner of each.
+        Triangles of a group, and one corner of each.
     faces : (j,) int64
-        The number of the face that each lies in.
+        The number of the face that contains each.
     places : (j, 3) float64
         Weights of the corners of that face.
     """
@@ -73,7 +73,7 @@ class _Inner:
 
 @dataclass(frozen=True, eq=False)
 class _SourceTriangles:
-    """The triangles of a result that lie in one source, and where their corners are in it.
+    """The triangles of a result that lie in one source, and the places of their corners in it.
 
     Parameters
     ----------
@@ -82,13 +82,13 @@ class _SourceTriangles:
     rows : (k,) int64
         The numbers of the triangles.
     origins : (k,) int64
-        The number of the face of each.
+        The number of each triangle's face.
     corners : (k, 3) int64
-        The corner of that face that each corner is, or -1.
+        The corner of that face that equals each corner, or -1.
     inner : _Inner
-        The corners that are none.
+        The corners that equal none.
     flips : (k,) bool
-        True if it faces the other way.
+        True if it is reversed.
     """
 
     attributes: Attributes
@@ -99,7 +99,7 @@ class _SourceTriangles:
     flips: BoolArray
 
     def values(self, name: str) -> Values:
-        """Return the values of a name at the corners, (k, 3, …)."""
+        """Return the values of an attribute at the corners, (k, 3, …)."""
         given = self.attributes.at_corners(name, self.origins)
         width = math.prod(given.shape[2:])
         flat = given.reshape(len(self.rows), 3, width)
@@ -111,7 +111,7 @@ class _SourceTriangles:
         return self._faced(name, found.reshape(given.shape))
 
     def of_faces(self, name: str) -> Values:
-        """Return the values of a name of faces, (k, …)."""
+        """Return the values of a face attribute, (k, …)."""
         return self._faced(name, self.attributes.face[name][self.origins])
 
     def _faced(self, name: str, values: Values) -> Values:
@@ -123,7 +123,7 @@ class _SourceTriangles:
 
 
 def patches_of(sources: Sequence[Attributes | None]) -> list[npt.NDArray[np.uint32] | None]:
-    """Return what each face of each source belongs to: faces of equal values to one patch."""
+    """Return the patch of each face of each source; a patch is all faces with equal values."""
     known: dict[bytes, int] = {}
     found: list[npt.NDArray[np.uint32] | None] = []
     patches = [None if one is None else one.patches for one in sources]
@@ -154,12 +154,12 @@ def carried(
     sources : sequence of Attributes or None
         By slot.
     arrays_of : callable
-        Returns what the core knows of the source in a slot.
+        Returns the core's arrays of the source in a slot.
 
     Raises
     ------
     InvalidMeshError
-        If a name stands for values of different shapes in two sources; code ``"attributes"``.
+        If a name has values of different shapes in two sources; code ``"attributes"``.
     """
     rows_of = dict(_by_slot(surface.source))
     lots = []
@@ -178,7 +178,7 @@ def carried(
     return Attributes(surface.faces, **found, materials=materials)
 
 
-#: The arrays of a source of which nothing is left.
+#: The arrays of a source from which nothing is left.
 _NO_ROWS: IndexArray = np.zeros(0, dtype=np.int64)
 _NO_ARRAYS: SourceArrays = (
     np.zeros((0, 3)),
@@ -212,7 +212,7 @@ def _triangles_of(
 
 
 def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
-    """Return which corner of a face each corner of a triangle is, or -1."""
+    """Return the corner of a face that equals each corner of a triangle, or -1."""
     same = (points[:, :, None] == corners[:, None]).all(axis=3)
     return np.where(same.any(axis=2), same.argmax(axis=2), -1)
 
@@ -220,10 +220,10 @@ def _matches(points: FloatArray, corners: FloatArray) -> IndexArray:
 def _brought_inside(
     inner: _Inner, vertices: IndexArray, corners: IndexArray, origins: IndexArray
 ) -> _Inner:
-    """Give places outside of their faces those of other triangles there, or the nearest inside.
+    """Replace places outside their faces by those of other triangles there, or the nearest inside.
 
-    Where rounding would turn a triangle over, an edge is swapped with a neighbour, and a corner
-    comes to lie outside of the face that the triangle is named after.
+    Where rounding would flip a triangle, an edge is swapped with a neighbour's, and a corner may
+    end up outside the face that its triangle is assigned to.
     """
     with np.errstate(invalid="ignore"):
         outside = np.flatnonzero(~(inner.places.min(axis=1, initial=1) >= -_OUTSIDE))
@@ -250,8 +250,8 @@ def _brought_inside(
 def _between(values: Values, places: FloatArray) -> Values:
     """Return values (k, w) at places (k, 3) between those at three corners (k, 3, w).
 
-    What is the same at all three stays as it is, bit by bit. Whole numbers are rounded; truth
-    values and text are those of the nearest corner.
+    A value equal at all three corners stays exact. Whole numbers are rounded; truth values and text
+    take the value of the nearest corner.
     """
     rows = np.arange(len(values))
     nearest: Values = values[rows, places.argmax(axis=1)]
@@ -269,7 +269,7 @@ def _between(values: Values, places: FloatArray) -> Values:
 
 
 def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[Kind, Values]:
-    """Return what a name has values for in the result, and the values."""
+    """Return the kind of element that a name has values for in the result, and the values."""
     kinds = {lot.attributes.kind_of(name) for lot in lots}
     if kinds == {"face"}:
         parts = [lot.of_faces(name) for lot in lots]
@@ -286,7 +286,7 @@ def _joined(name: str, lots: list[_SourceTriangles], surface: Surface) -> tuple[
 def _filled(
     name: str, lots: list[_SourceTriangles], parts: list[Values], shape: tuple[int, ...], depth: int
 ) -> Values:
-    """Return the values of all triangles; those of sources that lack the name get the default."""
+    """Return the values of all triangles; triangles of sources without the name get the default."""
     parts = colors_alike(name, parts, depth)
     kind = common_type(name, parts, depth)
     blank = default_of(name, parts[0].astype(kind, copy=False), depth)
@@ -299,8 +299,8 @@ def _filled(
 def colors_alike(name: str, parts: Sequence[Values], depth: int) -> list[Values]:
     """Return colours of several meshes in one form; other values as they are.
 
-    Whole numbers of one type stay; beside others all become floats from 0 to 1. Three numbers
-    beside four become opaque.
+    Whole numbers of one type stay; mixed types become floats from 0 to 1. If some colours have four
+    numbers, those of three become opaque.
 
     Parameters
     ----------
@@ -329,12 +329,12 @@ def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]
     name : str
     parts : sequence of arrays
     depth : int
-        The number of axes that say which element it is.
+        The number of axes that index the element.
 
     Raises
     ------
     InvalidMeshError
-        If the values have different shapes, or are text in one and numbers in another.
+        If the values have different shapes, or are text in one mesh and numbers in another.
     """
     shapes = sorted({part.shape[depth:] for part in parts})
     if len(shapes) > 1:
@@ -352,9 +352,9 @@ def common_type(name: str, parts: Sequence[Values], depth: int) -> np.dtype[Any]
 
 
 def default_of(name: str, values: Values, depth: int) -> Any:
-    """Return what stands where a source lacks values like these: NaN, 0, False, or no text.
+    """Return the default where a source lacks values like these: NaN, 0, False, or no text.
 
-    A colour in whole numbers is an opaque white there, as every picture shows one that is NaN.
+    The default colour in whole numbers is opaque white, as pictures show a colour that is NaN.
     """
     kind = values.dtype
     if kind.kind == "u" and is_color(name, values, depth):
@@ -365,11 +365,11 @@ def default_of(name: str, values: Values, depth: int) -> Any:
 def _of_vertices(
     name: str, values: Values, lots: list[_SourceTriangles], surface: Surface
 ) -> Values | None:
-    """Return the values of vertices if all corners at each agree, else None."""
+    """Return values of vertices if all corners at each vertex agree, else None."""
     count = len(surface.vertices)
     flat = values.reshape(3 * len(surface.faces), math.prod(values.shape[2:]))
     vertices = surface.faces.ravel()
-    # Corners of sources are written last, so that what was copied is what stays.
+    # Write corners of sources last, so that copied values win over interpolated ones.
     is_given = np.zeros(len(surface.faces) * 3, dtype=bool).reshape(-1, 3)
     for lot in lots:
         is_given[lot.rows] = lot.corners >= 0

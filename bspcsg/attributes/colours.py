@@ -1,16 +1,15 @@
-"""Colours, however people, programs and files write them: the one place that takes them apart.
+"""Parses colours in all forms in which people, programs and files write them.
 
-A colour is red, green, blue and, where it is told, opacity. It may be written as
+A colour is red, green, blue and optionally opacity. It may be written as
 
 - a name of CSS: ``"orange"``, ``"rebeccapurple"``, ``"transparent"``; case makes no difference;
 - ``"#rgb"``, ``"#rgba"``, ``"#rrggbb"`` or ``"#rrggbbaa"``; six or eight digits need no ``#``;
 - floats from 0 to 1;
 - whole numbers from 0 to 255.
 
-Whole numbers of which none is above 1, such as (1, 0, 0), count from 0 to 1, as in OpenSCAD: red,
-and not a black that nobody can tell from (0, 0, 0). Of an array the largest number of all decides.
-numpy's unsigned types leave no doubt and are parts of the largest number of their type: of uint8,
-1 is 1/255.
+Whole numbers count from 0 to 1 if none is above 1, as in OpenSCAD: (1, 0, 0) is red, and not a
+black that looks like (0, 0, 0). For an array, its largest number decides. Numpy's unsigned types
+are unambiguous: their values are fractions of the type's largest number, so a uint8 of 1 is 1/255.
 """
 
 import re
@@ -28,15 +27,15 @@ from ..parameters import shown
 #: Colours in bytes, as most files have them.
 Bytes = npt.NDArray[np.uint8]
 
-#: Whatever says one colour, as above.
+#: Any form of one colour listed above.
 AnyColor: TypeAlias = str | Iterable[float] | npt.NDArray[Any]
 
-#: The name of the attribute that is a colour.
+#: The name of the attribute that holds colours.
 COLOR = "color"
 
 _BYTE = 255
 
-#: Digits without a mark are taken where there are enough of them to be no word by chance.
+#: Digits without ``#`` count if there are enough of them not to be a word by chance.
 _DIGITS = re.compile("#([0-9a-f]{3,4})|#?([0-9a-f]{6}|[0-9a-f]{8})")
 
 # Source: CSS Color Module Level 4, section 6.1.
@@ -81,14 +80,14 @@ def color_of(given: Any, name: str = COLOR) -> tuple[float, ...]:
     Raises
     ------
     InvalidParameterError
-        If it is none.
+        If it is not a colour.
     """
     numbers: list[float] = as_floats(one_color(given, name)).tolist()
     return (*numbers, 1.0) if len(numbers) == 3 else tuple(numbers)
 
 
 def one_color(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
-    """Return one colour as attributes have it, (3,) or (4,): bytes, or floats from 0 to 1."""
+    """Return one colour as attributes store it, (3,) or (4,): bytes, or floats from 0 to 1."""
     found = colors_of(given, name)
     if found.ndim != 1:
         raise _refused(given, name)
@@ -96,19 +95,19 @@ def one_color(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
 
 
 def colors_of(given: Any, name: str = COLOR) -> npt.NDArray[Any]:
-    """Return colours as attributes have them, (…, 3) or (…, 4): bytes, or floats from 0 to 1.
+    """Return colours as attributes store them, (…, 3) or (…, 4): bytes, or floats from 0 to 1.
 
     Parameters
     ----------
     given : text, numbers, or arrays or sequences of them
-        Texts have no axis of their own: one is (3,) or (4,), a row of n is (n, 3) or (n, 4).
+        A text has no axis of its own: one text gives (3,) or (4,), n texts give (n, 3) or (n, 4).
     name : str
         For errors.
 
     Raises
     ------
     InvalidParameterError
-        If something in it is no colour.
+        If an entry is not a colour.
     """
     if isinstance(given, str):
         return _of_text(given, name)
@@ -129,7 +128,7 @@ def _of_text(text: str, name: str) -> Bytes:
 
 
 def _of_texts(texts: npt.NDArray[np.str_], name: str) -> Bytes:
-    """Return the colours of many texts, of which most will be the same few."""
+    """Return the colours of many texts, most of which are usually the same few."""
     kinds, numbers = np.unique(texts, return_inverse=True)
     if not len(kinds):
         return np.zeros((*texts.shape, 3), dtype=np.uint8)
@@ -165,7 +164,7 @@ def _of_numbers(given: Any, name: str) -> npt.NDArray[Any]:
 
 
 def in_bytes(numbers: npt.NDArray[Any]) -> Bytes | None:
-    """Return whole numbers as bytes by the rule above; None if one is out of its range."""
+    """Return whole numbers as bytes by the rule above; None if one is out of range."""
     low, high = numbers.min(initial=0), numbers.max(initial=0)
     if low < 0 or high > _BYTE:
         return None
@@ -173,7 +172,7 @@ def in_bytes(numbers: npt.NDArray[Any]) -> Bytes | None:
 
 
 def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
-    """Return colours of three numbers with a fourth, their opacity; others as they are."""
+    """Return colours of three numbers with opacity added; others as they are."""
     if colors.shape[-1] == 4:
         return colors
     full = np.iinfo(colors.dtype).max if colors.dtype.kind == "u" else 1
@@ -181,12 +180,12 @@ def opaque(colors: npt.NDArray[Any]) -> npt.NDArray[Any]:
 
 
 def are_same_in_bytes(some: npt.NDArray[Any], others: npt.NDArray[Any]) -> bool:
-    """Say whether colours are the same on a screen, however they are written."""
+    """Say whether colours look the same on a screen, in whatever form they are."""
     return np.array_equal(opaque(as_bytes(some)), opaque(as_bytes(others)))
 
 
 def is_opaque(colors: npt.NDArray[Any]) -> bool:
-    """Say whether no colour lets anything through."""
+    """Say whether all colours are fully opaque."""
     return colors.shape[-1] == 3 or bool((as_bytes(colors[..., 3]) == _BYTE).all())
 
 
@@ -197,7 +196,7 @@ def is_color(name: str, values: npt.NDArray[Any], depth: int) -> bool:
 
 
 def as_bytes(colors: npt.NDArray[Any]) -> Bytes:
-    """Return colours in bytes, as `as_floats` has them; those beyond 0 and 1 are moved there."""
+    """Return colours in bytes, by the rules of `as_floats`, clamped to 0 and 1."""
     if colors.dtype == np.uint8:
         return colors
     scaled: Any = np.clip(as_floats(colors), 0, 1) * _BYTE
@@ -206,7 +205,7 @@ def as_bytes(colors: npt.NDArray[Any]) -> Bytes:
 
 
 def as_floats(colors: npt.NDArray[Any]) -> FloatArray:
-    """Return colours as floats: whole numbers are parts of their type's largest, NaN is white."""
+    """Return colours as floats: whole numbers are divided by their type's largest, NaN is white."""
     numbers = colors.astype(np.float64)
     if colors.dtype.kind == "u":
         return numbers * (1 / np.iinfo(colors.dtype).max)

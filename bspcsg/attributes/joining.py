@@ -1,4 +1,4 @@
-"""Attributes of several meshes put one after the other."""
+"""Attributes of several concatenated meshes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from .material import Material
 
 @dataclass(frozen=True, eq=False)
 class MeshPart:
-    """A mesh among others: how many vertices it has, its faces, and what is said of it."""
+    """A mesh among others: its number of vertices, its faces, and its attributes."""
 
     vertex_count: int
     faces: IndexArray
@@ -72,7 +72,7 @@ def _values_of(name: str, kind: Kind, attributes: Attributes | None) -> Values |
 
 
 def _with_common_materials(parts: Sequence[MeshPart]) -> tuple[list[MeshPart], dict[str, Material]]:
-    """Return the materials of all parts; a name that means two gets a number behind it."""
+    """Return the materials of all parts; a name with two meanings gets a number appended."""
     materials: dict[str, Material] = {}
     found = []
     for part in parts:

@@ -1,23 +1,23 @@
-"""`Material`: what a name in the face attribute ``"material"`` stands for."""
+"""`Material`: the meaning of a name in the face attribute ``"material"``."""
 
 from dataclasses import dataclass
 
 from ..errors import InvalidMeshError
 from .colours import AnyColor, color_of
 
-#: Beginnings of the pictures that files of meshes may hold.
+#: The first bytes of the picture formats that mesh files may hold.
 _MEDIA = {b"\x89PNG\r\n\x1a\n": "image/png", b"\xff\xd8\xff": "image/jpeg"}
 
 
 @dataclass(frozen=True, init=False)
 class Material:
-    """A colour, and a picture laid over faces by the attribute ``"uv"``.
+    """A colour, and a picture that the attribute ``"uv"`` maps onto faces.
 
     Parameters
     ----------
     color : (4,) tuple of float
-        Red, green, blue and opacity (by default 1), 0 to 1, as a screen shows them. It may be given
-        as ``"orange"``, ``"#ff8800"`` or whole numbers up to 255, too (see `attributes.colours`).
+        Red, green, blue and opacity (by default 1), from 0 to 1, as on a screen. It may also be
+        given as ``"orange"``, ``"#ff8800"`` or whole numbers up to 255 (see `attributes.colours`).
     texture : bytes, optional
         A PNG or JPEG file.
     """

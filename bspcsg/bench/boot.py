@@ -2,7 +2,7 @@
 
 With ``--`` and arguments in place of the task it starts the command line.
 
-The package loads its core when it is first imported, so that this must not be a part of it.
+The package loads its core when it is first imported, so this file must not be part of it.
 """
 
 import sys

@@ -21,25 +21,25 @@ class BenchCase:
     title : str
     targets : tuple of Goal
     items : dict
-        The things timed, by label; the small forms of the same are in `small`.
+        The items to time, by label; `small` has the small forms of the same.
     small : dict
         Items that take a second or so together.
     engines : tuple of str
-        Those that can do it in sensible time; none means all.
+        The engines that finish in reasonable time; none means all.
     cores : int
-        The whole process is confined to so many; 0 leaves it as it is.
+        The number of cores that the process may use; 0 for no limit.
     alone : bool
-        Each engine runs in a process of its own, and the peak of its memory is what counts.
+        Each engine runs in a process of its own, and its peak memory is measured.
     needs : str
         Path of data that may be missing, below the folder of shared data.
     limit : float
         Seconds after which a call is stopped, unless another limit is asked for.
     checked_at_once : bool
-        If no other engine finishes the chain, manifold3d is asked for the same as one expression.
+        If no other engine finishes the chain, manifold3d computes the same set as one expression.
     needs_gb : dict of str to float
-        Items for which a machine must have so much memory, in 10^9 bytes.
+        The memory that a machine must have for some items, in 10^9 bytes.
     other_sets : bool
-        Other engines understand the operands as other sets, so that answers are not compared.
+        Other engines take the operands for other sets, so that answers are not compared.
     """
 
     title: str

@@ -1,4 +1,4 @@
-"""The cases: what is done, how large, by whom, and what is to be reached."""
+"""The cases: operations, sizes, engines and targets."""
 
 from math import pi
 from pathlib import Path
@@ -33,11 +33,11 @@ from .work import (
     Work,
 )
 
-#: Engines that take part in large pairs and in long chains, beside those that are asked for.
+#: Engines that take part in large pairs, and in long chains.
 QUICK_ENGINES = ("bspcsg", "manifold3d", "trueform", "meshlib")
 CHAIN_ENGINES = ("bspcsg", "manifold3d")
 
-#: Engines for pairs that are to be reached beside the main rival.
+#: Engines that we are to match in pairs, besides the main rival.
 _OTHERS = ("meshlib", "trueform")
 
 _MESHES = "meshes/MANIFEST.tsv"
@@ -130,7 +130,7 @@ def _files(level: int, *options: str) -> WorkMaker:
     return lambda _: CommandLine(*shapes.spheres_apart(shapes.icosphere(level)), options)
 
 
-#: Volume of a unit ball without another one around a point of its surface.
+#: Volume of a unit ball without another unit ball that is centred on its surface.
 _BALL_WITHOUT_BALL = 11 * pi / 12
 
 
@@ -158,7 +158,7 @@ def _none_below(factor: float, *engines: str) -> tuple[Goal, ...]:
 
 _SIZES = (36, 72, 144, 288, 576, 708)
 
-#: Sizes of spheres that few machines hold, and the memory that the larger ones need in all.
+#: Sizes of spheres that fit into few machines, and the memory that the larger ones need.
 _HUGE = (500, 1000, 1582)
 _HUGE_GB = (2.5, 8.0, 18.0)
 

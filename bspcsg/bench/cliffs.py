@@ -1,4 +1,4 @@
-"""Dense places, each at two sizes: many faces meet there, and cost is to grow as answers do."""
+"""Dense places, where many faces meet, at two sizes: cost should grow no faster than answers."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -62,7 +62,7 @@ def _doubled(title: str, make: _Maker, count: int, small: int) -> BenchCase:
     )
 
 
-#: By name; sizes are what manifold3d does within seconds.
+#: By name; manifold3d takes seconds for these sizes.
 CLIFFS: dict[str, BenchCase] = {
     "dense-half-spaces": _doubled(
         "cubes around a ball, one side of each touching it, intersected",

@@ -1,4 +1,4 @@
-"""Meshes of the cases with dense places; each function takes how many."""
+"""Meshes of the cases with dense places; each function takes a count."""
 
 import numpy as np
 
@@ -22,12 +22,12 @@ from .shapes import (
 #: Sides of a tube.
 _TUBE_SIDES = 24
 
-#: Turns what would be aligned with axes.
+#: Rotates meshes that would be aligned with axes.
 _ASKEW = rotation((1, 2, 3), 0.4)
 
 
 def cubes_around_ball(count: int) -> list[MeshArrays]:
-    """Return large cubes that hold the unit ball and touch it with one side each."""
+    """Return large cubes that contain the unit ball and touch it with one side each."""
     random = generator(1)
     cube = box((-4, -4, -7), (4, 4, 1))
     return [turned(cube, random_rotation(random)) for _ in range(count)]
@@ -41,7 +41,7 @@ def turned_cubes(count: int) -> list[MeshArrays]:
 
 
 def aligned_boxes(count: int) -> list[MeshArrays]:
-    """Return axis-parallel boxes, large beside the room that holds them."""
+    """Return axis-parallel boxes, large compared with the space that they share."""
     random = generator(3)
     lows = random.random((count, 3))
     sizes = 0.2 + 0.8 * random.random((count, 3))
@@ -117,7 +117,7 @@ def nested_balls(count: int) -> list[MeshArrays]:
 
 
 def film(triangles: int) -> tuple[MeshArrays, MeshArrays]:
-    """Return a ball of about so many triangles, and the same one step of the lattice beside."""
+    """Return a ball of about so many triangles, and a copy shifted by one step of the lattice."""
     ball = octasphere(round((triangles / 8) ** 0.5))
     return ball, moved(ball, (1e-9, 0, 0))
 
@@ -129,7 +129,7 @@ def moved_copies(count: int) -> list[MeshArrays]:
 
 
 def copies(count: int) -> list[MeshArrays]:
-    """Return a ball so many times."""
+    """Return `count` copies of a ball."""
     return [icosphere(2)] * count
 
 
@@ -156,7 +156,7 @@ def touching_cubes(count: int) -> list[MeshArrays]:
 
 
 def cubes_in_room(count: int) -> list[MeshArrays]:
-    """Return unit cubes turned at random, one for each unit of the room."""
+    """Return unit cubes turned at random, one per unit of volume."""
     random = generator(9)
     cube = box((-0.5, -0.5, -0.5), (0.5, 0.5, 0.5))
     side = count ** (1 / 3)
@@ -166,7 +166,7 @@ def cubes_in_room(count: int) -> list[MeshArrays]:
 
 
 def tetrahedra_in_room(count: int) -> list[MeshArrays]:
-    """Return tetrahedra turned at random, one for each unit of the room."""
+    """Return tetrahedra turned at random, one per unit of volume."""
     random = generator(11)
     shape = np.vstack([np.zeros(3), np.eye(3)]) - 0.25, _TETRAHEDRON
     side = count ** (1 / 3)
@@ -184,7 +184,7 @@ def combs(teeth: int) -> tuple[MeshArrays, MeshArrays]:
 
 
 def bar(sides: int) -> list[MeshArrays]:
-    """Return a long bar with a round end as STL files hold it: caps are fans of needles."""
+    """Return a long bar with a round end, in single precision as in STL: caps are needle fans."""
     return [_in_single_precision(turned(_round_bar(sides), rotation((3, 1, 2), 0.7)))]
 
 

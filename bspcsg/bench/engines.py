@@ -1,4 +1,4 @@
-"""The engines that are compared, all behind one face: solids from arrays, sets, volumes, arrays."""
+"""The engines that are compared, behind one interface: solids, operations, volumes and arrays."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -14,24 +14,24 @@ from .._types import MeshArrays
 from .facts import mesh_volume
 from .shapes import joined
 
-#: The operations of engines; the first operand is the one that the others are taken from.
+#: The operations of engines; a difference subtracts the other operands from the first one.
 Operation: TypeAlias = Literal["union", "difference", "intersection"]
 
-#: Largest relative distance by which a double is rounded.
+#: Largest relative error when a number is rounded to a double, and to a float.
 _DOUBLE = 2.0**-53
 _FLOAT = 2.0**-24
 
 
 class EngineError(Exception):
-    """An engine said that it cannot do what it was asked for."""
+    """An engine reported that it cannot do the work."""
 
 
 class Engine(ABC):
-    """One engine; a solid is whatever it keeps between two operations."""
+    """One engine; its solids are whatever it keeps between two operations."""
 
     name: str
 
-    #: True if `counters` has something to say.
+    #: True if `counters` returns anything.
     counts = False
 
     @abstractmethod
@@ -40,11 +40,11 @@ class Engine(ABC):
 
     @abstractmethod
     def combine(self, operation: Operation, solids: Sequence[Any]) -> Any:
-        """Combine solids; the engine may put the work off."""
+        """Combine solids; the engine may defer the work."""
 
     @abstractmethod
     def volume(self, solid: Any) -> float:
-        """Return the volume, which nothing that was put off can survive."""
+        """Return the volume, which forces any deferred work."""
 
     @abstractmethod
     def arrays(self, solid: Any) -> MeshArrays:
@@ -55,11 +55,11 @@ class Engine(ABC):
         return 4 * _DOUBLE * size
 
     def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
-        """Combine two meshes, arrays in to arrays out, in the way that the engine advises."""
+        """Combine two meshes, arrays in to arrays out, in the way that the engine recommends."""
         return self.arrays(self.combine(operation, [self.solid(first), self.solid(second)]))
 
     def united(self, parts: Sequence[MeshArrays]) -> Any:
-        """Return the union of meshes, in one mesh if the engine takes such that overlap."""
+        """Return the union of meshes, passed as one mesh if the engine accepts overlaps."""
         return self.combine("union", [self.solid(part) for part in parts])
 
     def counters(self, solid: Any) -> dict[str, int]:
@@ -68,7 +68,7 @@ class Engine(ABC):
 
 
 class _Bspcsg(Engine):
-    """Our own, by the public functions of the package."""
+    """Our own engine, by the public functions of the package."""
 
     name = "bspcsg"
     counts = True
@@ -93,7 +93,7 @@ class _Bspcsg(Engine):
         return vertices, faces
 
     def resolution(self, size: float) -> float:
-        # The default lattice, of which a vertex is at most half a diagonal away.
+        # A vertex moves to the default lattice, by at most half a diagonal of a cell.
         return 3**0.5 / 2 * 1e-9 + super().resolution(size)
 
     def boolean(self, first: MeshArrays, second: MeshArrays, operation: Operation) -> MeshArrays:
@@ -107,7 +107,7 @@ class _Bspcsg(Engine):
 
 
 class _Manifold(Engine):
-    """manifold3d in double precision; what it puts off is forced before a clock stops."""
+    """manifold3d in double precision; deferred work is forced before a clock stops."""
 
     name = "manifold3d"
 

@@ -1,6 +1,7 @@
 """Runs a command and prints what it used: ``meter.py COMMAND...``, in a process of its own.
 
-Linux counts to a child's peak what its parent held when it began; so the parent must be small.
+Linux counts the memory that a parent has when it starts a child to the child's peak; so the parent
+must be small.
 """
 
 import json
@@ -21,7 +22,7 @@ class Usage:
     seconds, cpu : float
         Wall time, and processor time of all threads.
     peak_mb : float
-        The most that one of the processes held, in 10^6 bytes.
+        The peak memory of the largest of the processes, in 10^6 bytes.
     code : int
         The exit code.
     said : str

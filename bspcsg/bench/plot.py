@@ -55,7 +55,7 @@ class _Scale:
         return cls(least, max(ceil(log10(max(values))), least + 1), start, end)
 
     def at(self, value: float) -> float:
-        """Return where a value lies."""
+        """Return the pixel of a value."""
         part = (log10(value) - self.least) / (self.most - self.least)
         return self.start + part * (self.end - self.start)
 

@@ -1,4 +1,4 @@
-"""The command line as work: two STL files in, one out, by a process of its own."""
+"""The command line as work: two STL files in, one out, in a process of its own."""
 
 import sys
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ from .work import Evidence, Outcome, SurfaceExtent, Tell, Work, extent_of
 
 _BOOT = Path(__file__).with_name("boot.py")
 
-#: Largest distance by which a coordinate of a file moves, in parts of it.
+#: Largest relative error of a coordinate in a file.
 _SINGLE = 2.0**-24
 
 
@@ -34,7 +34,7 @@ class CommandLine(Work):
     first, second : (vertices, faces)
     options : tuple of str
     folder : Path
-        For the files; whoever starts a worker takes away what it leaves among temporary files.
+        For the files; the process that starts a worker removes its temporary files.
     """
 
     first: MeshArrays
@@ -76,7 +76,7 @@ class CommandLine(Work):
 
 
 def _ours() -> list[str]:
-    """Return the start of a command line, on the core that this process has."""
+    """Return the start of a command line that uses the core of this process."""
     root = Path(__file__).resolve().parents[2]
     core = import_module("bspcsg._core").__file__
     return [sys.executable, "-P", str(_BOOT), str(root), str(core), "--"]

@@ -1,4 +1,4 @@
-"""Real data that lies beside a checkout: meshes of public projects, and a chain of swept tools."""
+"""Real data that lies next to a checkout: meshes of public projects, a chain of swept tools."""
 
 import csv
 from functools import cache
@@ -9,7 +9,7 @@ import numpy as np
 from .._types import MeshArrays
 from .shapes import generator, moved, random_rotation, scaled, turned, unit_vector
 
-#: Triangles of the meshes that are paired, of large and of small pairs.
+#: The least and the greatest number of triangles of meshes in large pairs, and in small ones.
 LARGE, SMALL = (10_000, 500_000), (10, 30_000)
 
 #: The distance between the middles of two meshes, in halves of their diagonals.
@@ -56,7 +56,7 @@ def _posed(
 def solid_names(
     shared: Path, sizes: tuple[int, int] = LARGE, *, overlapping: bool = False
 ) -> list[str]:
-    """Return closed meshes that every engine takes, such as overlap themselves or such as do not.
+    """Return closed meshes that every engine accepts, all self-overlapping or none of them.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from ..formats.atomic import write_file
 from ..machine import machine
 from .engines import installed
 
-#: Raised whenever a field changes its meaning.
+#: Version of the schema, raised whenever a field changes its meaning.
 SCHEMA = 1
 
 
@@ -32,7 +32,7 @@ def record_of(rows: list[dict[str, Any]], runs: int, command: str) -> dict[str, 
 
 
 def other_place(record: dict[str, Any]) -> str:
-    """Return in which way a record is not from this machine and these versions, or nothing."""
+    """Return what differs from this machine and these versions, or nothing."""
     ours = record_of([], 0, "")
     if {**ours["machine"], "load": 0} != {**record["machine"], "load": 0}:
         return "another machine"
@@ -57,7 +57,7 @@ def read(path: Path) -> dict[str, Any]:
     Raises
     ------
     FormatError
-        If the file is none, or of another schema.
+        If the file is not a record, or has another schema.
     """
     try:
         data = path.read_bytes()

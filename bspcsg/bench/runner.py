@@ -1,4 +1,4 @@
-"""Runs cases in child processes with a limit on each call, and gathers what they say."""
+"""Runs cases in child processes with a limit on each call, and collects their results."""
 
 import json
 import os
@@ -36,13 +36,13 @@ class Settings:
     Parameters
     ----------
     engines : sequence of str
-        Those that take part where they can.
+        The engines that take part where they can.
     runs : int
         Timed runs of each engine.
     small : bool
         True if small items are taken.
     limit : float or None
-        Seconds for one call; None for what suits the case.
+        Seconds for one call; None for the limit of the case.
     budget : float
         Seconds for all runs of an engine on an item.
     shared : Path
@@ -66,7 +66,7 @@ class Settings:
     steps: int = 0
 
 
-#: Called with a line about what is under way.
+#: Called with a line about the current work.
 Progress = Callable[[str], None]
 
 
@@ -79,7 +79,7 @@ def run_case(key: str, settings: Settings, progress: Progress) -> dict[str, Any]
     too_large = _too_large(case, settings)
     labels = [label for label in _items_of(case, settings) if label not in too_large]
     items = [_item(key, label, settings, progress) for label in labels]
-    # What is less than the whole says nothing about the targets.
+    # A partial run says nothing about the targets.
     small = settings.small or _is_cut(key, settings)
     row = {"case": key, "title": case.title, "small": small, "items": items}
     return row | {"too_large": too_large} if too_large else row
@@ -90,7 +90,7 @@ def _items_of(case: BenchCase, settings: Settings) -> Iterable[str]:
 
 
 def _too_large(case: BenchCase, settings: Settings) -> dict[str, str]:
-    """Return why items are left out that this machine has no memory for, by their labels."""
+    """Return the items that need more memory than this machine has, by label, with the reason."""
     has = machine()["memory_gb"]
     return {
         label: f"needs {case.needs_gb[label]:g} GB of memory, this machine has {has:g}"
@@ -135,7 +135,7 @@ def _bound_of_memory(case: BenchCase, label: str, settings: Settings) -> float:
 
 
 def _parts(case: BenchCase, task: Task) -> list[Task]:
-    """Return one task for all engines, or one for each if each is to be alone."""
+    """Return one task for all engines, or one for each if each runs alone."""
     if not case.alone:
         return [task]
     return [replace(task, engines=[name]) for name in task.engines]
@@ -155,7 +155,7 @@ def _at_once(task: Task, settings: Settings, progress: Progress) -> dict[str, An
 
 
 def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> None:
-    """Run workers until each engine is done or has failed; one that ends a worker is left out."""
+    """Run workers until each engine is done or has failed; leave out one that ends a worker."""
     engines = list(task.engines)
     while engines:
         culprit = _work(replace(task, engines=engines), settings, gathered, progress)
@@ -166,7 +166,7 @@ def _until_done(task: Task, settings: Settings, gathered: "Gathered", progress: 
 
 
 def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progress) -> str | None:
-    """Run one worker; return the engine that was under way when it ended before its time."""
+    """Run one worker; return the engine that was under way if it ended too early."""
     limit = CASES[task.case].limit if settings.limit is None else settings.limit
     core = str(settings.core.resolve()) if settings.core else ""
     command = [sys.executable, "-P", str(_BOOT), str(_PACKAGE.parent), core]
@@ -175,7 +175,7 @@ def _work(task: Task, settings: Settings, gathered: "Gathered", progress: Progre
         subprocess.Popen(
             [*command, json.dumps(asdict(task))],
             stdout=subprocess.PIPE,
-            # Engines write there what they like; what is wrong is said on standard output.
+            # Engines write anything to standard error; our errors go to standard output.
             stderr=subprocess.DEVNULL,
             env={**os.environ, "PYTHONHASHSEED": "0", "TMPDIR": scratch},
         ) as child,
@@ -197,7 +197,7 @@ def _listen(
     gathered: "Gathered",
     progress: Progress,
 ) -> tuple[str | None, dict[str, Any] | None]:
-    """Take in what a worker says; return who was under way, and why it ended if not well."""
+    """Read a worker's output; return the engine under way, and why the worker failed, if it did."""
     lines = _Lines(child)
     under_way, began = None, time.monotonic()
     while True:
@@ -248,7 +248,7 @@ class Gathered:
         self._engines: dict[str, dict[str, Any]] = {}
 
     def take(self, said: dict[str, Any]) -> None:
-        """Take in one line."""
+        """Record one line."""
         if said["say"] == "extent":
             self._extent = {name: said[name] for name in ("area", "size", "triangles")}
         elif said["say"] == "plan":
@@ -291,7 +291,7 @@ class Gathered:
                 self._engines.pop(name, None)
 
     def row(self) -> dict[str, Any]:
-        """Return the item as it is kept."""
+        """Return the item as records store it."""
         for found in self._engines.values():
             found["median"] = _warm_median(found["seconds"])
             found["cpu"] = _warm_median(found["cpu_seconds"])
@@ -337,8 +337,8 @@ def judged(row: dict[str, Any]) -> dict[str, Any]:
 def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], name: str) -> float:
     """Return by how much two right volumes may differ.
 
-    An engine may move each vertex by its resolution; no wall of the answer is more than its part of
-    an operand's, so that the volume changes by at most the operands' area times that way.
+    An engine may move each vertex by its resolution. The faces of the answer are parts of the
+    operands' faces, so the volume changes by at most the operands' area times that distance.
     """
     ways = sum(_resolution(engine, row["size"]) for engine in (OURS, name))
     roundings = ours["facts"]["volume_error"] + theirs["facts"]["volume_error"]
@@ -346,5 +346,5 @@ def _bound(row: dict[str, Any], ours: dict[str, Any], theirs: dict[str, Any], na
 
 
 def _resolution(engine: str, size: float) -> float:
-    # Asked of the class: making an engine would load it.
+    # Called on the class, because creating an engine would load it.
     return ENGINES[engine].resolution(ENGINES[engine].__new__(ENGINES[engine]), size)

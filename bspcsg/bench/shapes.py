@@ -44,14 +44,14 @@ def rotation(axis: object, angle: float) -> FloatArray:
 
 
 def random_rotation(random: np.random.Generator) -> FloatArray:
-    """Return a rotation, all equally likely."""
+    """Return a uniformly distributed rotation."""
     matrix, upper = np.linalg.qr(random.normal(size=(3, 3)))
     matrix = matrix * np.sign(np.diag(upper))
     return np.ascontiguousarray(matrix * np.linalg.det(matrix))
 
 
 def unit_vector(random: np.random.Generator) -> FloatArray:
-    """Return a direction, all equally likely."""
+    """Return a uniformly distributed direction."""
     direction = random.normal(size=3)
     return np.asarray(direction / np.linalg.norm(direction))
 
@@ -176,8 +176,8 @@ def spheres_coincident(ball: MeshArrays) -> tuple[MeshArrays, MeshArrays]:
 def needles(sides: int, length: float = 9450.0) -> tuple[MeshArrays, MeshArrays]:
     """Return two rods askew, whose 4 · `sides` walls are needles, one shifted along its twin.
 
-    All boxes of walls overlap, since each wall runs along the whole rod: what finds candidates by
-    boxes finds every pair.
+    All boxes of walls overlap, since each wall runs along the whole rod, so that a search for
+    candidates by boxes finds every pair.
     """
     rod = cylinder(sides, 25.0, 0.0, length)
     askew = rotation((1, -2, 0.5), 0.7)
@@ -237,7 +237,7 @@ def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
 
 
 def milled_by_cylinders(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return a block, and what a flat mill of 32 sides leaves empty on a spiral down into it.
+    """Return a block, and what a flat mill of 32 sides clears on a spiral down into it.
 
     Each step is a prism over a slot; neighbours share half a cylinder, and floors lie in planes.
     """
@@ -254,7 +254,7 @@ def milled_by_cylinders(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
 
 
 def _slot(start: FloatArray, end: FloatArray, radius: float, sides: int) -> FloatArray:
-    """Return the convex polygon that a regular one covers on its way."""
+    """Return the convex polygon that a regular polygon sweeps on a straight way."""
     along = end - start
     angles = np.arctan2(along[1], along[0]) + np.pi * (0.5 + np.arange(sides // 2 + 1) * 2 / sides)
     half = radius * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -262,7 +262,7 @@ def _slot(start: FloatArray, end: FloatArray, radius: float, sides: int) -> Floa
 
 
 def milled_by_balls(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
-    """Return a block, and what a ball leaves empty in each step of a curve through it: capsules."""
+    """Return a block, and what a ball clears in each step of a curve through it: capsules."""
     t = np.linspace(0, 2 * np.pi, count + 1)
     path = 0.42 * np.column_stack([np.sin(5 * t), np.sin(7 * t + 1), np.sin(4 * t + 2)])
     tools = [_capsule(a, b, 0.1) for a, b in pairwise(path)]
@@ -316,8 +316,8 @@ DOME_STEPS = 100_000
 def dome(steps: int) -> tuple[MeshArrays, Iterator[MeshArrays]]:
     """Return a block, and the balls that carve a flat dome into its top, one after the other.
 
-    The balls follow a spiral outwards. Their distance along it is that of its windings, and each
-    overlaps its neighbours, so that a step meets what about eight earlier ones left.
+    The balls follow a spiral outwards. Their distance along it equals that of its windings, and
+    each overlaps its neighbours, so a step meets the surfaces of about eight earlier ones.
     """
     spacing = np.sqrt(np.pi / DOME_STEPS)
     radius = 1.2 * spacing

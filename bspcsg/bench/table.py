@@ -1,4 +1,4 @@
-"""Tables of a record: what was to be reached, what was, and who took how long."""
+"""Tables of a record: the targets, the results, and the times of the engines."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ Row = dict[str, Any]
 #: A median of fewer runs than this is shown with their number.
 _MIN_RUNS_FOR_MEDIAN = 5
 
-#: The sign in place of a figure that there is none of.
+#: Stands for a missing figure.
 _NOTHING = "—"
 
 _MET = {True: "yes", False: "no", None: _NOTHING}
@@ -25,7 +25,7 @@ def lines_of(record: dict[str, Any], titles: bool) -> list[list[str]]:
     record : dict
         As `bspcsg.bench.record.read` returns it.
     titles : bool
-        True if cases stand with their titles, instead of their names.
+        True to show the titles of cases instead of their names.
     """
     engines = _engines_of(record)
     lines = [["case", "to reach", "reached", "met", *engines, "memory", "answers"]]
@@ -62,7 +62,7 @@ def _or_nothing(seconds: float | None) -> str:
 
 
 def remarks(record: dict[str, Any]) -> list[str]:
-    """Return sentences about the whole: what was reached and missed, and what was left out."""
+    """Return sentences about the whole: targets reached and missed, and items left out."""
     met = [
         (row["case"], target.reached(row["items"]).met)
         for row in record["cases"]
@@ -131,7 +131,7 @@ def _title(row: Row) -> str:
 
 
 def _lines_of_row(row: Row, name: str, engines: list[str]) -> list[list[str]]:
-    """Return one line for each target; what is the same for all stands in the first."""
+    """Return one line for each target; only the first shows what they have in common."""
     if "left_out" in row:
         return [[name, "", "left out", "", *[""] * len(engines), "", row["left_out"]]]
     described = [*(_times(row, engine) for engine in engines), _memory(row), _answers(row)]
@@ -214,7 +214,7 @@ def _memory(row: Row) -> str:
 
 
 def _answers(row: Row) -> str:
-    """Say whether all other answers are ours within rounding, and who differs if not."""
+    """Say whether all other answers equal ours within rounding, and which differ if not."""
     words = {name for item in row["items"] for name in _differing(item)}
     compared = any("agrees" in found for item in row["items"] for found in _all_answers(item))
     if not compared:

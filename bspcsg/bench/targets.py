@@ -1,4 +1,4 @@
-"""The targets of a row, and the figures that it reached."""
+"""The targets of a row, and the figures that the row reached."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from .times import seconds_text
 #: The engine that the others are measured against.
 OURS = "bspcsg"
 
-#: The engine that has to be reached where a row names none.
+#: The engine to match where a row names none.
 MAIN_RIVAL = "manifold3d"
 
 #: Results by item and engine, as in the records.
@@ -31,7 +31,7 @@ class Reached:
         None if an engine that it needs has no time.
     text : str
     met : bool or None
-        None if nothing can be said.
+        None if that is unknown.
     """
 
     value: float | None
@@ -44,10 +44,10 @@ class Goal(Protocol):
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
 
 
 @dataclass(frozen=True)
@@ -59,11 +59,11 @@ class Faster:
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
@@ -81,11 +81,11 @@ class MeanFaster:
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"mean ≥ {self.factor:g} × {self.engine}"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         ratios = [found for item in items if (found := ratio(item, self.engine)) is not None]
         if not ratios:
             return Reached(None, "—", None)
@@ -102,17 +102,17 @@ def _geometric_mean(numbers: list[float]) -> float:
 
 @dataclass(frozen=True)
 class Within:
-    """Done in so many seconds, the median of each item."""
+    """The median of each item is at most so many seconds."""
 
     seconds: float
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"< {seconds_text(self.seconds)}"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         times = [result_of(item, OURS).get("median") for item in items]
         known = [value for value in times if value is not None]
         if not known:
@@ -122,17 +122,17 @@ class Within:
 
 @dataclass(frozen=True)
 class WorkWithin:
-    """Done in so much processor time, of all threads and processes; the median of each item."""
+    """The median processor time of each item, of all threads and processes, is limited."""
 
     seconds: float
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"≤ {seconds_text(self.seconds)} of processors"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         known = [value for item in items if (value := result_of(item, OURS).get("cpu"))]
         if not known:
             return Reached(None, "unfinished", False)
@@ -147,11 +147,11 @@ class StepWithin:
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"≤ {seconds_text(self.seconds)} a step"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         found = [result_of(item, OURS) for item in items]
         times = [one["parts"]["steps"] / one["steps"] for one in found if one.get("steps")]
         if not times:
@@ -161,17 +161,17 @@ class StepWithin:
 
 @dataclass(frozen=True)
 class ScratchWithin:
-    """The bytes for each triangle of the operands that neither they nor the answer take."""
+    """Scratch memory in bytes per triangle of the operands, without operands and answer."""
 
     bytes_each: float
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"≤ {self.bytes_each:g} bytes a triangle beside operands and answer"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         found = [(item["triangles"], result_of(item, OURS)) for item in items]
         each = [
             (one["memory_mb"] - one["answer_mb"]) * 1e6 / triangles
@@ -186,17 +186,17 @@ class ScratchWithin:
 
 @dataclass(frozen=True)
 class MemoryWithin:
-    """Done in so much memory, that of the whole process."""
+    """The memory of the whole process is limited."""
 
     megabytes: float
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"< {self.megabytes:g} MB"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         peaks = [result_of(item, OURS).get("peak_mb") for item in items]
         known = [value for value in peaks if value is not None]
         if not known:
@@ -212,11 +212,11 @@ class SteadySteps:
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"last steps ≤ {self.factor:g} × step 1 000"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         windows = [result_of(item, OURS).get("windows") or {} for item in items]
         pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
         if not pairs:
@@ -233,11 +233,11 @@ class GrowthTarget:
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"∝ n^{self.exponent:g}"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         value = exponent(items, OURS, "cpu")
         if value is None:
             return Reached(None, "—", None)
@@ -246,26 +246,26 @@ class GrowthTarget:
 
 
 def _of_all(met: bool, measured: int, items: Items) -> bool | None:
-    """Return whether a target is met; None where only some items say so."""
+    """Return whether a target is met; None if it is met but some items were not measured."""
     return None if met and measured < len(items) else met
 
 
 @dataclass(frozen=True)
 class DoublingTarget:
-    """From each item to the next, about twice as large, cost grows as input and answer do."""
+    """From each item to the next, about twice as large, cost grows no faster than the sizes."""
 
-    #: By how much more processor time may grow than what is read and written.
+    #: The factor by which processor time may outgrow the triangles read and written.
     share: float = 0.15
 
     @property
     def text(self) -> str:
-        """The wish in words."""
+        """The target in words."""
         return f"cost ≤ {1 + self.share:g} × growth of input and answer"
 
     def reached(self, items: Items) -> Reached:
-        """Look what was measured."""
+        """Compare the target with what was measured."""
         if any(result_of(item, OURS).get("state") == "stopped" for item in items):
-            # What ends at one size and not at the next has grown by more than anybody waits for.
+            # An item that finishes at one size and times out at the next has grown too fast.
             return Reached(None, "unfinished", False)
         grown = [_growth(a, b) for a, b in pairwise(items)]
         known = [found for found in grown if found is not None]
@@ -277,9 +277,9 @@ class DoublingTarget:
 
 
 def _growth(less: dict[str, Any], more: dict[str, Any]) -> tuple[float, float] | None:
-    """Return how many times processor time grew, and what is read and written.
+    """Return the growth of processor time, and of the triangles read and written.
 
-    An answer that grew less than the operands does not count: these have to be looked at.
+    An answer that grew less than the operands is ignored, because all operands have to be read.
     """
     ours = [result_of(item, OURS) for item in (less, more)]
     if not all(found.get("cpu") and "facts" in found for found in ours):
@@ -298,7 +298,7 @@ def result_of(item: dict[str, Any], engine: str) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Ratio:
-    """The number of times that we are faster.
+    """How many times we are faster.
 
     Parameters
     ----------
@@ -323,7 +323,7 @@ class Ratio:
 
 
 def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
-    """Compare our time with another engine's; None if one of them has none, or answers differ."""
+    """Compare our time with another engine's; None if a time is missing, or the answers differ."""
     ours, theirs = result_of(item, OURS), result_of(item, engine)
     if theirs.get("agrees") is False or not ours.get("median"):
         return None
@@ -336,7 +336,7 @@ def ratio(item: dict[str, Any], engine: str) -> Ratio | None:
 
 
 def exponent(items: Items, engine: str, time: str = "median") -> float | None:
-    """Fit the power of the number of triangles that an engine's time grows with.
+    """Fit the exponent by which an engine's time grows with the number of triangles.
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from .facts import area, mesh_volume, size_of
 from .meter import Usage
 from .shapes import generator
 
-#: Called with the number of steps that are done; of chains only.
+#: Called with the number of steps that are done; for chains only.
 Tell = Callable[[int], None]
 
 
@@ -28,7 +28,7 @@ class Outcome:
     ----------
     mesh : (vertices, faces)
     parts : dict
-        Seconds of what the run consists of, by name; what is not timed apart is left out.
+        Seconds of the parts of the run, by name; parts that are not timed separately are left out.
     step_seconds : list of float
         Of each step of a chain.
     solid : object
@@ -46,7 +46,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Evidence:
-    """The word of something that is no engine about an answer."""
+    """The agreement of something other than an engine with an answer."""
 
     agrees: bool
     text: str
@@ -54,7 +54,7 @@ class Evidence:
 
 @dataclass(frozen=True)
 class SurfaceExtent:
-    """The area of the operands, and how far out it is; it bounds wrong volumes."""
+    """The area, size and triangles of the operands; area and size bound the errors of volumes."""
 
     area: float
     size: float
@@ -69,12 +69,12 @@ class Work(ABC):
         """Measure the operands."""
 
     def prepare(self, engine: Engine) -> Any:
-        """Return what the clock does not see."""
+        """Prepare a run, outside the clock."""
         return None
 
     @abstractmethod
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
         """Return the engine's counters of a run, if it has any."""
@@ -98,11 +98,11 @@ class Pair(Work):
         return extent_of([self.first, self.second])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
         return Outcome(engine.boolean(self.first, self.second, self.operation))
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Do it once more, since arrays have no counters."""
+        """Repeat the work on solids, since arrays have no counters."""
         if not engine.counts:
             return {}
         operands = [engine.solid(self.first), engine.solid(self.second)]
@@ -111,25 +111,25 @@ class Pair(Work):
 
 @dataclass(frozen=True)
 class PairAsBalls(Pair):
-    """Two meshes that lie between balls, so large that few engines answer.
+    """Two meshes close to balls, so large that few engines answer.
 
     Parameters
     ----------
     volume : float
-        That of the answer if both were the balls around them.
+        The volume of the answer if both were their circumscribed balls.
     depth : float
-        The most by which the meshes are within those balls.
+        The greatest depth of the meshes' faces below the surfaces of those balls.
     """
 
     volume: float = 0.0
     depth: float = 0.0
 
     def counted(self, engine: Engine, outcome: Outcome) -> dict[str, int]:
-        """Return nothing: it would be done once more."""
+        """Return nothing, so that the work is not repeated."""
         return {}
 
     def proof(self, answer: MeshArrays) -> Evidence:
-        """Compare the volume with that of balls: walls are at most `depth` from theirs."""
+        """Compare the volume with that of the balls, whose surfaces are at most `depth` away."""
         found = mesh_volume(answer)
         apart = abs(found.value - self.volume)
         # Between a mesh and its ball is at most the ball's area times the depth.
@@ -142,7 +142,7 @@ class PairAsBalls(Pair):
 class OverlappingPair(Pair):
     """Two meshes that may overlap themselves: inside is where faces wind around at least once."""
 
-    #: Random points at which the answer is compared with what its operands say.
+    #: The number of random points at which the answer is checked against its operands.
     samples: int = 100
 
     def proof(self, answer: MeshArrays) -> Evidence:
@@ -153,14 +153,14 @@ class OverlappingPair(Pair):
 
 @dataclass(frozen=True)
 class BuiltPair(Pair):
-    """The same with operands that are built, anew for each run, before the clock starts."""
+    """A pair whose operands are built anew for each run, before the clock starts."""
 
     def prepare(self, engine: Engine) -> Any:
         """Build both operands."""
         return [engine.solid(self.first), engine.solid(self.second)]
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
         made = engine.combine(self.operation, prepared)
         return Outcome(engine.arrays(made), solid=made)
 
@@ -178,7 +178,7 @@ class Expression(Work):
         return extent_of([self.base, *(mesh for group in self.groups for mesh in group)])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
         laps = Laps()
         operands = [engine.solid(self.base)]
         for group in self.groups:
@@ -193,7 +193,7 @@ class Expression(Work):
 
 @dataclass(frozen=True)
 class OneMesh(Work):
-    """Meshes that overlap as one file holds them; engines that take none such unite the parts."""
+    """Overlapping meshes in one file; engines that do not accept these unite the parts."""
 
     parts: Sequence[MeshArrays]
 
@@ -202,7 +202,7 @@ class OneMesh(Work):
         return extent_of(self.parts)
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
         made = engine.united(self.parts)
         return Outcome(engine.arrays(made), solid=made)
 
@@ -224,7 +224,7 @@ class Chain(Work):
         return Expression(self.base, [[tool] for tool in self.tools], self.operation)
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
         laps = Laps()
         solid = engine.solid(self.base)
         tools = [engine.solid(tool) for tool in self.tools]
@@ -260,7 +260,7 @@ class Carving(Work):
         return Expression(self.base, [[tool] for tool in self.tools()])
 
     def run(self, engine: Engine, prepared: Any, tell: Tell) -> Outcome:
-        """Do it."""
+        """Do the work."""
         solid = engine.solid(self.base)
         steps = []
         for done, tool in enumerate(self.tools(), start=1):
@@ -306,7 +306,7 @@ def stepwise(
 def wrong_points(
     first: MeshArrays, second: MeshArrays, answer: MeshArrays, samples: int
 ) -> tuple[int, int]:
-    """Return at how many random points a difference is wrong, and how many could be settled."""
+    """Return at how many random points a difference is wrong, and at how many that was decided."""
     meshes = [Columns(_mesh(arrays)) for arrays in (first, second, answer)]
     low, high = first[0].min(axis=0), first[0].max(axis=0)
     points = generator().uniform(low, high, (samples, 3))

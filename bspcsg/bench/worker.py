@@ -1,6 +1,6 @@
-"""The child process: does one item with all its engines in turn, and says each figure at once.
+"""The child process: runs one item with all its engines in turn, and reports each figure at once.
 
-It writes one JSON document a line to standard output, so that what it said stays if it dies.
+It writes one JSON document per line to standard output, so that a crash loses no earlier figure.
 """
 
 import gc
@@ -26,8 +26,7 @@ from .work import Carving, Chain, Outcome, Tell, Work
 #: The shortest time between two reports of steps, in seconds.
 _REPORT_INTERVAL = 0.5
 
-#: The shortest run, in seconds. It repeats a call that takes less, and the cost of the call is its
-#: share of the run.
+#: The shortest run, in seconds. A shorter call is repeated, and its cost is its share of the run.
 _MIN_RUN_SECONDS = 0.02
 
 #: The time of a step is the median over this many steps at the beginning and at the end, and over
@@ -53,13 +52,13 @@ class Task:
     shared : str
         Folder of the shared data.
     cores : int
-        The process is confined to so many; 0 leaves it as it is.
+        The number of cores that the process may use; 0 for no limit.
     memory_gb : float
         Address space beyond which an allocation fails.
     steps : int
         Steps of the dome; 0 for all.
     at_once : bool
-        Only ask for the set as one expression.
+        Only compute the set as one expression.
     """
 
     case: str
@@ -81,7 +80,7 @@ def main(task: str) -> None:
 
 
 def perform(task: Task, say: Callable[[dict[str, Any]], None]) -> None:
-    """Do a task; each figure is said as soon as it is known."""
+    """Do a task; report each figure as soon as it is known."""
     _confine(task)
     work = _work_of(task)
     extent = work.extent()
@@ -125,7 +124,7 @@ class _Turns:
         self._calls = 1
 
     def take(self) -> None:
-        """Do one run and say what came out; an engine that fails has no further ones."""
+        """Do one run and report the result; an engine that fails gets no further runs."""
         name = self.engine.name
         self.say({"say": "begin", "engine": name})
         try:
@@ -152,7 +151,7 @@ class _Turns:
         return {**costs, "memory_mb": memory, "peak_mb": peak_mb(), **_of_process(outcome)}, outcome
 
     def _call(self) -> dict[str, float]:
-        """Do it once and return the cost, with nothing left of the answer."""
+        """Make one call and return its cost; the answer is freed."""
         return self._called()[0]
 
     def _called(self) -> tuple[dict[str, float], Outcome]:
@@ -168,7 +167,7 @@ class _Turns:
         return cost, outcome
 
     def _plan(self, seconds: float) -> None:
-        """Settle after the first run how many more fit into the budget, and of how many calls."""
+        """Plan after the first run how many more fit into the budget, and how many calls each."""
         if self._warm:
             self.left -= 1
             return
@@ -189,7 +188,7 @@ class _Turns:
         return details
 
     def _proof(self, outcome: Outcome) -> dict[str, Any]:
-        """Let our own answers be checked where no other engine can."""
+        """Check our own answer where no other engine can."""
         found = self.work.proof(outcome.mesh) if self.engine.name == OURS else None
         return {} if found is None else {"proof": asdict(found)}
 
@@ -211,12 +210,12 @@ class _Turns:
 
 
 def _faults() -> int:
-    """Return how many pages of memory the process was given so far."""
+    """Return the number of minor page faults of the process so far."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 
 
 def _of_process(outcome: Outcome) -> dict[str, float]:
-    """Return what was used by a process that did the work instead of this one."""
+    """Return the resources used by a process that did the work instead of this one."""
     used = outcome.process
     if used is None:
         return {}

@@ -1,1 +1,1 @@
-"""Campaigns: thousands of set operations, each checked against other engines and kept on file."""
+"""Campaigns: thousands of set operations, each checked against other engines and recorded."""

@@ -1,8 +1,8 @@
 """The record of a campaign: a file of JSON lines, one for each run and each finished case.
 
-Lines are appended as cases end, in any order, and each is written whole before the next begins. A
-runner that is killed while it writes leaves a torn last line, which readers leave out and writers
-close first.
+Lines are appended as cases end, in any order; each is written completely before the next begins. A
+runner that is killed while it writes leaves an incomplete last line. Readers ignore it, and writers
+remove it first.
 """
 
 import json
@@ -17,7 +17,7 @@ from typing import Any, Literal, NotRequired, Self, TypedDict, cast
 from ..errors import FormatError, unreadable
 from ..machine import Machine
 
-#: The name that stands for standard input.
+#: The name for standard input.
 STREAM = "-"
 
 #: Version of the lines.
@@ -26,7 +26,7 @@ SCHEMA = 1
 #: Verdicts that fail a campaign.
 FAILURES = frozenset({"DISAGREE", "subject failed", "timeout", "crash"})
 
-#: All verdicts, the ones to worry about first.
+#: All verdicts, the most serious first.
 VERDICTS = (
     "DISAGREE",
     "subject failed",
@@ -58,8 +58,8 @@ class RunRecord(TypedDict):
 class FactsRecord(TypedDict):
     """The facts about a mesh; lengths in model units, inertia about the centroid at density 1.
 
-    ``self_intersections`` is 0 if no two faces cross or touch but in common edges and corners,
-    exactly; None if some do, or if nobody looked.
+    ``self_intersections`` is 0 if no two faces cross or touch except in shared edges and corners,
+    exactly; None if some do, or if this was not checked.
     """
 
     vertices: int
@@ -75,7 +75,7 @@ class FactsRecord(TypedDict):
 
 
 class OperandRecord(TypedDict):
-    """An operand that went in; `pose` holds the rows of an affine map, or None for none."""
+    """An operand; `pose` has the rows of an affine map, or None."""
 
     name: str
     file: str | None
@@ -86,7 +86,7 @@ class OperandRecord(TypedDict):
 
 
 class OracleRecord(TypedDict):
-    """The answer of another engine; `agrees` is None if that could not be told."""
+    """The answer of another engine; `agrees` is None if that could not be decided."""
 
     name: str
     version: str
@@ -107,7 +107,7 @@ class DifferenceRecord(TypedDict):
 
 
 class HausdorffRecord(TypedDict):
-    """Lower bounds of the distances from ours to theirs and back, from so many points."""
+    """Lower bounds of the distances from ours to theirs and back, and the number of points."""
 
     forward: float
     backward: float
@@ -122,7 +122,7 @@ class BoundsRecord(TypedDict):
 
 
 class IdentityRecord(TypedDict):
-    """The check that exact volumes add up as the equation says."""
+    """The check whether exact volumes satisfy the equation."""
 
     equation: str
     holds: bool
@@ -164,7 +164,7 @@ class CaseRecord(TypedDict):
 
 
 def is_failure(case: CaseRecord) -> bool:
-    """Say whether a case fails the campaign that it is part of."""
+    """Say whether a case fails its campaign."""
     return case["verdict"] in FAILURES
 
 
@@ -179,7 +179,7 @@ class Results:
     cases : dict of str to CaseRecord
         By key, the latest line of each.
     folders : dict of str to Path
-        By key, what the path of the case's meshes is relative to.
+        By key, the folder that the path of the case's meshes is relative to.
     """
 
     runs: list[RunRecord] = field(default_factory=list)
@@ -193,7 +193,8 @@ def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
     Raises
     ------
     FormatError
-        If a file cannot be read, or a line other than a torn last one is none of a results file.
+        If a file cannot be read, or a line other than an incomplete last one is not from a results
+        file.
     """
     results = Results()
     for path in map(Path, paths):
@@ -209,7 +210,7 @@ def read_results(paths: Iterable[str | os.PathLike[str]]) -> Results:
 
 def _lines(path: Path) -> list[dict[str, Any]]:
     try:
-        # Meshes kept beside a file that comes as a stream are looked for where it is read.
+        # For a results file from a stream, meshes are looked for in the current folder.
         data = sys.stdin.buffer.read() if str(path) == STREAM else path.read_bytes()
     except OSError as error:
         raise unreadable(path, error) from error
@@ -238,17 +239,17 @@ _START = b'{"schema": '
 
 
 class Journal:
-    """A results file that is being written; lines may come from several threads.
+    """A results file that is being written, possibly by several threads.
 
     Parameters
     ----------
     path : path-like
-        Appended to if it is there.
+        Lines are appended if it exists.
 
     Raises
     ------
     FormatError
-        If the file cannot be written, or is there and none of results.
+        If the file cannot be written, or exists and is not a results file.
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
@@ -261,7 +262,7 @@ class Journal:
             raise self._unwritable(error) from error
 
     def append(self, record: RunRecord | CaseRecord) -> None:
-        """Add a line, and hand it to the operating system before anything else happens."""
+        """Add a line, and hand it to the operating system before returning."""
         line = json.dumps(record, allow_nan=False, ensure_ascii=True) + "\n"
         try:
             with self._lock:
@@ -271,7 +272,7 @@ class Journal:
             raise self._unwritable(error) from error
 
     def close(self) -> None:
-        """Close the file, whose last line may wait for room on the disk."""
+        """Close the file; its last line may have to wait for room on the disk."""
         try:
             self._file.close()
         except OSError as error:
@@ -286,7 +287,7 @@ class Journal:
         self.close()
 
     def _closed_torn_line(self) -> None:
-        """Cut off what a killed writer left of its last line."""
+        """Remove the incomplete last line of a killed writer."""
         if not self.path.exists():
             return
         with self.path.open("r+b") as file:

@@ -29,13 +29,13 @@ def summary_of(cases: Sequence[CaseRecord]) -> dict[str, Any]:
 
 
 def counts_by_verdict(cases: Sequence[CaseRecord]) -> dict[str, int]:
-    """Return how many cases have each verdict, the ones to worry about first."""
+    """Return the number of cases of each verdict, the most serious first."""
     counts = Counter(case["verdict"] for case in cases)
     return {verdict: counts[verdict] for verdict in VERDICTS if counts[verdict]}
 
 
 def conclusion(cases: Sequence[CaseRecord]) -> str:
-    """Return the sentence at the end."""
+    """Return the concluding sentence."""
     failed = sum(map(is_failure, cases))
     if len(cases) == 1:
         return "The one case failed." if failed else "The one case did not fail."
@@ -55,7 +55,7 @@ def _counts_within(cases: Sequence[CaseRecord], field: str) -> dict[str, dict[st
 
 
 def _identities(cases: Sequence[CaseRecord]) -> dict[str, int]:
-    """Return how many sums of exact volumes were compared, and how many did not add up."""
+    """Return how many sums of exact volumes were checked, and how many were wrong."""
     found = [case.get("identity") for case in cases]
     known = [identity for identity in found if identity is not None]
     broken = sum(not identity["holds"] for identity in known)

@@ -1,4 +1,4 @@
-"""Trees as geometry."""
+"""The evaluation of trees to solids and regions."""
 
 import os
 from collections.abc import Callable, Hashable, Iterable
@@ -50,48 +50,47 @@ def evaluate(
     allow_paths: Iterable[str | os.PathLike[str]] = (),
     lenient: bool = False,
 ) -> Geometry:
-    """Return what a tree stands for: a solid, a region of the plane, or None if it is nothing.
+    """Evaluate a tree to a solid, a region of the plane, or None if it makes nothing.
 
     Parameters
     ----------
     tree : CsgTree
     polish : bool
-        Undo what six digits did: matrices within 1e-5 of a rotation become that rotation, and the
-        corners of the parts that unions, differences and intersections combine, if no other node is
-        around these, move to the finest lattice on which as many corners of different parts, and
-        faces across the axes, coincide as on any. Its step is a unit of the sixth digit of the
-        largest coordinate at most, and each corner moves once, by at most half a step along each
-        axis. Nothing moves where that brings nothing together, nor does a part of which a piece
-        would lose more than half of its size; faces of turned bodies may break where their corners
-        move.
+        Undo OpenSCAD's rounding to six digits. Matrices within 1e-5 of a rotation become that
+        rotation. The parts that the outermost unions, differences and intersections combine move to
+        the finest lattice on which the most corners and axis-aligned faces of different parts
+        coincide. Its step is at most a unit of the sixth digit of the largest coordinate. Each
+        corner moves once, by at most half a step along each axis. Nothing moves if no lattice
+        helps, and a part stays if one of its pieces would lose more than half its size. Faces of
+        rotated bodies may break where their corners move.
     on_polish : callable, optional
-        Is told which lattice that was and how far corners moved, as a `Polish`.
+        Called with a `Polish`: the lattice, and how far corners moved.
     on_invalid : {"error", "warn", "repair"}
-        The treatment of polyhedra and imported meshes that are not closed: they are errors, or left
-        out with a warning, as OpenSCAD does, or closed by `bspcsg.repair` with one. Right inside of
-        ``hull`` they need not be closed: their corners count.
+        The treatment of polyhedra and imported meshes that are not closed: raise an error, leave
+        them out with a warning, as OpenSCAD does, or close them by `bspcsg.repair` with a warning.
+        Direct children of ``hull`` need not be closed: only their corners count.
     allow_paths : iterable of path
-        Folders that ``import`` and ``surface`` may read beside the script's own. Links are
-        followed before it is decided where a file lies.
+        Folders that ``import`` and ``surface`` may read in addition to the script's own. Links are
+        resolved first.
     lenient : bool
-        Leave out nodes that cannot be made, and meshes that are not closed unless `on_invalid` says
-        to repair them, with a warning that names the place.
+        Leave out nodes that cannot be made, with a warning that names the place; meshes that are
+        not closed as well, unless `on_invalid` is "repair".
 
     Raises
     ------
     FormatError
         For a node that is not supported (code "unsupported"), an argument of a wrong kind
-        ("bad_argument"), or a file that lies elsewhere ("forbidden_path"); the message names the
-        script, line and column, which `where` holds.
+        ("bad_argument"), or a file outside those folders ("forbidden_path"). The message names
+        script, line and column; `where` holds line and column.
     InvalidMeshError, LimitError
         If a node makes no solid; the message names the place as well.
 
     Warns
     -----
     CsgWarning
-        For what is left out as OpenSCAD leaves it out: files that are not there, numbers that are
-        not finite, points that are missing, children of the other dimension, what drawings hold
-        beside outlines, and arguments that a node does not know or that do not count beside others.
+        If something is left out, as OpenSCAD does: missing files, numbers that are not finite,
+        missing points, children of the other dimension, parts of drawings that are not outlines,
+        and arguments that a node does not know or that others override.
     """
     word(get_args(OnInvalid), on_invalid, "on_invalid")
     polishes, skips = truth_value(polish, "polish"), truth_value(lenient, "lenient")
@@ -129,7 +128,7 @@ def _folders(given: Any) -> tuple[Path, ...]:
 
 
 def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
-    """Evaluate a tree, once more if polishing wants another lattice."""
+    """Evaluate a tree, a second time if polishing needs a coarser lattice."""
     root = Node("union", (), tree.roots())
     if not run.polish:
         return _Cache(run).geometry(root), Polish()
@@ -143,7 +142,7 @@ def _polished(tree: CsgTree, run: Evaluation) -> tuple[Geometry, Polish]:
 
 
 def _wanted_pitch(parts: list[Solid | Region]) -> int | None:
-    """Return the lattice on which the parts of a model meet that nearly do; None if none helps."""
+    """Return the lattice on which nearly coincident parts of a model meet; None if none helps."""
     there = [part for part in parts if not part.is_empty]
     finest = min((pitch_of(part) for part in there), default=0)
     return polished_pitch(corners_and_levels(there), finest)
@@ -151,20 +150,20 @@ def _wanted_pitch(parts: list[Solid | Region]) -> int | None:
 
 @dataclass
 class _Cache:
-    """The geometry of each node, made once for nodes that say the same.
+    """The geometry of each node, made once for equal nodes.
 
-    Two nodes say the same if their names, arguments and children do; so repeated parts share one
-    solid, which is evaluated once.
+    Nodes are equal if their names, arguments and children are. So repeated parts share one solid,
+    which is evaluated once.
 
     Parameters
     ----------
     run : Evaluation
     pitch : int, optional
-        The lattice that corners of parts move to: a part is what the operations around everything
-        combine, if no other node is around it.
+        The lattice that corners of parts move to; parts are the operands of the outermost
+        operations.
     parts : list of Solid or Region
     moved : float
-        The distance that the corner of a part went that went farthest.
+        The largest distance that a corner of a part moved.
     """
 
     run: Evaluation
@@ -175,7 +174,7 @@ class _Cache:
     moved: float = 0.0
 
     def geometry(self, root: Node) -> Geometry:
-        """Return what a node stands for; nodes may nest to any depth."""
+        """Return the geometry of a node; nodes may nest to any depth."""
         waiting: list[tuple[Node, Scope | None, bool, bool]] = [(root, (), True, False)]
         done: list[int] = []
         while waiting:
@@ -197,7 +196,7 @@ class _Cache:
 
     def _number(self, node: Node, children: tuple[int, ...], is_part: bool) -> int:
         """Return the number of the node's geometry, made if it is new."""
-        # Another node like it passes over the same, at its own place.
+        # An equal node ignores the same arguments, and warns of its own place.
         self.run.tell_of_arguments(node)
         key = (node.name, node.arguments, children, is_part, self.run.in_hull)
         if key in self.numbers:
@@ -207,7 +206,7 @@ class _Cache:
             self.made.append(self._make(node, [self.made[child] for child in children], is_part))
             self.numbers[key] = number
         except BspcsgError as error:
-            # Another node like it is left out, too, and told at its own place.
+            # Not cached: an equal node is left out as well, with a warning of its own place.
             self.made.append(self._nothing_for(node, error))
         return number
 
@@ -217,11 +216,11 @@ class _Cache:
             raise unsupported(node, self.run.script)
         made = recipe.maker(node, children, self.run)
         if isinstance(made, Solid) and (recipe.makes_corners or (is_part and self.run.polish)):
-            made.tree  # noqa: B018  builds it, so that what is wrong is this node's error
+            made.tree  # noqa: B018  builds it, so that errors name this node
         return self._part(made) if is_part and self.run.polish else made
 
     def _nothing_for(self, node: Node, error: BspcsgError) -> Geometry:
-        """Return nothing for a node that cannot be made, and tell; raise the error if it counts."""
+        """Return the empty set for a node that is left out, and warn; otherwise raise the error."""
         placed = _placed(error, node, self.run.script)
         if not is_left_out(error, lenient=self.run.lenient):
             raise placed from error
@@ -229,7 +228,7 @@ class _Cache:
         return nothing_of(node)
 
     def _part(self, body: Geometry) -> Geometry:
-        """Return a part with its corners on the lattice asked for."""
+        """Return a part, moved to the lattice `pitch` if that is coarser."""
         if body is None or body.is_empty:
             return body
         if self.pitch is not None and self.pitch > pitch_of(body):
@@ -246,7 +245,7 @@ def unsupported(node: Node, script: str) -> FormatError:
 
 
 def _placed(error: BspcsgError, node: Node, script: str) -> BspcsgError:
-    """Return the error with the node's place, if it does not name one of this script already."""
+    """Return the error with the node's place in its message, unless its line is there already."""
     if error.message.startswith(f"{script}:{node.place.line}:"):
         return error
     message = f"{script}:{node.place.line}:{node.place.column}: {node.name}(): {error.message}"

@@ -1,9 +1,10 @@
-"""Solids as trees: the expression that a solid was made by, as far as it is remembered.
+"""Converts solids to trees: the expression that made a solid, as far as the solid stores it.
 
-A solid that has not been evaluated knows all of its expression; one that has knows the operation
-that made it, its operands and no further (see `Solid.last_operation`). Leaves become polyhedra,
-transforms multmatrix nodes. The language has no complement: a set whose complement is the smaller
-thing to write is carried as that, with a sign, until something bounded takes it away.
+A solid that has not been evaluated stores its whole expression. After evaluation it stores the last
+operation and its operands only (see `Solid.last_operation`). Leaves become polyhedra, transforms
+multmatrix nodes. The language has no complement: where a complement is smaller to write than the
+set, it stands for the set, with a flag, until an intersection with a bounded set turns
+it into a difference.
 """
 
 from collections.abc import Iterable, Sequence
@@ -23,8 +24,8 @@ from ..solid.solid import Solid, expression_of, from_node
 from .syntax.tree import Argument, CsgTree, Node, Value
 
 #: The largest number of corners and triangles of an expression that is written out; a larger one
-#: becomes one polyhedron. Each takes some 60 bytes, all of them half of the largest script that is
-#: read.
+#: becomes one polyhedron. Each takes some 60 bytes; this many fill half of the largest script that
+#: is read.
 _MAX_BODY_SIZE = 2_000_000
 
 
@@ -38,7 +39,7 @@ class _Body(NamedTuple):
     negated : bool
         True if it is everything outside the node.
     size : int
-        Corners and triangles in it when it is written out.
+        Number of corners and triangles that it takes when it is written out.
     """
 
     node: Node | None
@@ -66,9 +67,9 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
 
     Notes
     -----
-    The expression is given up for a polyhedron where it has no counterpart in the language, as
-    half-spaces have none, and where repeated parts, which are written out each time, would make it
-    larger than two million corners and triangles. Symmetric differences repeat both their operands.
+    A polyhedron replaces the expression where the language has no counterpart, as for half-spaces,
+    and where the expression would take more than two million corners and triangles: repeated parts
+    are written out each time, and symmetric differences repeat both operands.
     """
     of_kind(Solid, solid, "solid")
     body = (
@@ -83,9 +84,9 @@ def tree_of(solid: Solid, *, flat: bool = False) -> CsgTree:
 
 
 def lost_attributes(solids: Iterable[Solid]) -> tuple[Finding, ...]:
-    """Return the finding about attributes of solids, which scripts have no room for.
+    """Return the finding about attributes of solids, which scripts cannot store.
 
-    Nothing is evaluated for it.
+    This evaluates nothing.
     """
     names: set[str] = set()
     waiting = [expression_of(solid).node for solid in solids]
@@ -124,7 +125,7 @@ def _polyhedron(solid: Solid) -> _Body | None:
 
 
 class _Reading:
-    """The bodies of an expression's nodes, each found once; expressions may be any depth."""
+    """The bodies of an expression's nodes, each made once; expressions may have any depth."""
 
     def __init__(self) -> None:
         self._known: dict[expression.ExpressionNode, _Body | None] = {}
@@ -205,13 +206,13 @@ def _operation(operator: str, operands: Sequence[_Body | None]) -> _Body | None:
         return _odd(given)
     if operator == "and":
         return _common(given)
-    # What is inside at least one is what is not outside all.
+    # A union is the complement of the intersection of the complements.
     outside = _common([body._replace(negated=not body.negated) for body in given])
     return outside._replace(negated=not outside.negated)
 
 
 def _common(bodies: Sequence[_Body]) -> _Body:
-    """Return what is inside all bodies."""
+    """Return the intersection of bodies."""
     positive = [body for body in bodies if not body.negated]
     negative = [body for body in bodies if body.negated]
     if not positive:
@@ -222,7 +223,7 @@ def _common(bodies: Sequence[_Body]) -> _Body:
 
 
 def _odd(bodies: Sequence[_Body]) -> _Body:
-    """Return what is inside an odd number of bodies; each complement among them flips that."""
+    """Return the symmetric difference of bodies; each complement among them inverts the result."""
     made = _NOTHING
     for body in bodies:
         plain = body._replace(negated=False)
@@ -234,7 +235,7 @@ def _odd(bodies: Sequence[_Body]) -> _Body:
 
 
 def _joined(name: str, bodies: Sequence[_Body]) -> _Body:
-    """Return the operation on nodes, which leaves out what the empty set among them settles."""
+    """Return the operation on the bodies' nodes, simplified where bodies are empty."""
     nodes = [body.node for body in bodies if body.node is not None]
     size = sum(body.size for body in bodies)
     if not nodes or (name == "intersection" and len(nodes) < len(bodies)):

@@ -1,4 +1,4 @@
-"""Scripts as solids, and solids as scripts."""
+"""Reads scripts as solids, and writes solids as scripts."""
 
 import os
 from collections.abc import Callable, Iterable
@@ -44,13 +44,13 @@ def load(
     polish : bool
         Undo OpenSCAD's rounding to six digits (see `bspcsg.csg.evaluate`).
     on_polish : callable, optional
-        Is told how far corners moved.
+        Called with a `Polish`, which says how far corners moved.
     on_invalid : {"error", "warn", "repair"}
         The treatment of meshes that are not closed (see `bspcsg.csg.evaluate`).
     allow_paths : iterable of path
-        Folders beside the script's own whose files it may read.
+        Folders whose files it may read, in addition to the script's own.
     lenient : bool
-        Leave out what cannot be made, with a warning that names its place.
+        Leave out nodes that cannot be made, with a warning that names the place.
     **options
         For `.scad`: ``defines``, a dict of variables.
 
@@ -65,7 +65,7 @@ def load(
     Warns
     -----
     CsgWarning
-        For what is left out as OpenSCAD leaves it out.
+        If something is left out, as OpenSCAD does.
     """
     tree = read_tree(path, **options)
     body = evaluate(
@@ -119,7 +119,7 @@ def read_tree(path: str | os.PathLike[str], **options: Any) -> CsgTree:
     Raises
     ------
     FormatError
-        If the file cannot be read or is no such script; an empty one is a model of nothing.
+        If the file cannot be read or is not such a script; an empty file is an empty model.
     """
     name = file_path(path)
     file = Path(name)
@@ -149,7 +149,7 @@ def _solid(body: Geometry, name: str) -> Solid:
     if body is None:
         return Solid.empty()
     try:
-        # What makes no solid is an error of this call, not of the first query.
+        # Build it here, so that errors come from this call and not from the first query.
         body.tree  # noqa: B018  builds it
     except BspcsgError as error:
         raise type(error)(f"{name}: {error.message}", error.code, error.where) from error
@@ -159,9 +159,9 @@ def _solid(body: Geometry, name: str) -> Solid:
 def dumps(model: Solid | CsgTree, *, flat: bool = False) -> str:
     """Return a solid or a tree as the text of a `.csg` script.
 
-    A solid becomes the expression that made it, with polyhedra as leaves, as far as it is
-    remembered (see `tree_of`): corners in double precision, which reading snaps to the lattice.
-    A tree gives an equal tree again.
+    A solid becomes the expression that made it, as far as the solid stores it (see `tree_of`), with
+    polyhedra as leaves: corners in double precision, which reading snaps to the lattice. Reading a
+    written tree gives an equal tree.
 
     Parameters
     ----------
@@ -194,12 +194,13 @@ def _tree(model: Solid | CsgTree, flat: bool) -> CsgTree:
 def dump(model: Solid | CsgTree, path: str | os.PathLike[str], *, flat: bool = False) -> None:
     """Write a `.csg` file (see `dumps`), or the same as JSON if the name ends in `.json`.
 
-    It appears complete or not at all.
+    The file is written completely or not at all.
 
     Raises
     ------
     FormatError
-        If the file cannot be written, or texts of the tree are none (code ``"bad_argument"``).
+        If the file cannot be written, or the tree has text that cannot be encoded (code
+        ``"bad_argument"``).
     UnboundedError
         If the solid reaches to infinity.
     """

@@ -36,14 +36,14 @@ def read_scad(
     defines : mapping of str to value, optional
         Variables of the script, as ``openscad -D name=value`` sets them.
     timeout : float, optional
-        In seconds, up to a million; None, as infinity does, waits for ever.
+        In seconds, up to a million; None and infinity wait forever.
 
     Raises
     ------
     FormatError
         If openscad is not on the PATH (code "missing_program"), takes too long ("timeout") or
-        refuses the file; the message ends in what it said. Errors in what it made of the file
-        quote the line of that, and name the script's own where only one can be meant.
+        refuses the file; the message ends in its output. Errors in the `.csg` text that it made
+        quote a line of that text, and name the script's line if only one can be meant.
     """
     name, limit = file_path(path), seconds(timeout, "timeout")
     values = values_by_name(defines, "defines")
@@ -74,7 +74,7 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
         )
         raise FormatError(message, "missing_program")
     options = [f"-D{name}={value_text(value)}" for name, value in values.items()]
-    # A shape to be kept is no preview, which scripts can ask for.
+    # Scripts can ask whether they are previewed; here they are not.
     command = [program, "--render", "-o", str(output), *options, "--", str(path.absolute())]
     try:
         done = run_program(command, timeout, {**os.environ, "QT_QPA_PLATFORM": "offscreen"})
@@ -86,7 +86,7 @@ def _convert(path: Path, output: Path, values: dict[str, Any], timeout: float | 
 
 
 def _refuse_no_values(found: tuple[Any, ...]) -> None:
-    """Raise `InvalidParameterError` if no variable of a script can be one of these."""
+    """Raise `InvalidParameterError` for values that no variable of a script can have."""
     for one in found:
         if isinstance(one, tuple):
             _refuse_no_values(one)
@@ -99,7 +99,7 @@ def _refuse_no_values(found: tuple[Any, ...]) -> None:
 
 
 def _complaint(text: str) -> str:
-    """Return the line of openscad's output that says what is wrong."""
+    """Return the line of openscad's output that describes the error."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if "ERROR" in line.upper()]
     return (errors or lines or ["it said nothing"])[-1]

@@ -1,7 +1,7 @@
-"""Special variables that nodes hand down to the nodes in them.
+"""Special variables, which nodes pass down to the nodes inside them.
 
-OpenSCAD's own dumps give ``$fn``, ``$fa`` and ``$fs`` to every node that is made of sides; in a
-script written by hand a node without them takes those of the nodes around it.
+OpenSCAD's own dumps write ``$fn``, ``$fa`` and ``$fs`` at every node that needs a number of sides.
+In a script written by hand a node without them inherits those of the nodes around it.
 """
 
 from dataclasses import replace
@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from .syntax.tree import SPECIAL, Argument, Node
 
-#: The special variables that hold inside a node, at most one argument of each name.
+#: The special variables that apply inside a node, at most one argument of each name.
 Scope: TypeAlias = tuple[Argument, ...]
 
 #: Nodes whose number of sides depends on them.
@@ -22,13 +22,13 @@ _SIDED = frozenset(
 
 
 def inherited(scope: Scope, node: Node) -> Scope:
-    """Return what holds inside a node that stands where `scope` holds."""
+    """Return the scope inside a node, given the scope around it."""
     own = tuple(argument for argument in node.arguments if argument.name in SPECIAL)
     return own + _missing(scope, node) if own else scope
 
 
 def with_scope(node: Node, scope: Scope) -> Node:
-    """Return the node with the special variables that it leaves out."""
+    """Return the node with the special variables that it inherits."""
     missing = _missing(scope, node) if scope and node.name in _SIDED else ()
     return replace(node, arguments=node.arguments + missing) if missing else node
 

@@ -1,1 +1,1 @@
-"""Points, hyperplanes, polygons and motions, before there are meshes."""
+"""Points, hyperplanes, polygons and motions, on which meshes are built."""

@@ -1,4 +1,4 @@
-"""Arrays of doubles out of whatever callers hand in."""
+"""Converts anything that callers pass to arrays of doubles."""
 
 import sys
 from typing import Any
@@ -13,7 +13,7 @@ _NUMBERS = "iufO"
 
 
 def axes_of(values: Any) -> int | None:
-    """Return how many axes values have as an array; None if they make up none."""
+    """Return the number of axes of values as an array; None if they do not form one."""
     try:
         return int(np.ndim(values))
     except ValueError:
@@ -27,7 +27,7 @@ def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
     ----------
     values : array_like
     refusal : BspcsgError
-        The error to raise if they are no numbers.
+        The error to raise if they are not numbers.
     """
     array = doubles_or_none(values)
     if array is None:
@@ -36,10 +36,10 @@ def doubles(values: Any, refusal: BspcsgError) -> FloatArray:
 
 
 def doubles_or_none(values: Any) -> FloatArray | None:
-    """Return values as an array of doubles, of any shape; None if they are no numbers.
+    """Return values as an array of doubles, of any shape; None if they are not numbers.
 
-    Complex numbers, dates, truth values and texts are none, though numpy would make doubles of
-    them, and so are arrays with entries that are masked out.
+    Complex numbers, dates, truth values and texts do not count, though numpy would convert them,
+    nor do arrays with masked entries.
     """
     if is_masked(values):
         return None
@@ -51,8 +51,8 @@ def doubles_or_none(values: Any) -> FloatArray | None:
 
 
 def is_masked(values: Any) -> bool:
-    """Say whether an array has entries that are masked out, which numpy would show again."""
-    # Whoever has such an array has imported this; another thread may just be importing it.
+    """Say whether an array has masked entries, which numpy's conversion would unmask."""
+    # Such an array needs numpy.ma to be imported; another thread may be importing it just now.
     masks: Any = sys.modules.get("numpy.ma")
     kind = getattr(masks, "MaskedArray", ())
     return isinstance(values, kind) and bool(masks.is_masked(values))

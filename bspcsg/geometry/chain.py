@@ -1,4 +1,4 @@
-"""Transforms of any number of factors, at the cost of the factors that a step adds."""
+"""Chains of transform factors that cost only as much as the factors that a step adds."""
 
 from collections.abc import Callable, Iterator, MutableMapping, Sequence
 from functools import reduce
@@ -9,22 +9,22 @@ from .transform import Factor, Factors, LatticeMotion, lattice_motion, multiplie
 
 Value = TypeVar("Value")
 
-#: Factors in a block: transforms of no more are multiplied from the outside, like any `product`.
+#: The largest number of factors in a block; shorter chains are multiplied like any `product`.
 BLOCK = 32
 
 
 class FactorChain:
     """The factors that move a solid, outermost first; immutable.
 
-    Blocks of the innermost factors know what they come to. A chain that goes on shares them, so
-    that n steps, each with a look at the result, multiply a multiple of n matrices and not n².
+    Blocks of the innermost factors store their products. A longer chain shares them, so that n
+    steps that each need the result multiply a multiple of n matrices and not n².
 
     Parameters
     ----------
     head : tuple of Factor
         The outermost factors, at most `BLOCK`.
     rest : FactorBlock, optional
-        The factors inside of them.
+        The factors inside of these.
     """
 
     __slots__ = ("__weakref__", "_head", "_rest", "_shorter")
@@ -58,15 +58,15 @@ class FactorChain:
         step: Callable[[Value, Factor], Value],
         known: MutableMapping["FactorBlock", Value],
     ) -> Value:
-        """Return what the factors make of a value, the innermost first.
+        """Fold the factors over a value, the innermost first.
 
         Parameters
         ----------
         start : object
         step : callable
-            The value and a factor to the next value.
+            Maps the value and a factor to the next value.
         known : mutable mapping
-            The values of this start at blocks; they are looked up here and added.
+            The values at blocks for this start; they are looked up and added here.
         """
         waiting, block = [], self._rest
         while block is not None and block not in known:
@@ -78,10 +78,10 @@ class FactorChain:
         return reduce(step, reversed(self._head), value)
 
     def without(self, count: int) -> "FactorChain":
-        """Return the chain without so many outermost factors, the same one as the last time."""
+        """Return the chain without so many outermost factors, the same object as the last time."""
         if count == 0:
             return self
-        # Read once: another thread may ask for another one meanwhile.
+        # Read once, because another thread may replace it.
         shorter = self._shorter
         if shorter is None or shorter[0] != count:
             shorter = self._shorter = (count, self._without(count))
@@ -115,7 +115,7 @@ class FactorChain:
         return _hashed(self._head, self._rest)
 
     def __reduce__(self) -> tuple[Callable[[Factors], "FactorChain"], tuple[Factors]]:
-        """Pickle the factors only: blocks lie in one another."""
+        """Pickle the factors only, because blocks are nested."""
         return FactorChain.of, (tuple(self),)
 
     @property
@@ -125,7 +125,7 @@ class FactorChain:
 
     @property
     def mirrors(self) -> bool:
-        """True if the transform turns right hands into left ones."""
+        """True if the transform reverses orientation."""
         return _mirrors(self._head, self._rest)
 
     @property
@@ -134,7 +134,7 @@ class FactorChain:
         return _inner(self._head, self._rest)
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the motion that the factors outside of `inner` are, or None if it is not exact."""
+        """Return the motion of the factors outside of `inner`, or None if it is not exact."""
         run = permuting_run(self._head)
         if self._rest is None or len(run) < len(self._head):
             return lattice_motion(run, pitch)
@@ -146,12 +146,12 @@ UNMOVED = FactorChain()
 
 
 class FactorBlock:
-    """The innermost factors of a chain, and what they come to.
+    """The innermost factors of a chain, with their product.
 
     Parameters
     ----------
     factors : tuple of Factor
-        The outermost of them, as many as `BLOCK`.
+        The outermost of these, as many as `BLOCK`.
     rest : FactorBlock, optional
     """
 
@@ -168,7 +168,7 @@ class FactorBlock:
     )
 
     def __init__(self, factors: Factors, rest: "FactorBlock | None") -> None:
-        # All at once: to ask for it later would recurse as deep as there are blocks.
+        # Computed at once: computing it later would recurse as deep as there are blocks.
         self.factors = factors
         self.rest = rest
         self.length = len(factors) + _length(rest)

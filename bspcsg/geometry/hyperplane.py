@@ -1,15 +1,15 @@
-"""Hyperplanes of half-spaces, in exact numbers, and as the lattice has them.
+"""Hyperplanes of half-spaces, in exact numbers and on the lattice.
 
-A double stands for the decimal it was written as, the shortest one that names it: 0.1 is a tenth.
-So hyperplanes have rational coefficients, and transforms move them exactly.
+A double means the shortest decimal that identifies it: 0.1 is a tenth. So hyperplanes have rational
+coefficients, and transforms move them exactly.
 
-A hyperplane n·x = d of whole numbers n without a common divisor, x in lattice steps, holds lattice
-points exactly if d is whole. Such a one is taken as it is. Others go where a mesh's coordinates go,
-to the nearest of the lattice, so that a half-space and a mesh face at one coordinate meet; they say
-how far they were moved.
+A hyperplane n·x = d with integers n without a common divisor, and x in lattice steps, contains
+lattice points if and only if d is an integer. Such a hyperplane is used as it is. Any other is
+moved to the nearest one on the lattice, rounded like the coordinates of a mesh, so that a
+half-space and a mesh face at one coordinate meet; it records how far it was moved.
 
-Normals too wide for the core, after turns by odd angles, are rounded to those whose products fit a
-machine word, which turns the hyperplane by less than 2**-60.
+Normals that are too wide for the core, as after rotations by odd angles, are rounded so that their
+products fit a machine word. This turns the hyperplane by less than 2**-60.
 """
 
 import math
@@ -27,19 +27,19 @@ from ..errors import InvalidMeshError, invalid_parameter
 from ..parameters import MAX_PITCH, is_complex, shown
 from .arrays import is_masked
 
-#: Exponent of the lattice step for sets that any lattice can hold.
+#: Exponent of the lattice step for sets that fit on any lattice.
 DEFAULT_PITCH = -9
 
-#: The finest lattice that is chosen for a hyperplane's sake: it reaches 9000 units.
+#: The finest lattice that a hyperplane asks for: it reaches 9000 units.
 _FINEST_PITCH = -12
 
 #: Lattice coordinates are below this many steps.
 _REACH = 2**53
 
-#: Bits to which normals are rounded: one less than two of them may have to fit a machine word.
+#: Bits to which normals are rounded: one less than the most whose products fit a machine word.
 _ROUNDED_BITS = 61
 
-#: Wider numbers are rounded to half as many bits while transforms multiply them.
+#: Transforms round wider numbers to half as many bits when they multiply them.
 _KEPT_BITS = 1024
 
 
@@ -50,10 +50,10 @@ class LatticeHyperplane:
     Parameters
     ----------
     row : list of int
-        The normal, then its product with each of the hyperplane's points, in lattice steps.
+        The normal, and its product with every point of the hyperplane, in lattice steps.
     moved : float or None
-        The most that this is off the hyperplane that was asked for, anywhere on the lattice,
-        in model units; None if it is the very one.
+        The largest distance, anywhere on the lattice, to the hyperplane that was asked for, in
+        model units; None if they are the same.
     """
 
     row: list[int]
@@ -61,7 +61,7 @@ class LatticeHyperplane:
 
     @property
     def note(self) -> str | None:
-        """The text of the finding, if it is not the hyperplane that was asked for."""
+        """The text of the finding, if this is not the hyperplane that was asked for."""
         if self.moved is None:
             return None
         return (
@@ -80,7 +80,7 @@ class Hyperplane:
         Without a common divisor.
     offset : Fraction
     exact : bool
-        True if nothing was rounded on the way.
+        True if nothing was rounded.
     """
 
     normal: tuple[int, ...]
@@ -89,7 +89,7 @@ class Hyperplane:
 
     @classmethod
     def of(cls, normal: Sequence[Fraction], offset: Fraction, exact: bool = True) -> Self:
-        """Return the hyperplane of any normal that is not zero."""
+        """Return the hyperplane of any nonzero normal."""
         denominator = math.lcm(*(entry.denominator for entry in normal))
         whole = [entry.numerator * (denominator // entry.denominator) for entry in normal]
         divisor = math.gcd(*whole)
@@ -126,9 +126,9 @@ class Hyperplane:
         return LatticeHyperplane([*normal, offset], float(off) / math.hypot(*normal) * 10.0**pitch)
 
     def is_above_lattice(self, pitch: int) -> bool | None:
-        """Say on which side of the lattice of step ``10**pitch`` it lies; None if it crosses.
+        """Say on which side of the lattice of step ``10**pitch`` it lies; None if it crosses it.
 
-        True if all of the lattice is on the minus side.
+        True if the whole lattice is on the minus side.
         """
         steps = self.offset / Fraction(10) ** pitch
         if abs(steps) < sum(map(abs, self.normal)) * _REACH:
@@ -137,9 +137,9 @@ class Hyperplane:
 
     @property
     def pitch(self) -> int:
-        """The coarsest lattice that holds the hyperplane, from the default one down to 10**-12.
+        """The coarsest lattice that contains the hyperplane, from the default one down to 10**-12.
 
-        One that the default does not reach asks for a coarser one by powers of 1000, as meshes do.
+        If the default lattice does not reach it, the step grows by powers of 1000, as for meshes.
         """
         within = range(DEFAULT_PITCH, MAX_PITCH, 3)
         coarsest = next((p for p in within if self.is_above_lattice(p) is None), DEFAULT_PITCH)
@@ -149,12 +149,12 @@ class Hyperplane:
         return coarsest
 
     def _as_a_coordinate(self, pitch: int) -> Fraction:
-        """Return the offset as that of a mesh's coordinate: halves go where its double lies."""
+        """Return the offset as a mesh coordinate has it: its double decides where halves go."""
         near = abs(self.offset) < 2**1000
         return (Fraction(float(self.offset)) if near else self.offset) / Fraction(10) ** pitch
 
     def _narrow(self) -> tuple[tuple[int, ...], Fraction]:
-        """Return the normal as the core can have it, and by what it was multiplied about."""
+        """Return the normal at a width that the core accepts, and the approximate factor to it."""
         bits = max(entry.bit_length() for entry in self.normal)
         if bits <= _bits(len(self.normal)):
             return self.normal, Fraction(1)
@@ -164,7 +164,7 @@ class Hyperplane:
         return tuple(entry // divisor for entry in rounded), Fraction(1, power * divisor)
 
     def shortened(self) -> Self:
-        """Return the hyperplane without digits far beyond what the lattice can show."""
+        """Return the hyperplane without digits far beyond the resolution of any lattice."""
         ratio = self.offset.as_integer_ratio()
         if max(entry.bit_length() for entry in (*self.normal, *ratio)) <= _KEPT_BITS:
             return self
@@ -176,16 +176,16 @@ class Hyperplane:
 
 
 def exact_number(value: Any) -> Fraction:
-    """Return a number exactly; a double is the shortest decimal that names it.
+    """Return a number exactly; a double means the shortest decimal that identifies it.
 
     Raises
     ------
     ValueError, OverflowError
         If it is not finite.
     TypeError
-        If it is no number.
+        If it is not a number.
     """
-    # Spans of time would pass for whole numbers.
+    # Time spans would otherwise pass for integers.
     no_numbers = (bool, np.bool_, np.timedelta64, str, bytes)
     if isinstance(value, no_numbers) or is_complex(value):
         raise TypeError("truth values, texts, times and complex numbers are no numbers here")
@@ -196,14 +196,14 @@ def exact_number(value: Any) -> Fraction:
 
 
 def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
-    """Return the coordinates of a point exactly; on the line one number is a point.
+    """Return the coordinates of a point exactly; on the line a single number is a point.
 
     Parameters
     ----------
     values : (dimension,) array_like of float
     dimension : int
     name : str
-        Of the parameter, for the error.
+        The name of the parameter, for the error.
     """
     try:
         if is_masked(values):
@@ -219,7 +219,7 @@ def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
 
 
 def _nearest(value: Fraction, coordinate: Fraction) -> int:
-    """Return the nearest whole number; halves go to the coordinate's side, or away from zero."""
+    """Return the nearest integer; halves go towards the coordinate, or away from zero."""
     low = math.floor(value)
     rest = value - low
     if rest == Fraction(1, 2) and coordinate != value:
@@ -229,5 +229,5 @@ def _nearest(value: Fraction, coordinate: Fraction) -> int:
 
 @lru_cache
 def _bits(dimension: int) -> int:
-    """Return how many bits the core's normals may have; points of the line have none to spare."""
+    """Return the largest width of the core's normals in bits; on the line none are to spare."""
     return normal_bits(dimension)

@@ -1,4 +1,4 @@
-"""Arguments that have a number for each axis, in the three ways in which callers give them."""
+"""Arguments with a number for each axis, in the three forms in which callers give them."""
 
 from typing import Any
 
@@ -7,23 +7,23 @@ from ..parameters import number
 
 
 def per_axis(given: tuple[Any, ...], name: str, *, missing: float = 0.0, **axes: Any) -> Any:
-    """Return what was given axis by axis: as one value, as numbers, or by the names of the axes.
+    """Return the numbers of the axes: from one value, from single numbers, or from named axes.
 
     Parameters
     ----------
     given : tuple
-        One value alone, still unchecked, or a number for each axis.
+        One value alone, still unchecked, or one number for each axis.
     name : str
         Of the value, for errors.
     missing : float
-        What stands for an axis that is not named, where others are.
+        The number of an axis that is not named, if others are.
     **axes : float or None
-        The numbers by the names of the axes, in their order.
+        The numbers by axis name, in order.
 
     Raises
     ------
     InvalidParameterError
-        If nothing is given, or something in two ways.
+        If nothing is given, or values are given in two forms.
     """
     named = {axis: number(value, axis) for axis, value in axes.items() if value is not None}
     if bool(given) == bool(named):

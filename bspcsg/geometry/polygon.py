@@ -1,4 +1,4 @@
-"""Plane polygons with holes: reading, orienting and triangulating them."""
+"""Plane polygons with holes: reads, orients and triangulates them."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
@@ -12,7 +12,7 @@ from .._types import FloatArray, IndexArray
 from ..errors import invalid_parameter
 from .arrays import doubles
 
-#: The share of the products of coordinates that rounding cannot reach in their sum: each has three
+#: The share of the products of coordinates above which their sum has the right sign: each has three
 #: roundings and the sum one for each doubling of their number, 2**-53 each.
 _CLEAR = 1e-12
 
@@ -30,8 +30,8 @@ def contours_of(polygon: Any) -> list[FloatArray]:
     Returns
     -------
     list of (n, 2) float64
-        Shapes say which of their contours are holes. Of bare contours whether one is a hole
-        follows from how many others contain it.
+        Shapes know which of their contours are holes. For bare contours, the number of other
+        contours around each decides.
 
     Raises
     ------
@@ -48,19 +48,19 @@ def contours_of(polygon: Any) -> list[FloatArray]:
 def shape_contours(given: Any) -> list[FloatArray] | None:
     """Return the oriented contours of a shape or a sequence of shapes, None if it is neither.
 
-    Takes time in proportion to the points, since a shape knows its holes: the winding number of
-    the contours is the number of polygons at a point, whether these overlap or not. Parts of a
-    collection that have no area, such as lines, bound nothing and are left out.
+    The time is proportional to the number of points, since a shape knows its holes: the winding
+    number of the contours is the number of polygons at a point, even if these overlap. Parts of a
+    collection that have no area, such as lines, are left out.
 
     Raises
     ------
     InvalidMeshError
-        If the shape has no area by its kind, a contour has fewer than 3 points, or a coordinate is
-        not finite.
+        If the shape is of a kind without area, a contour has fewer than 3 points, or a coordinate
+        is not finite.
     """
     if _is_shape(given):
         return _rings([given])
-    # A generator cannot be looked into and read again.
+    # A generator can be read only once.
     is_list = isinstance(given, Sequence) and not isinstance(given, (str, bytes))
     return _rings(given) if is_list and given and all(map(_is_shape, given)) else None
 
@@ -68,8 +68,8 @@ def shape_contours(given: Any) -> list[FloatArray] | None:
 def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
     """Return (m, 3) triangles over the contours' points, counted one contour after another.
 
-    The directed edges that no other triangle cancels are exactly those of the contours, whatever
-    the input; triangles overlap only if the contours cross.
+    For any input, the directed edges that other triangles do not cancel are exactly those of the
+    contours; triangles overlap only if the contours cross.
     """
     edges = directed_edges(contours)
     if len(edges) > _MAX_MANIFOLD_CORNERS:
@@ -80,8 +80,8 @@ def triangulate(contours: Sequence[FloatArray]) -> IndexArray:
 
 
 #: The largest number of corners that manifold3d triangulates. Its time grows with their square, and
-#: so does that of importing the needles that it makes. For many corners on one line its recursion
-#: is as deep as their number.
+#: so does the time to import its needles. For many corners on one line its recursion is as deep as
+#: their number.
 _MAX_MANIFOLD_CORNERS = 200
 
 
@@ -90,7 +90,7 @@ def _manifold_triangles(contours: Sequence[FloatArray]) -> IndexArray:
 
 
 def _region_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> IndexArray:
-    """Return the triangles of a region, or of pieces of contours that bound none.
+    """Return the triangles of a region, or of pieces of contours that do not bound one.
 
     A piece of many corners that crosses itself is cut between two of them. Its halves have the cut
     in both directions, so it cancels wherever it runs.
@@ -113,7 +113,7 @@ def _region_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> Inde
 
 
 def _piece_triangles(corners: FloatArray) -> IndexArray | None:
-    """Return the triangles of one contour; None if it is too long for one that crosses itself."""
+    """Return the triangles of one contour; None if it crosses itself and is too long."""
     is_turned = signed_area(corners) < 0
     contour = np.ascontiguousarray(corners[::-1]) if is_turned else corners
     if len(contour) <= _MAX_MANIFOLD_CORNERS:
@@ -137,7 +137,7 @@ def triangulate_face(corners: FloatArray) -> IndexArray:
     flat = np.ascontiguousarray(corners[:, plane])
     if normal[axis] >= 0:
         return triangulate([flat])
-    # Seen from behind: triangulate the mirror image, which runs counter-clockwise.
+    # Seen from behind: triangulate the mirror image, which is counter-clockwise.
     flat[:, 0] = -flat[:, 0]
     return triangulate([flat])
 
@@ -208,7 +208,7 @@ def _turned(contour: FloatArray, *, clockwise: bool) -> FloatArray:
 def _bare_contours(polygon: Any) -> list[FloatArray]:
     if hasattr(polygon, "to_polygons"):
         contours = [_cleaned(contour) for contour in polygon.to_polygons()]
-        # Outlines of a region are oriented already.
+        # Outlines of a region are already oriented.
         return contours if hasattr(polygon, "outlines") else _oriented(contours)
     try:
         points = list(polygon)
@@ -226,7 +226,7 @@ def _cleaned(contour: Any) -> FloatArray:
         raise invalid_parameter(f"A contour must have shape (n, 2), not {points.shape}.")
     if not np.isfinite(points).all():
         raise invalid_parameter("A contour must have finite coordinates.")
-    # Repeated points, such as a closing one, bound nothing.
+    # Remove repeated points, such as a closing one.
     points = points[(points != np.roll(points, 1, axis=0)).any(axis=1)]
     if len(points) < 3:
         raise invalid_parameter("A contour needs at least 3 different points.")
@@ -234,7 +234,7 @@ def _cleaned(contour: Any) -> FloatArray:
 
 
 def _oriented(contours: list[FloatArray]) -> list[FloatArray]:
-    """Return the contours, those inside an odd number of others clockwise."""
+    """Return the contours; those inside an odd number of others become clockwise."""
     depths = [0] * len(contours)
     for outer, inner in _overlapping_boxes(contours):
         depths[inner] += _contains(contours[outer], contours[inner])
@@ -270,12 +270,12 @@ def _contains(outer: FloatArray, inner: FloatArray) -> bool:
     return 2 * inside > len(probes)
 
 
-#: The number of pairs of a point and an edge that are computed together, which bounds the memory.
+#: The number of pairs of a point and an edge that are processed together, to bound memory.
 _PAIRS_PER_BATCH = 1 << 16
 
 
 def _crossings(contour: FloatArray, points: FloatArray) -> IndexArray:
-    """Count for each point the edges that a ray from there to the right crosses."""
+    """Count the edges that a ray to the right from each point crosses."""
     start, end = contour, np.roll(contour, -1, axis=0)
     y = points[:, 1:]
     point, edge = np.nonzero((start[:, 1] <= y) != (end[:, 1] <= y))
@@ -312,7 +312,7 @@ def convex_corners(edges: Sequence[FloatArray]) -> FloatArray:
     Parameters
     ----------
     edges : sequence of (2, 2) float64
-        Each from one corner to the next; none make a polygon without corners.
+        Each from one corner to the next; no edges make a polygon without corners.
     """
     if not len(edges):
         return np.zeros((0, 2))

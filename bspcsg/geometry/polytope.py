@@ -1,6 +1,6 @@
 """Convex bodies on the line, in the plane and in space, cut by hyperplanes in exact fractions.
 
-Meant for the regions of small trees: everything is a `Fraction`, and nothing is fast.
+For the regions of small trees: all numbers are `Fraction`, and nothing is fast.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from .._types import FloatArray
 #: A point, exactly.
 Corner: TypeAlias = tuple[Fraction, ...]
 
-#: Whole numbers n, c of the hyperplane n·x = c, whose minus side has smaller products.
+#: Integers n, c of the hyperplane n·x = c, whose minus side has n·x < c.
 RowOfCut: TypeAlias = Sequence[int]
 
 
@@ -31,7 +31,7 @@ def cut_polygon(corners: Sequence[Corner], row: RowOfCut, side: int) -> tuple[Co
     Parameters
     ----------
     corners : sequence of points
-        In order; of a segment two, of a point one.
+        In order; two for a segment, one for a point.
     row : sequence of int
     side : {-1, 1}
 
@@ -115,7 +115,7 @@ class Polytope:
         return sum((_cone6(face, apex) for face in self.faces), Fraction(0)) / 6
 
     def shape(self, unit: float) -> FloatArray | list[FloatArray]:
-        """Return its faces in doubles, as `PartitionTree.region` does, a step being `unit`."""
+        """Return its faces in doubles, as `PartitionTree.region` does; a step is `unit` long."""
         arrays = [
             np.array([[float(x) * unit for x in corner] for corner in face]) for face in self.faces
         ]
@@ -152,7 +152,7 @@ def _ring(points: list[Corner], row: RowOfCut, side: int) -> tuple[Corner, ...]:
     above = [p for p in points if arms[p][1] > 0 or (arms[p][1] == 0 and arms[p][0] > 0)]
     below = [p for p in points if p not in set(above)]
     ordered = _turned(above, arms) + _turned(below, arms)
-    # Counterclockwise about the axis; the face looks to where it was cut off.
+    # Counterclockwise about the axis, because the face points to the side that was cut off.
     outwards = -side * row[axis]
     return tuple(ordered if outwards > 0 else reversed(ordered))
 

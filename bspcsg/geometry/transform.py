@@ -1,9 +1,9 @@
 """Transforms as lists of factors, and the exact motions among them.
 
 A transform is a list of 4x4 factors, outermost first: ``(F1, F2)`` maps a point x to F1 (F2 x). A
-solid carries it as a chain (`bspcsg/geometry/chain.py`). Factors are never multiplied before they
-are applied, and never inverted, so that what two solids were moved by *together* can be recognised
-bit by bit and taken out.
+solid stores it as a chain (`bspcsg/geometry/chain.py`). Factors are never multiplied or inverted
+before they are applied, so that factors by which two solids were moved *together* can be recognised
+bit by bit and removed.
 
 A factor whose linear part only permutes and mirrors axes, and which shifts by whole lattice steps,
 is a lattice motion: it acts on planes and lattice points without rounding.
@@ -69,7 +69,7 @@ class Factor:
 
     @property
     def mirrors(self) -> bool:
-        """True if the map turns right hands into left ones; found once."""
+        """True if the map reverses orientation; computed once."""
         if self._mirrors is None:
             self._mirrors = determinant_sign(self.matrix) < 0
         return self._mirrors
@@ -127,7 +127,7 @@ def euler_rotation(angles: Vector) -> Factors:
 
 
 def about(point: Vector, factors: Factors) -> Factors:
-    """Return factors that do about a point what the given ones do about the origin."""
+    """Return factors that act about a point as the given ones act about the origin."""
     there = vector3(point, "point")
     return (translation(there), *factors, translation(-there)) if there.any() else factors
 
@@ -138,8 +138,8 @@ def matrix_factor(matrix: Any) -> Factor:
     Raises
     ------
     InvalidParameterError
-        If the shape is another, an entry is not finite, the last row is not 0, 0, 0, 1, or the
-        map flattens space.
+        If the shape is wrong, an entry is not finite, the last row is not 0, 0, 0, 1, or the map
+        flattens space.
     """
     array = doubles(matrix, invalid_parameter("A transform is a 4x4 matrix of numbers."))
     if array.shape == (3, 4):
@@ -167,7 +167,7 @@ def cos_sin(angle: float) -> tuple[float, float]:
 
 def _cos_sin_in_quarter(angle: float) -> tuple[float, float]:
     if angle > 45:
-        # Mirroring in the diagonal makes the answers of angle and 90 - angle agree bit by bit.
+        # Mirroring at the diagonal makes the results of angle and 90 - angle agree bit by bit.
         sine, cosine = _cos_sin_in_quarter(90 - angle)
         return cosine, sine
     if angle == 45:
@@ -203,7 +203,7 @@ def _dot(a: list[float], b: list[float]) -> float:
 
 
 def apply(matrix: FloatArray, points: FloatArray) -> FloatArray:
-    """Return the images of (n, 3) points, in an order of operations that no platform changes."""
+    """Return the images of (n, 3) points, computed in the same order on every platform."""
     x, y, z = points.T
     rows = [x * row[0] + y * row[1] + z * row[2] + row[3] for row in matrix[:3]]
     # Adding zero turns -0.0 into 0.0.
@@ -250,7 +250,7 @@ class LatticeMotion:
     Parameters
     ----------
     axes : tuple of int
-        For each new axis, which old one it is (1, 2, 3), negative if mirrored.
+        The old axis (1, 2, 3) of each new axis, negative if mirrored.
     shift : tuple of int
         In lattice steps, added afterwards.
     """
@@ -280,7 +280,7 @@ class LatticeMotion:
 
 
 def permuting_run(factors: Factors) -> Factors:
-    """Return the outermost factors that permute and mirror axes only, whatever they shift by."""
+    """Return the outermost factors that only permute and mirror axes, with any shift."""
     for position, factor in enumerate(factors):
         if _signed_axes(factor) is None:
             return factors[:position]
@@ -290,7 +290,7 @@ def permuting_run(factors: Factors) -> Factors:
 def lattice_motion(
     factors: Factors, pitch: int, motion: LatticeMotion | None = LatticeMotion()
 ) -> LatticeMotion | None:
-    """Return the exact motion that the factors are at this pitch, or None if they are not one.
+    """Return the factors as an exact motion at this pitch, or None if they are not one.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def lattice_motion(
     pitch : int
         The lattice step is ``10**pitch`` model units.
     motion : LatticeMotion or None
-        The motion inside of the factors, if it is one.
+        The motion of the factors inside of these, if it is exact.
     """
     for factor in reversed(factors):
         step = _motion_of(factor, pitch)
@@ -331,14 +331,14 @@ def _signed_axes(factor: Factor) -> tuple[int, int, int] | None:
 
 
 def whole_steps(length: float, pitch: int) -> int | None:
-    """Return how many lattice steps a length is, or None if it is not a whole number of them.
+    """Return the number of lattice steps in a length, or None if it is not an integer.
 
-    A double counts as the decimal it was written as: 0.1 is 10**8 steps of 10**-9, because that
-    decimal's nearest double is 0.1.
+    A double counts as the decimal that it was written as: 0.1 is 10**8 steps of 10**-9, because 0.1
+    is the nearest double to that decimal.
     """
     numerator, denominator = length.as_integer_ratio()
     scale = 10 ** abs(pitch)
-    # Whole numbers throughout: the quotient of two ints is rounded once, as that of fractions is.
+    # Integers throughout: the quotient of two ints is rounded once, as that of fractions is.
     if pitch < 0:
         steps = _nearest(numerator * scale, denominator)
         fits = abs(steps) < LATTICE_REACH and steps / scale == length
@@ -362,7 +362,7 @@ def _from_linear(linear: FloatArray) -> Factor:
 
 
 def _snapped(linear: FloatArray) -> FloatArray:
-    """Return the signed permutation that a rotation or mirror is up to rounding, or itself."""
+    """Return the signed permutation that a rotation or mirror equals up to rounding, or itself."""
     nearest = np.round(linear)
     return nearest if np.abs(linear - nearest).max() < 1e-15 else linear
 
@@ -373,7 +373,7 @@ def axis_vector(axis: str | Vector) -> FloatArray:
 
 
 def along(axis: str | Vector) -> Vector:
-    """Return the vector of "x", "y" or "z", or the vector that was given."""
+    """Return the vector of "x", "y" or "z"; any other argument as it is."""
     if not isinstance(axis, str):
         return axis
     if axis.lower() not in _AXES:

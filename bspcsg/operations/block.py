@@ -1,28 +1,28 @@
 """Blocks: operations on all solids that are made inside a ``with`` statement.
 
-``with difference() as d:`` takes, as OpenSCAD's block does, the first solid less all others::
+``with difference() as d:`` subtracts all later solids from the first one, as in OpenSCAD::
 
     with csg.difference() as d:
         csg.cube([20, 20, 10])
         csg.cylinder(h=10, r=3).translate(10, 10, 0)
     d.solid.save("plate.3mf")
 
-What counts is each solid that was made in the block and not used up there:
+A solid counts if it was made in the block and not used up there:
 
 * Every call that makes a solid counts it: primitives, `Solid`, `from_mesh`, `load`, operators,
   transforms and the named operations.
-* A solid that an operator, a transform or a named operation was given no longer counts; the result
-  stands in its place, so ``cylinder(...).translate(...)`` counts once, where it began. Another
+* A solid passed to an operator, a transform or a named operation no longer counts. The result takes
+  its place, so ``cylinder(...).translate(...)`` counts once, in the first position. Another
   transform of the same solid counts as well, at the end: four translations of one pin are four
-  pins, and the pin itself is none.
-* Queries such as ``volume``, ``<=`` or `check` use nothing up.
-* Solids from outside do not count until something is made of them, or `Block.add` counts them;
-  `Block.discard` takes out one that only helped.
-* A block in a block counts as one solid, when it ends. What it uses up no longer counts in the
+  pins, and the pin itself does not count.
+* Queries such as ``volume``, ``<=`` or `check` use up nothing.
+* Solids from outside do not count until something is made from them, or `Block.add` counts them;
+  `Block.discard` removes a solid that was only an aid.
+* A nested block counts as one solid when it ends. Solids that it uses up no longer count in the
   blocks around it either.
 
-Threads have blocks of their own, as asyncio's tasks do; one that was started inside a block counts
-there until the block ends.
+Threads and asyncio tasks have blocks of their own. A thread or task that starts inside a block
+counts there until the block ends.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,7 +37,7 @@ from ..solid.solid import Solid
 
 
 class Block:
-    """The solids that count in a ``with`` statement, and what they make.
+    """The solids that count in a ``with`` statement, and the solid made from them.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Block:
         Raises
         ------
         InvalidMeshError
-            While the block is open, and if it ended in an error; code ``"open_block"``.
+            While the block is open, or if it ended in an error; code ``"open_block"``.
         """
         if self._solid is None:
             message = "A block has its solid after its with statement, if that ends without error."
@@ -76,7 +76,7 @@ class Block:
             self._ledger.put(solid)
 
     def discard(self, *solids: Solid) -> None:
-        """Let solids no longer count."""
+        """Remove solids from those that count."""
         self._refuse_ended(solids)
         self._ledger.discard(solids)
 
@@ -95,14 +95,14 @@ class Block:
 
 
 class Unfilled(Solid):
-    """An operation on no solids: a block if a ``with`` statement opens it, else the set it is.
+    """An operation without operands: a block in a ``with`` statement, otherwise the set it equals.
 
     Parameters
     ----------
     combined : callable
         Carries out the operation on a list of solids.
     full : bool
-        True if the set is all of space, instead of the empty one.
+        True if the set is all of space, instead of empty.
     """
 
     __slots__ = ("_combined", "_open")

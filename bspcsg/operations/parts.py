@@ -1,4 +1,4 @@
-"""A solid in parts: its connected components, and the two sides of a plane."""
+"""Splits solids: into connected components, or into the two sides of a plane."""
 
 import numpy as np
 
@@ -11,8 +11,8 @@ from ..shapes.primitives import half_space
 from ..solid.counting import uncounted
 from ..solid.solid import Solid
 
-#: The number of corners of a cavity that are tried first: it is rare that all of these lie on the
-#: shell around it.
+#: The number of corners of a cavity that are tested first: rarely do all of these lie on the shell
+#: around it.
 _CORNERS_TRIED_FIRST = 16
 
 
@@ -20,8 +20,8 @@ _CORNERS_TRIED_FIRST = 16
 def connected_parts(solid: Solid) -> list[Mesh]:
     """Return the boundaries of the connected components, the largest volume first.
 
-    A cavity's wall goes with the component around it; which one that is, is decided exactly. Parts
-    that touch in a point or an edge only are apart, even where a face goes on between them.
+    A cavity's wall belongs to the component around it, which is found exactly. Parts that touch
+    only in a point or an edge are separate, even where a face runs on from one to the other.
 
     Parameters
     ----------
@@ -43,16 +43,16 @@ def connected_parts(solid: Solid) -> list[Mesh]:
 
 @uncounted
 def sides_of_plane(solid: Solid, normal: str | Vector, offset: Scalar) -> tuple[Solid, Solid]:
-    """Return what of a solid lies below and above the plane ``normal . x = offset``.
+    """Return the parts of a solid below and above the plane ``normal . x = offset``.
 
-    Both sides have the cut as a face; together they are the solid again, exactly. The plane is that
-    of `half_space`, and so is the finding if it had to be moved onto the lattice.
+    Both sides have the cut as a face; their union is exactly the solid. The plane is that of
+    `half_space`, with the same finding if it was moved onto the lattice.
 
     Parameters
     ----------
     solid : Solid
     normal : "x", "y", "z" or (3,) float
-        Points to the side that is above.
+        Points to the upper side.
     offset : float
 
     Examples
@@ -67,7 +67,7 @@ def sides_of_plane(solid: Solid, normal: str | Vector, offset: Scalar) -> tuple[
 
 
 def _split(mesh: Mesh, owner: IndexArray) -> list[Mesh]:
-    """Return the faces of each number from 0 on as a mesh of their own."""
+    """Return the faces of each number from 0 on as a separate mesh."""
     order = np.argsort(owner, kind="stable")
     ends = np.cumsum(np.bincount(owner))
     return [_selected(mesh, rows) for rows in np.split(order, ends[:-1])]
@@ -81,7 +81,7 @@ def _selected(mesh: Mesh, rows: IndexArray) -> Mesh:
 
 
 class _Shells:
-    """The connected surfaces of a boundary, and which lies in which.
+    """The connected surfaces of a boundary, and how they are nested.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class _Shells:
         self._solids: dict[int, Solid] = {}
 
     def homes(self) -> IndexArray:
-        """Return for each shell the outer one that it belongs to: itself, or that around it."""
+        """Return the outer shell that each shell belongs to: itself, or the one around a cavity."""
         homes = np.arange(len(self._meshes))
         cavities, solid = np.flatnonzero(self._volumes <= 0), np.flatnonzero(self._volumes > 0)
         around = boxes_around(self._boxes[cavities], self._boxes[solid])
@@ -108,11 +108,11 @@ class _Shells:
         return homes
 
     def _around(self, cavity: int, candidates: IndexArray) -> int:
-        """Return the number of the smallest of some shells that a cavity's wall lies in."""
+        """Return the number of the smallest shell that contains a cavity's wall."""
         for number in candidates[np.argsort(self._volumes[candidates], kind="stable")].tolist():
             if self._holds(number, self._meshes[cavity].vertices):
                 return int(number)
-        # Only rounding can have pushed the wall out; the largest shell is the likeliest.
+        # Only rounding can have moved the wall outside; the largest shell is the likeliest.
         return int(self._volumes.argmax())
 
     def _holds(self, number: int, points: FloatArray) -> bool:
@@ -124,7 +124,7 @@ class _Shells:
             try:
                 sides = self._solids[number].classify(some)
             except InvalidMeshError:
-                # On this lattice nothing is left of the shell.
+                # Nothing is left of the shell on this lattice.
                 return False
             if sides.any():
                 return bool((sides > 0).any() and not (sides < 0).any())

@@ -28,7 +28,7 @@ def union(*sets: Solid | Iterable[Solid]) -> Solid: ...
 @overload
 def union(*sets: Set | Iterable[Set]) -> Set: ...
 def union(*sets: Any) -> Any:
-    """Return what is inside at least one operand; the empty set if there is none.
+    """Return the union of the operands; the empty set if there are none.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def intersection(*sets: Solid | Iterable[Solid]) -> Solid: ...
 @overload
 def intersection(*sets: Set | Iterable[Set]) -> Set: ...
 def intersection(*sets: Any) -> Any:
-    """Return what is inside all operands; all of space if there is none.
+    """Return the intersection of the operands; all of space if there are none.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def difference(*sets: Solid | Iterable[Solid]) -> Solid: ...
 @overload
 def difference(*sets: Set | Iterable[Set]) -> Set: ...
 def difference(*sets: Any) -> Any:
-    """Return what is inside the first operand and no other; the empty set if there is none.
+    """Return the first operand without all others; the empty set if there are none.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def xor(*sets: Solid | Iterable[Solid]) -> Solid: ...
 @overload
 def xor(*sets: Set | Iterable[Set]) -> Set: ...
 def xor(*sets: Any) -> Any:
-    """Return what is inside an odd number of operands; the empty set if there is none.
+    """Return the points inside an odd number of operands; the empty set if there are none.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     Raises
     ------
     InvalidMeshError
-        If a mesh is not closed, as for `Solid`, or the operation is another.
+        If a mesh is not closed, as for `Solid`, or the operation is unknown.
 
     Examples
     --------
@@ -159,7 +159,7 @@ def boolean(va: Any, fa: Any, vb: Any, fb: Any, op: SetOp) -> tuple[FloatArray, 
     try:
         operands = [Pitches().of(tree, pitch) for tree in trees]
     except LimitError:
-        # Solids find a lattice that holds both.
+        # Solids choose a lattice that fits both.
         mesh = OPERATIONS[op](Solid(va, fa), Solid(vb, fb)).to_mesh()
         return mesh.vertices.copy(), mesh.faces.copy()
     with core_errors():
@@ -182,7 +182,7 @@ def _tree(vertices: Any, faces: Any) -> Tree:
     try:
         return Tree.from_mesh(vertices, faces)
     except (TypeError, CoreError):
-        # Not arrays as the core has them; what they can become is settled at leisure.
+        # Not arrays in the core's form; convert them, which is slower.
         return _converted_tree(vertices, faces)
 
 
@@ -248,7 +248,7 @@ def _applied(op: SetOp, entries: Iterable[Any]) -> Any:
 
 
 def _balanced(merge: Callable[[Any, Any], Any], trees: Sequence[Any]) -> Any:
-    """Merge neighbours, then what they became: each tree takes part in few merges."""
+    """Merge neighbours, then the results, and so on: each tree takes part in few merges."""
     while len(trees) > 1:
         pairs = [trees[k : k + 2] for k in range(0, len(trees), 2)]
         trees = [merge(*pair) if len(pair) == 2 else pair[0] for pair in pairs]

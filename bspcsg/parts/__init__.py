@@ -1,7 +1,7 @@
 """Standard parts: metric threads, bolts and nuts, involute gears, snap fits.
 
-Sizes are in millimetres. Parts fit their mates without a clash: a nut its bolt, a gear another of
-its module, a hook its socket.
+Sizes are in millimetres. Parts fit their mates without overlap: a nut fits its bolt, a gear another
+gear of its module, a hook its socket.
 
 Examples
 --------

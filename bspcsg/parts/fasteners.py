@@ -12,14 +12,14 @@ from ..solid.solid import Solid
 from .metric import MetricSize, metric
 from .threads import play, radii, rod_between, tap
 
-#: The diameter where the chamfer of a head begins, as a part of the width across flats.
+#: The diameter where the chamfer of a head begins, as a fraction of the width across flats.
 _CROWN = 0.95
 
 #: The tangent of the angle of a head's chamfer.
 _CROWN_SLOPE = math.tan(math.radians(30))
 
-#: The widest part of a nut's bore, as a part of the nominal diameter: the most that ISO 4032 allows
-#: for nuts of M8 and larger is 1.08 to 1.09 times that.
+#: The widest part of a nut's bore, as a fraction of the nominal diameter. ISO 4032 allows at most
+#: 1.08 to 1.09 for nuts of M8 and larger.
 _MOUTH = 1.08
 
 
@@ -41,12 +41,12 @@ def hex_bolt(
     length : float
         Of the shank, without the head.
     thread : float, optional
-        How much of the shank has a thread. By default what ISO 4014 says: twice the diameter and
-        6 mm, and more of bolts beyond 125 mm.
+        The length of the thread. By default as in ISO 4014: twice the diameter plus 6 mm, and more
+        for bolts longer than 125 mm.
     clearance : float, optional
         As for `threaded_rod`.
     segments : int
-        Sides around, at least 8.
+        The number of sides, at least 8.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def hex_bolt(
     if cut == 0:
         return head | cylinder(long, outer, segments=segments)
     plain, deep = long - cut, outer - inner
-    # The rod goes on into the shank, or into the head, so that they are one.
+    # The rod reaches into the shank, or into the head, so that they are connected.
     rod = rod_between(chosen, plain - min(plain, 2 * deep) - chosen.head / 2, long, gap, segments)
     if not plain:
         return head | rod

@@ -24,7 +24,7 @@ from ..solid.solid import Solid
 #: Height of a tooth above the reference circle and depth below it, in modules (ISO 53, profile A).
 _ADDENDUM, _DEDENDUM = 1.0, 1.25
 
-#: The number of radii at which the end of an undercut is looked for before bisection finds it.
+#: The number of radii at which the end of an undercut is sought before bisection.
 _RADII_TRIED = 1000
 
 
@@ -44,7 +44,7 @@ def spur_gear(
     Parameters
     ----------
     module : float
-        Diameter of the reference circle for each tooth.
+        Diameter of the reference circle divided by the number of teeth.
     teeth : int
         At least 6.
     width : float
@@ -52,22 +52,24 @@ def spur_gear(
     pressure_angle : float
         Degrees, from 14 to 25.
     backlash : float
-        By which each tooth is thinner on the reference circle. Two such gears have twice that play.
+        The reduction of each tooth's thickness on the reference circle. Two such gears have twice
+        that play.
     bore : float
         Diameter of the hole; 0 for none.
     segments : int
-        Sides of the bore; a flank has a quarter as many.
+        The number of sides of the bore; a flank has a quarter as many.
 
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range, or the teeth are pointed or leave no room for the bore.
+        If a number is out of its range, the teeth are pointed, or there is no room for the bore.
 
     Notes
     -----
-    Teeth are as a rack of ISO 53 cuts them, those of small gears undercut at their feet. So any two
-    gears of one module and pressure angle mesh at the distance ``module * (teeth + others) / 2``;
-    there one of an even number of teeth is to be turned by half a tooth, ``180 / teeth`` degrees.
+    Teeth have the form that a rack of ISO 53 cuts; those of small gears are undercut at the root.
+    So any two gears of one module and pressure angle mesh at the distance
+    ``module * (teeth + others) / 2``. There a gear with an even number of teeth must be rotated by
+    half a tooth, ``180 / teeth`` degrees.
 
     Examples
     --------
@@ -86,7 +88,7 @@ def spur_gear(
         raise invalid_parameter(f"pressure_angle must be from 14 to 25 degrees, not {angle:g}.")
     around, hole = sides_around(8, segments, "segments"), not_negative(bore, "bore") / 2
     refuse_many_corners(count * around * 2, "This gear")
-    # In modules, so that no size is lost in rounding.
+    # In modules, so that rounding affects all sizes alike.
     thickness = math.pi / 2 - not_negative(backlash, "backlash") / size
     if thickness <= 0:
         raise invalid_parameter(f"backlash leaves nothing of the teeth: {backlash:g} is too much.")
@@ -104,7 +106,7 @@ def spur_gear(
 
 @dataclass(frozen=True)
 class _Form:
-    """Half the angle of a tooth by its radius, in modules and radians.
+    """The half angle of a tooth as a function of the radius, in modules and radians.
 
     Parameters
     ----------
@@ -131,7 +133,7 @@ class _Form:
 
     @property
     def base(self) -> float:
-        """The radius of the circle that the flanks unwind from."""
+        """The radius of the involute's base circle."""
         return self.reference * math.cos(self.angle)
 
     def flank(self, radii: FloatArray) -> FloatArray:
@@ -141,9 +143,9 @@ class _Form:
         return np.asarray(whole - (roll - np.arctan(roll)))
 
     def foot(self, radii: FloatArray) -> FloatArray:
-        """Return the half angles where the corner of the rack's tooth has cut, at some radii.
+        """Return the half angles at some radii where the corner of the rack's tooth cuts.
 
-        While the gear turns by an angle, the rack moves on by as much on the reference circle.
+        While the gear rotates by an angle, the rack moves by the same arc on the reference circle.
         """
         # From the middle of the space to the corner.
         corner = (math.pi - self.thickness) / 2 - _DEDENDUM * math.tan(self.angle)
@@ -152,11 +154,11 @@ class _Form:
         return np.asarray(math.pi / self.teeth - turned)
 
     def meeting(self) -> float:
-        """Return the radius where foot and flank meet."""
+        """Return the radius at which foot and flank meet."""
         along = self.reference * math.sin(self.angle) - _DEDENDUM / math.sin(self.angle)
         if along >= 0:
             return math.hypot(self.base, along)
-        # The corner cuts into the flank: up to where its path leaves it.
+        # The corner cuts into the flank, up to where its path leaves the flank.
         radii = np.linspace(self.base, self.reference + _ADDENDUM, _RADII_TRIED)
         inside = np.flatnonzero(self.foot(radii) < self.flank(radii))
         low, high = radii[inside[-1]], radii[min(inside[-1] + 1, _RADII_TRIED - 1)]
@@ -170,7 +172,7 @@ class _Form:
 def _tooth(form: _Form, steps: int) -> FloatArray:
     """Return the outline of the tooth on the x axis, counter-clockwise, in modules."""
     tip, start = form.reference + _ADDENDUM, form.meeting()
-    # The foot bends most where it begins.
+    # The foot is most curved at its beginning.
     low = form.root + (start - form.root) * np.linspace(0, 1, steps, endpoint=False) ** 2
     high = np.linspace(start, tip, steps + 1)
     radii = np.concatenate([low, high])
@@ -182,6 +184,6 @@ def _tooth(form: _Form, steps: int) -> FloatArray:
 
 
 def _turn(angle: float) -> FloatArray:
-    """Return what turns rows of points by an angle."""
+    """Return the matrix that rotates row vectors by an angle."""
     cosine, sine = cos_sin(math.degrees(angle))
     return np.array([(cosine, sine), (-sine, cosine)])

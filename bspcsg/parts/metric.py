@@ -23,7 +23,7 @@ class MetricSize:
     pitch : float
         The coarse one (ISO 261).
     allowance : float
-        By which threads of the tolerance 6g are smaller in diameter at least (ISO 965-1).
+        The least reduction in diameter of threads of tolerance 6g (ISO 965-1).
     flats : float
         Width across flats of bolts and nuts (ISO 4014, ISO 4032).
     head : float
@@ -48,7 +48,7 @@ class MetricSize:
 
     @property
     def pitch_diameter(self) -> float:
-        """The diameter at which ridge and groove are as wide (ISO 724)."""
+        """The diameter at which ridge and groove have equal width (ISO 724)."""
         return self.diameter - 2 * 3 / 8 * _HEIGHT * self.pitch
 
     @property
@@ -62,12 +62,12 @@ class MetricSize:
         return self.diameter - 2 * 17 / 24 * _HEIGHT * self.pitch
 
     def threaded(self, length: float) -> float:
-        """Return how much of a bolt of some length has a thread (ISO 4014)."""
+        """Return the length of the thread of a bolt (ISO 4014)."""
         longer = 6 if length <= 125 else 12 if length <= 200 else 25
         return min(2 * self.diameter + longer, length)
 
 
-#: The sizes by their names.
+#: The sizes by name.
 METRIC: Mapping[str, MetricSize] = MappingProxyType(
     {
         "M3": MetricSize(3, 0.5, 0.020, 5.5, 2.0, 2.4),
@@ -97,7 +97,7 @@ def metric(size: str) -> MetricSize:
     Raises
     ------
     InvalidParameterError
-        If there is no such size; the message has those that there are.
+        If there is no such size; the message lists the known ones.
     """
     if isinstance(size, str) and size.upper() in METRIC:
         return METRIC[size.upper()]

@@ -1,4 +1,4 @@
-"""Snap fits: a cantilever hook, and the socket that it catches in."""
+"""Snap fits: a cantilever hook, and its socket."""
 
 import math
 
@@ -11,10 +11,10 @@ from ..parameters import not_negative, number, positive
 from ..solid.counting import counted
 from ..solid.solid import Solid
 
-#: The length of the land between catch and slope, as a part of the thickness.
+#: The length of the land between catch and slope, as a fraction of the thickness.
 _LAND = 0.2
 
-#: The smallest thickness and undercut, as a share of the length.
+#: The smallest thickness and undercut, as a fraction of the length.
 _MIN_RATIO = 1e-3
 
 
@@ -39,11 +39,12 @@ def snap_hook(
     thickness : float
         Of the beam, along x from 0.
     undercut : float
-        By which the catch stands out of the beam, and the beam bends on the way in.
+        The distance that the catch protrudes from the beam, and that the beam bends on the way in.
     entrance : float
-        Degrees between the slope that slides in and the beam, from 10 to 60.
+        Angle in degrees between the beam and the slope that slides in, from 10 to 60.
     retention : float
-        Degrees between the catch and the beam: 90 holds for good, less lets go when pulled.
+        Angle in degrees between the catch and the beam: 90 locks for good, less releases when
+        pulled.
 
     Raises
     ------
@@ -52,7 +53,7 @@ def snap_hook(
 
     Notes
     -----
-    `snap_strain` says how much the beam is strained on the way in.
+    `snap_strain` returns the strain of the beam on the way in.
 
     Examples
     --------
@@ -79,7 +80,7 @@ def snap_socket(
     retention: Scalar = 90.0,
     clearance: Scalar = 0.2,
 ) -> Solid:
-    """Return what to take away of a wall for a hook of these measures to catch in.
+    """Return the body to subtract from a wall for a hook of these dimensions.
 
     It begins at z = 0, leaves the beam room to bend away from the catch, and ends a clearance above
     the hook's tip.
@@ -122,10 +123,10 @@ def snap_socket(
 
 
 def snap_strain(length: Scalar, thickness: Scalar, undercut: Scalar) -> float:
-    """Return how much the beam of a hook is strained on its way in, as a part.
+    """Return the strain of a hook's beam on its way in, as a fraction.
 
-    A beam of one thickness that is bent at its end: ``1.5 * thickness * undercut / length**2``
-    (Bayer MaterialScience, Snap-Fit Joints for Plastics). Plastics bear some 0.02 to 0.07.
+    For a beam of constant thickness bent at its end: ``1.5 * thickness * undercut / length**2``
+    (Bayer MaterialScience, Snap-Fit Joints for Plastics). Plastics allow some 0.02 to 0.07.
 
     Parameters
     ----------
@@ -170,5 +171,5 @@ def _nose(
 
 
 def _upright(figure: Region, width: float) -> Solid:
-    """Return a figure of x and z as thick as a width, its middle at y = 0."""
+    """Extrude a figure of x and z to a width along y, with its middle at y = 0."""
     return figure.extrude(width).rotate(x=90).translate(0, width / 2, 0)

@@ -1,7 +1,7 @@
 """Metric screw threads (ISO 68-1), as one mesh that winds about the axis.
 
-The profile of one pitch is a polyline of radii and heights. Its copies along a helix make the wall:
-where one turn ends, the next begins, so that nothing overlaps.
+The profile of one pitch is a polyline of radii and heights. Its copies along a helix form the wall:
+each turn begins where the last one ends, so that nothing overlaps.
 """
 
 import math
@@ -35,10 +35,10 @@ def threaded_rod(
         From ``"M3"`` to ``"M20"``, with the coarse pitch.
     length : float
     clearance : float, optional
-        By which all diameters are smaller than the nominal profile. By default what the tolerance
-        6g asks for, some hundredths; printers need 0.2 to 0.4.
+        The reduction of all diameters from the nominal profile. By default that of tolerance 6g,
+        some hundredths; 3D printers need 0.2 to 0.4.
     segments : int
-        Sides around, at least 8.
+        The number of sides, at least 8.
 
     Raises
     ------
@@ -47,9 +47,9 @@ def threaded_rod(
 
     Notes
     -----
-    Crests are an eighth of the pitch wide, and roots a sixth, where the round root of the standard
-    is deepest. Threads of this module are in phase: a nut fits its rod at heights of whole pitches,
-    and between them when it is turned.
+    Crests are an eighth of the pitch wide, and roots a sixth, the width where the standard's round
+    root is deepest. Threads of this module are in phase: a nut fits its rod at multiples of the
+    pitch, and at heights between them when it is rotated.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def threaded_rod(
 
 @counted
 def tap(size: str, length: Scalar, *, clearance: Scalar = 0.0, segments: int = SEGMENTS) -> Solid:
-    """Return what to take away for a metric internal thread, from z = 0 upwards.
+    """Return the body to subtract for a metric internal thread, from z = 0 upwards.
 
     Parameters
     ----------
@@ -72,9 +72,9 @@ def tap(size: str, length: Scalar, *, clearance: Scalar = 0.0, segments: int = S
         From ``"M3"`` to ``"M20"``, with the coarse pitch.
     length : float
     clearance : float
-        By which all diameters are larger than the nominal profile; printers need 0.2 to 0.4.
+        The increase of all diameters over the nominal profile; 3D printers need 0.2 to 0.4.
     segments : int
-        Sides around, at least 8.
+        The number of sides, at least 8.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def rod_between(
     """Return a rod with an external thread between two heights, its ends chamfered."""
     inner, outer = radii(size, clearance)
     deep = outer - inner
-    # As far out as the thread, and a little more, so that it is the thread that ends the crests.
+    # A little wider than the thread, so that the thread itself bounds the crests.
     wide, slope = outer + deep, 2 * deep
     ends = [
         (0, low),
@@ -124,7 +124,7 @@ def radii(size: MetricSize, clearance: float) -> tuple[float, float]:
 
 
 def play(clearance: Scalar | None, size: MetricSize) -> float:
-    """Return a clearance, checked; None stands for the allowance of the tolerance 6g."""
+    """Return a clearance, checked; None means the allowance of tolerance 6g."""
     if clearance is None:
         return size.allowance
     given = not_negative(clearance, "clearance")
@@ -138,7 +138,7 @@ def play(clearance: Scalar | None, size: MetricSize) -> float:
 def _thread(
     size: MetricSize, ends: tuple[float, float], reach: tuple[float, float], segments: int
 ) -> Solid:
-    """Return a thread between two radii that reaches past two heights, its ends not cut off."""
+    """Return a thread between two radii that reaches beyond two heights, with uncut ends."""
     around = sides_around(8, segments, "segments")
     pitch, (inner, outer) = size.pitch, ends
     first = math.floor(reach[0] / pitch) - 2
@@ -156,8 +156,8 @@ def _wound(
 ) -> tuple[FloatArray, IndexArray]:
     """Return the mesh of a profile that winds about the axis, its ends closed by fans.
 
-    Corner c of step i is number ``i * k + c``; what comes after the last corner of a step is the
-    first one a turn later.
+    Corner c of step i has number ``i * k + c``; the last corner of a step is followed by the first
+    corner one turn later.
     """
     count, steps = len(profile), turns * around + 1
     circle = unit_circle(around)[np.arange(steps) % around]
@@ -171,7 +171,7 @@ def _wound(
         np.stack([low, low + count, high + count], axis=2),
         np.stack([low, high + count, high], axis=2),
     ]
-    # Each end is a turn of the helix, and a step down to where it began.
+    # Each end is a turn of the helix and a step back to its beginning.
     helix = np.arange(around + 1) * count
     rim = np.append(helix, np.arange(count - 1, 0, -1))
     last = (steps - around - 1) * count

@@ -1,6 +1,6 @@
-"""The process that asks pymeshlab: ``child.py FOLDER`` repairs ``mesh.npz`` in there.
+"""The process that runs pymeshlab: ``child.py FOLDER`` repairs ``mesh.npz`` in that folder.
 
-It runs apart because pymeshlab is under another licence, and can crash or hang. It imports nothing
+It runs apart because pymeshlab has another licence, and can crash or hang. It imports nothing
 of this package, writes ``repaired.npz`` and ``said.json``, and exits with 6 without pymeshlab.
 """
 
@@ -46,11 +46,11 @@ def _drop(meshes: Any, settings: dict[str, Any]) -> None:
 
 
 def stray_faces(faces: Any) -> Any:
-    """Say which faces belong to stray fragments; none do if nothing else is there.
+    """Say which faces belong to stray fragments; none do if there are only fragments.
 
-    A fragment is a bit of surface with one rim, on which all its corners lie, so that it bounds
-    nothing: a loose triangle, a fin, a strip. A tube without caps has two rims and is none, nor is
-    a pyramid without its base, whose tip is off the rim.
+    A fragment is a piece of surface with one rim that contains all its corners, so that it bounds
+    nothing: a loose triangle, a fin, a strip. A tube without caps has two rims, and a pyramid
+    without its base has a tip off the rim, so neither is a fragment.
     """
     faces = faces.astype(np.int64)
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
@@ -64,7 +64,7 @@ def stray_faces(faces: Any) -> Any:
     corners, edges = _counts(at, start), _counts(at, edge)
     rims = _counts(np.tile(at[rim], 2), np.concatenate([start[rim], end[rim]]), len(corners))
     is_open = np.bincount(at, uses == 1) > 0
-    # Vertices less edges, and faces, make 1 of a disc.
+    # A disc has Euler number 1: vertices minus edges plus faces.
     is_stray = is_open & (corners - edges + np.bincount(bits) == 1) & (rims == corners)
     return is_stray[bits] & (not is_stray.all())
 
@@ -75,13 +75,13 @@ def _keys(first: Any, second: Any) -> Any:
 
 
 def _counts(bits: Any, things: Any, size: int = 0) -> Any:
-    """Return how many different things each bit has, from pairs of a bit and a thing in it."""
+    """Return the number of distinct things in each piece, from pairs of a piece and a thing."""
     pairs = np.unique(_keys(bits, things))
     return np.bincount(pairs // (things.max(initial=0) + 1), minlength=size)
 
 
 def _joined(links: Any, count: int) -> Any:
-    """Return for each of so many things the least that links lead to."""
+    """Return for each of `count` things the least number of a thing connected to it by links."""
     least = np.arange(count)
     while len(links):
         before = least.copy()
@@ -96,7 +96,7 @@ def _joined(links: Any, count: int) -> Any:
 
 def _split(meshes: Any, settings: dict[str, Any]) -> None:
     meshes.compute_selection_by_non_manifold_edges_per_face()
-    # Asked to split where there is nothing to split, the filter tears sound meshes apart.
+    # With nothing to split, the filter would tear sound meshes apart.
     if meshes.current_mesh().selected_face_number():
         meshes.meshing_repair_non_manifold_edges(method="Split Vertices")
     meshes.meshing_repair_non_manifold_vertices(vertdispratio=0)

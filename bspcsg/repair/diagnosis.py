@@ -1,7 +1,7 @@
-"""The diagnosis of a mesh: all that is wrong with it, by name, number and place.
+"""The diagnosis of a mesh: all its defects, with name, number and place.
 
-Connectivity is judged after joining corners with equal coordinates, as every reader has to do for
-STL. Whether faces cross or overlap is asked of the core, which decides it exactly.
+Connectivity is judged after corners with equal coordinates are joined, as every reader of STL has
+to do. The core decides exactly whether faces cross or overlap.
 """
 
 import math
@@ -36,22 +36,22 @@ class Diagnosis:
     Parameters
     ----------
     triangles, vertices : int
-        As the file has them.
+        As in the file.
     closed, oriented, manifold : bool
         Every edge has as many faces one way as the other; no edge is used twice in one direction;
         no edge has more than two faces.
     self_overlapping : bool or None
-        True if faces cross, overlap or repeat on the lattice; None if the mesh is no solid.
+        True if faces cross, overlap or repeat on the lattice; None if the mesh is not a solid.
     precision : {"double", "single"} or None
-        The coarsest numbers that hold all coordinates; None if the mesh is not closed.
+        The coarsest precision that represents all coordinates; None if the mesh is not closed.
     crossings : int or None
-        Pairs of triangles that cross or overlap with the coordinates as they are, exactly; None
-        if the mesh is not closed.
+        Pairs of triangles that cross or overlap, decided exactly for the given coordinates; None if
+        the mesh is not closed.
     verdict : {"solid", "inside out", "not closed", "empty", "refused"}
     findings : tuple of Finding
         The worst first.
     signed_volume, area : float
-        Of the triangles, whatever they enclose; in model units.
+        Of the triangles, even if they enclose nothing; in model units.
     volume : float or None
         Of the set with positive winding number; None if there is none.
     surfaces, genus : int or None
@@ -79,7 +79,7 @@ class Diagnosis:
 
     @property
     def is_solid(self) -> bool:
-        """True if the mesh bounds a set, the right way round."""
+        """True if the mesh bounds a set and is oriented outwards."""
         return self.verdict == "solid"
 
     def to_dict(self) -> dict[str, Any]:
@@ -92,7 +92,7 @@ class Diagnosis:
 
 @uncounted
 def diagnose(raw: RawMesh) -> Diagnosis:
-    """Say what is wrong with a mesh."""
+    """Diagnose a mesh."""
     with np.errstate(over="ignore", invalid="ignore"):
         return _diagnosed(raw)
 
@@ -103,7 +103,7 @@ def _diagnosed(raw: RawMesh) -> Diagnosis:
     edges = EdgeUses(mesh.faces, len(vertices))
     findings = [*raw.findings, *_edge_findings(mesh, edges), *_face_findings(mesh, edges)]
     solid, verdict = _as_solid(raw, findings)
-    # Inside out, the set is empty, and comparing the mesh with its boundary says nothing.
+    # The set of a mesh that is inside out is empty; comparing it with the mesh is useless.
     overlapping = None
     if solid is not None and verdict == "solid":
         overlaps = _overlaps(solid)
@@ -136,12 +136,12 @@ _RANK = {"error": 0, "warning": 1, "note": 2}
 
 
 def by_severity(findings: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return findings, the worst first."""
+    """Return findings sorted by severity, the worst first."""
     return tuple(sorted(findings, key=lambda found: _RANK[found.severity]))
 
 
 class EdgeUses:
-    """The undirected edges of triangles, and how often faces run along them either way.
+    """The undirected edges of triangles, and how often faces use each in either direction.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ class EdgeUses:
 
     @property
     def are_manifold(self) -> bool:
-        """True if every edge has two faces, one either way."""
+        """True if every edge has two faces, one in each direction."""
         return self.are_closed and len(self.crowded) == 0 and len(self.edge) > 0
 
     def faces_at(self, edges: IndexArray) -> tuple[int, ...]:
@@ -201,9 +201,9 @@ def _edge_findings(mesh: Mesh, edges: EdgeUses) -> list[Finding]:
 
 
 def connected(ends: IndexArray) -> IndexArray:
-    """Return for each edge the number of the connected chain that it is in, (k,), from 0."""
+    """Return the number, from 0, of the connected chain that each edge is in, (k,)."""
     used, edges = np.unique(ends, return_inverse=True)
-    # An edge is a triangle with a corner twice.
+    # Represent an edge as a triangle that repeats a corner.
     return surfaces_of(edges.reshape(-1, 2)[:, [0, 1, 1]], len(used))
 
 
@@ -230,7 +230,7 @@ def flat_faces(mesh: Mesh) -> IndexArray:
     """Return the faces whose area is exactly zero."""
     corners = mesh.vertices[mesh.faces]
     scale = np.abs(corners - corners[:, :1]).max(axis=(1, 2))[:, None]
-    # Scaled by its own size, no triangle's area over- or underflows.
+    # Scaled by its own size, so that no area over- or underflows.
     local = np.divide(
         corners - corners[:, :1], scale[:, None], np.zeros_like(corners), where=scale[:, None] > 0
     )
@@ -247,7 +247,7 @@ def _is_flat(corners: FloatArray) -> bool:
 
 
 def repeated_faces(faces: IndexArray) -> IndexArray:
-    """Return the faces over the same three corners as an earlier face."""
+    """Return the faces that have the same three corners as an earlier face."""
     if len(faces) == 0:
         return np.zeros(0, dtype=np.int64)
     _, first = np.unique(np.sort(faces, axis=1), axis=0, return_index=True)
@@ -255,7 +255,7 @@ def repeated_faces(faces: IndexArray) -> IndexArray:
 
 
 def _as_solid(raw: RawMesh, findings: list[Finding]) -> tuple[Solid | None, str]:
-    """Return the mesh as a solid if it is one, and the verdict; add what the core found."""
+    """Return the mesh as a solid if it is one, and the verdict; add the core's findings."""
     try:
         solid = Solid(raw.vertices, raw.faces)
     except BspcsgError as error:
@@ -285,9 +285,9 @@ def _overlaps(solid: Solid) -> list[Finding]:
 
 
 def _proof(solid: Solid, findings: list[Finding]) -> Certificate:
-    """Return what an exact look at the coordinates as they are proves.
+    """Return the result of the exact check of the given coordinates.
 
-    Adds a finding where they cross, unless the faces do so on the lattice already.
+    Adds a finding if faces cross there, unless they cross on the lattice already.
     """
     mesh = solid.to_mesh()
     proof = mesh.certificate

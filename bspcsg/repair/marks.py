@@ -1,4 +1,4 @@
-"""The places where a mesh is wrong: all of them, where a diagnosis names the first few."""
+"""The places of all defects of a mesh; a diagnosis names only the first few."""
 
 from dataclasses import dataclass
 
@@ -16,21 +16,21 @@ from .diagnosis import EdgeUses, connected, flat_faces, repeated_faces
 
 @dataclass(frozen=True, eq=False)
 class Marks:
-    """A mesh with its corners joined, and where it is wrong.
+    """A mesh with its corners joined, and the places of its defects.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     faces : (m, 3) int64
     open, turned, crowded : (k, 2) int64
-        Vertices of the edges with one triangle only, whose triangles do not run opposite ways, and
-        with more than two.
+        Vertices of the edges with only one triangle, of those whose triangles do not run in
+        opposite directions, and of those with more than two triangles.
     holes : (k,) int64
-        For each open edge the number of the hole that it is around.
+        The number of the hole that each open edge borders.
     crossings : (c, 2) int64
         Pairs of triangles that cross or overlap.
     flat, repeated : (k,) int64
-        Triangles without area, and over the corners of another.
+        Triangles without area, and triangles with the same corners as another.
     """
 
     vertices: FloatArray
@@ -46,7 +46,7 @@ class Marks:
 
 @uncounted
 def marks_of(raw: RawMesh) -> Marks:
-    """Return where a mesh is wrong; what is not finite crosses nothing."""
+    """Return the places of the defects of a mesh; coordinates that are not finite cross nothing."""
     vertices, same = welded(raw.vertices) if len(raw.vertices) else (raw.vertices, np.zeros(0, int))
     faces = same[raw.faces]
     edges = EdgeUses(faces, len(vertices))

@@ -1,4 +1,4 @@
-"""Closing and orienting meshes that are no solids, by pymeshlab in a process of its own."""
+"""Closes and orients meshes that are not solids, by pymeshlab in a process of its own."""
 
 import json
 import os
@@ -26,7 +26,7 @@ STEPS = ("weld", "dedup", "drop", "split", "orient", "fill")
 _CHILD = Path(__file__).with_name("child.py")
 _MISSING = 6
 
-#: The largest number of edges around a hole that pymeshlab can be asked for: it counts in 32 bits.
+#: The largest number of edges around a hole that pymeshlab accepts: it counts in 32 bits.
 _MAX_HOLE_EDGES = 2**31 - 1
 
 #: The largest number of names that a message shows.
@@ -41,13 +41,13 @@ class Repair:
     ----------
     mesh : RawMesh
     failed : dict of str to str
-        Steps that could not be taken, and why.
+        Steps that failed, with the reason.
     turned : int
-        The number of triangles turned round because they faced inwards.
+        The number of triangles reversed because they faced inwards.
     dropped : int
-        The number of triangles of stray fragments, which bound nothing and are gone.
+        The number of triangles removed in stray fragments, which bound nothing.
     lost : tuple of Finding
-        The names and attributes that are gone: no triangle is known by where it came from.
+        The names and attributes that were lost, because no triangle's origin is known.
     """
 
     mesh: RawMesh
@@ -67,7 +67,7 @@ def repair(
 ) -> Repair:
     """Return a mesh with duplicates and strays dropped, faces oriented and holes filled.
 
-    The names of several objects and all attributes are left out, and told as lost.
+    Names of several objects and all attributes are dropped, and reported in `lost`.
 
     Parameters
     ----------
@@ -77,11 +77,11 @@ def repair(
         triangles, drop stray fragments, split edges with more than two triangles, orient, fill
         holes.
     weld : float
-        Distance in model units up to which vertices are joined; equal ones always are.
+        Distance in model units up to which vertices are joined; equal vertices always are.
     max_hole : int
         Edges around the largest hole that is filled.
     timeout : float, optional
-        Seconds after which to give up.
+        Seconds before giving up.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def repair(
     turned = 0 if inward is None else int(inward.sum())
     if inward is not None and turned:
         faces[inward] = faces[inward][:, ::-1]
-    # What was split to be oriented and closed is joined again: equal points are one vertex.
+    # Join equal points again that were split to be oriented and closed.
     points, same = welded(vertices[faces].reshape(-1, 3))
     called = tuple((name, len(faces)) for name, _ in raw.objects) if len(raw.objects) == 1 else ()
     mesh = RawMesh(points, same.reshape(-1, 3), raw.name, (), called, raw.unit)
@@ -126,7 +126,7 @@ def repair(
 
 
 def losses_of(raw: RawMesh) -> tuple[Finding, ...]:
-    """Return the findings about what a repair does not keep of a mesh."""
+    """Return the findings about parts of a mesh that a repair does not keep."""
     objects = [name for name, _ in raw.objects if name] if len(raw.objects) > 1 else []
     attributes = () if raw.attributes is None else raw.attributes.names
     kinds = (
@@ -168,7 +168,7 @@ def _asked(folder: Path, timeout: float | None) -> dict[str, Any]:
 
 
 def remedy(reason: str) -> str:
-    """Return the command that installs what pymeshlab misses."""
+    """Return the command that installs what pymeshlab lacks."""
     if "libGL" in reason or "libOpenGL" in reason or "plug-ins" in reason:
         return "apt-get install --no-install-recommends libgl1 libopengl0"
     return 'pip install "bspcsg[repair]"'
@@ -177,17 +177,17 @@ def remedy(reason: str) -> str:
 def _facing_inwards(mesh: Mesh) -> BoolArray:
     """Return which faces belong to surfaces that are inside out.
 
-    A surface that lies in the box of another may be the wall of a cavity, and stays as it is.
+    A surface inside the box of another may be the wall of a cavity, and is not changed.
     """
     if len(mesh.faces) == 0:
         return np.zeros(0, dtype=np.bool_)
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
     corners = mesh.vertices[mesh.faces]
     boxes = boxes_of(corners, owner)
-    # Of a surface with holes, the volume as seen from the middle of its box.
+    # For a surface with holes, the volume as seen from the middle of its box.
     a, b, c = (corners[:, k] - boxes.mean(axis=1)[owner] for k in range(3))
     volumes = np.bincount(owner, np.einsum("ij,ij->i", np.cross(a, b), c))
-    # If all of it is inside out, so are the cavities.
+    # If the whole mesh is inside out, so are the cavities.
     sign = -1 if volumes.sum() < 0 else 1
     is_inner = np.array([len(around) > 1 for around in boxes_around(boxes, boxes)])
     is_inward: BoolArray = np.where(is_inner, sign, volumes)[owner] < 0

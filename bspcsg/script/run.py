@@ -1,10 +1,9 @@
 """Python scripts that make a solid: they leave a `result`, or call `show`.
 
-A script is an ordinary Python program; ``python part.py`` runs it as well, `show` then opens a page
-in a browser. `run_script` runs it in a process of its own, so that it can be stopped, cannot take
-its caller with it, and keeps what it prints off the caller's standard output: that goes to standard
-error. It is a program with all its user's rights all the same: run no script you would not run
-with ``python``.
+A script is an ordinary Python program; ``python part.py`` runs it as well, and then `show` opens a
+page in a browser. `run_script` runs it in a process of its own, so that it can be stopped and
+cannot crash its caller; its output goes to standard error, not to the caller's standard output. It
+still has all rights of its user: run no script that you would not run with ``python``.
 """
 
 import contextlib
@@ -32,14 +31,14 @@ from .values import VALUES, compiled
 #: Longest time for a script, in seconds, unless the caller says otherwise.
 TIMEOUT = 600.0
 
-#: The exit code of what was stopped.
+#: The exit code of a stopped process.
 _STOPPED = 130
 
-#: True if a thread can hold signals back.
+#: True if a thread can block signals.
 _HOLDS_SIGNALS = hasattr(signal, "pthread_sigmask")
 
-#: The program of the child: Ctrl-C, which reaches it too, ends it without a word; its parent tells.
-#: It starts with Ctrl-C held back, for Python itself would tell of it while it still starts.
+#: The program of the child. Ctrl-C reaches it too and ends it silently; its parent reports it. It
+#: starts with Ctrl-C blocked, because Python would report it during its own start.
 _SERVE = (
     f"import os, signal, sys; signal.signal(signal.SIGINT, lambda *_: os._exit({_STOPPED}));"
     f" {_HOLDS_SIGNALS} and signal.pthread_sigmask(signal.SIG_UNBLOCK, {{signal.SIGINT}});"
@@ -47,7 +46,7 @@ _SERVE = (
     " from bspcsg.script.run import serve; serve()"
 )
 
-#: A solid; of the result of an operation that, and the transform on it, for its pickle forgets it.
+#: A solid; for the result of an operation, the operation and the transform, which pickling drops.
 _Made: TypeAlias = Solid | tuple[LastOperation, FactorChain]
 
 #: What a script has shown; None in a process that runs no script for another one.
@@ -58,9 +57,9 @@ _shown: list[Solid] | None = None
 def show(*solids: Any) -> None:
     """Show solids; in a script that `run_script` or the command line runs they are its result.
 
-    In a notebook each is displayed. Elsewhere a page with the interactive view of all is written
-    into the folder for temporary files and opened in the browser; where there is none, standard
-    error says which file it is.
+    A notebook displays each solid. Elsewhere, a page with an interactive view of all solids is
+    written into the folder for temporary files and opened in the browser. Without a browser, a
+    message on standard error names the file.
 
     Parameters
     ----------
@@ -70,9 +69,9 @@ def show(*solids: Any) -> None:
     Raises
     ------
     UnboundedError
-        If one reaches to infinity.
+        If a solid reaches to infinity.
     InvalidParameterError
-        If one is empty.
+        If a solid is empty.
     """
     if _shown is None:
         from ..report.viewer.showing import show as show_here
@@ -99,23 +98,24 @@ def run_script(
     arguments : sequence of str
         The words after the path in ``sys.argv``.
     defines : mapping, optional
-        Values of variables by their names. Each takes the place of what the script assigns to the
-        variable at its top level, wherever it does; lines keep their numbers.
+        Values of variables by name. Each replaces the value in every assignment to the variable at
+        the script's top level; line numbers stay the same.
     timeout : float, optional
-        In seconds, up to a million; None, as infinity does, waits for ever.
+        In seconds, up to a million; None and infinity wait forever.
 
     Returns
     -------
     Solid
-        The global variable ``result``, or the union of a list of solids there, or the union of all
-        that was shown. It knows the operation that made it (see `Solid.last_operation`).
+        The global variable ``result``, or the union of the solids in it if it is a list, or the
+        union of all that was shown. It knows the operation that made it (see
+        `Solid.last_operation`).
 
     Raises
     ------
     FormatError
         If the script cannot be read ("unreadable"), fails ("script_failed": the message names file
-        and line), ends its process ("script_died"), takes too long ("timeout"), leaves no solid
-        ("no_result") or assigns no variable of a name in `defines` ("unknown_name").
+        and line), ends its process ("script_died"), takes too long ("timeout"), makes no solid
+        ("no_result") or does not assign a variable in `defines` ("unknown_name").
     """
     name, limit = file_path(path), seconds(timeout, "timeout")
     words, values = texts(arguments, "arguments"), values_by_name(defines, "defines")
@@ -174,7 +174,7 @@ def _run_child(task: bytes, name: str, timeout: float | None) -> int:
 
 @contextlib.contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Hold Ctrl-C back in this thread and in processes that it starts, where the system can."""
+    """Block Ctrl-C in this thread and in processes that it starts, where the system can."""
     if not _HOLDS_SIGNALS:
         yield
         return
@@ -186,7 +186,7 @@ def _interrupts_held() -> Iterator[None]:
 
 
 def _standard_error() -> int:
-    """Return a file number that a child can write to, whatever stands for standard error here."""
+    """Return a file descriptor that a child can write to, whatever standard error is here."""
     try:
         return sys.stderr.fileno()
     except (AttributeError, OSError, ValueError):
@@ -242,12 +242,12 @@ def _result(name: str, variables: dict[str, Any]) -> Solid | BspcsgError:
 
 
 def _has_solids(values: Sequence[Any]) -> bool:
-    """Say whether values are a row of solids, and not the vertices and faces of one."""
+    """Say whether values are a sequence of solids, and not the vertices and faces of one."""
     return any(isinstance(one, Solid) for one in values)
 
 
 def _with_operation(result: Solid) -> _Made:
-    """Return what the caller needs to know a solid and what made it."""
+    """Return the data from which the caller gets a solid and the operation that made it."""
     last = result.last_operation
     return result if last is None else (last, expression_of(result).factors)
 
@@ -270,12 +270,12 @@ def _located(error: Exception, name: str) -> BspcsgError:
 def serve() -> None:
     """Do the task on standard input, in the child process.
 
-    The answer goes into a file, complete or not at all.
+    The answer is written to a file, completely or not at all.
     """
     try:
         name, arguments, defines, answer = pickle.load(sys.stdin.buffer)
     except (EOFError, pickle.UnpicklingError):
-        # The parent was stopped before all of the task was written, and tells.
+        # The parent was stopped while it wrote the task, and reports that.
         sys.exit(_STOPPED)
     pickled = pickle.dumps(_answer(name, arguments, defines))
     unfinished = Path(f"{answer}.part")

@@ -1,4 +1,4 @@
-"""Values that a caller sets in a Python script, in place of what its top level assigns."""
+"""Values from a caller that replace the assignments at the top level of a Python script."""
 
 import ast
 from collections import deque
@@ -11,15 +11,15 @@ from ..meant import question
 #: The global variable of a script that holds the values by their names.
 VALUES = "__defines__"
 
-#: Statements whose blocks are no part of the top level: names in them are their own.
+#: Statements whose blocks are not part of the top level, but have names of their own.
 _OTHER_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 def compiled(source: bytes, name: str, given: Iterable[str] = ()) -> CodeType:
-    """Return the code of a script in which the names given take their values from `VALUES`.
+    """Return the code of a script in which the given names take their values from `VALUES`.
 
-    Every assignment of such a name at the top level assigns the value instead, also one in an
-    ``if`` or a loop; of ``a, b = 1, 2`` the others keep theirs. Lines keep their numbers.
+    Every assignment to such a name at the top level assigns the given value instead, also inside an
+    ``if`` or a loop; in ``a, b = 1, 2`` the other names keep theirs. Line numbers stay the same.
 
     Parameters
     ----------
@@ -31,10 +31,10 @@ def compiled(source: bytes, name: str, given: Iterable[str] = ()) -> CodeType:
     Raises
     ------
     FormatError
-        If the top level assigns no such name (code "unknown_name"); the message lists those that
-        it assigns.
+        If the top level assigns no such name (code "unknown_name"); the message lists the names
+        that it assigns.
     SyntaxError, ValueError
-        If the source is no Python.
+        If the source is not Python.
     """
     tree, wanted = ast.parse(source, name), tuple(given)
     if wanted:
@@ -80,7 +80,7 @@ def _bound(statement: ast.stmt) -> list[str]:
 
 
 def _replaced(statement: ast.stmt, wanted: tuple[str, ...]) -> list[ast.stmt]:
-    """Return what stands for a statement once the names wanted have their values from outside."""
+    """Return the statements that replace one that assigns wanted names."""
     names = [name for name in _bound(statement) if name in wanted]
     if not names:
         return [statement]
@@ -104,6 +104,6 @@ def _assignment(name: str, old: ast.stmt) -> ast.stmt:
 
 
 def _value(name: str, old: ast.stmt) -> ast.expr:
-    """Return the expression for a value from outside, at the place of an old statement."""
+    """Return the expression for a given value, with the location of an old statement."""
     values = ast.Name(VALUES, ast.Load())
     return ast.copy_location(ast.Subscript(values, ast.Constant(name), ast.Load()), old)

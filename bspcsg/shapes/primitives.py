@@ -2,7 +2,7 @@
 
 Names and defaults follow OpenSCAD: bodies stand on the plane z = 0 and have their corner (boxes) or
 axis (round bodies) at the origin, unless ``center=True`` puts their middle there. Round bodies are
-polyhedra with `segments` sides around, by default 32 as everywhere in this package, their vertices
+polyhedra with `segments` sides, by default 32 as everywhere in this package, and their vertices lie
 on the true surface. Lengths are in model units; parameters that make no solid raise
 `InvalidParameterError`.
 """
@@ -83,8 +83,8 @@ def box(
     size : float or (3,) float
         Edge lengths; one number alone makes a cube.
     y, z : float, optional
-        The other two edge lengths, if `size` is the first one. A truth value as the second argument
-        is `center`.
+        The other two edge lengths, if `size` is the first one. A truth value as second argument
+        means `center`.
     center : bool
         True if the middle is at the origin, instead of the lowest corner.
 
@@ -136,7 +136,7 @@ def sphere(r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | Non
     bands = max(around // 2, 2)
     refuse_many_corners(around * bands, "This sphere")
     angles = unit_circle(2 * bands)[: bands + 1]
-    # From pole to pole; both poles are on the axis and become one vertex each.
+    # From pole to pole; both poles are on the axis, so each becomes one vertex.
     profile = np.column_stack([angles[:, 1], -angles[:, 0]]) * size
     return from_arrays(*surface_of_revolution(profile, around, closed=False))
 
@@ -186,7 +186,7 @@ def cylinder(
     ends = np.array([[low, base], [high, base + height]])
     vertices, sides = surface_of_revolution(ends, around, closed=False)
     cap = triangulate([unit_circle(around)])
-    # A ring has as many vertices as sides; an apex has one, and needs no cap.
+    # A ring has a vertex for each side; an apex is one vertex, and needs no cap.
     bottom = cap[:, ::-1] if low else cap[:0]
     top = cap + (len(vertices) - around) if high else cap[:0]
     return from_arrays(vertices, np.concatenate([sides, bottom, top]))
@@ -220,7 +220,7 @@ def torus(
     Parameters
     ----------
     r, d : float
-        From the axis to the middle of the tube, or twice that instead.
+        From the axis to the middle of the tube, or twice that distance.
     tube, tube_d : float
         Radius of the tube, below `r`, or its diameter instead.
     segments, tube_segments : int
@@ -261,7 +261,7 @@ def prism(
     h : float
         Height.
     r, d : float
-        From the axis to a vertical edge, or twice that instead; the first one is on the x axis.
+        From the axis to a vertical edge, or twice that; the first edge is on the x axis.
     center : bool
         True if the middle is at z = 0, instead of the lower end.
 
@@ -290,17 +290,17 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     InvalidMeshError
         If the normal is zero or a number is not finite ("bad_normal").
     LimitError
-        If the plane misses the lattice of the solids it meets ("too_large").
+        If the plane misses the lattice of the solids that it meets ("too_large").
 
     Notes
     -----
     The numbers count as the decimals they are written as, and transforms move the plane by exact
-    arithmetic. If it holds points of the lattice on which it meets other solids, it is this very
-    plane, and lies in one plane with faces that have their corners there. Otherwise it is moved to
-    the nearest plane of that direction that does, at most half a step, as a mesh's coordinates are,
-    and the finding ``half_space_rounded`` says how far. Normals of more than 106 bits, after turns
-    by odd angles, are rounded to 61 bits, which the finding accounts for. Half-spaces by themselves
-    choose a step down to 10**-12 if a plane needs it.
+    arithmetic. A plane that contains points of the lattice on which it meets other solids stays
+    exact, and is coplanar with faces that have their corners on it. Any other is moved to the
+    nearest parallel plane that does, by at most half a step, as a mesh's coordinates are, and the
+    finding ``half_space_rounded`` says how far. Normals of more than 106 bits, after rotations by
+    odd angles, are rounded to 61 bits, which the finding includes. A half-space by itself chooses a
+    step down to 10**-12 if its plane needs it.
 
     Examples
     --------

@@ -27,10 +27,10 @@ from ..solid.solid import Solid, from_leaf
 from .sweep import RingLayout, strip
 from .twist import Rise, risen
 
-#: Slices of a full turn of twist, as many as round bodies have sides if nobody says otherwise.
+#: Slices of a full turn of twist, as many as round bodies have sides by default.
 _SLICES_OF_A_TURN = 32
 
-#: Sines of half turns in doubles miss 0 by 2^-53 of their circle, and a few turns by as many times.
+#: Sines of half turns in doubles miss 0 by 2^-53 of their circle; a few turns miss it by multiples.
 _ROUNDING = 2.0**-50
 
 
@@ -45,7 +45,7 @@ def extrude(
     slices: int | None = None,
     taper: Scalar = 0.0,
 ) -> Solid:
-    """Return what a polygon, which may be concave and have holes, sweeps on its way up.
+    """Return the solid that a polygon, possibly concave and with holes, sweeps on its way up.
 
     Parameters
     ----------
@@ -62,25 +62,25 @@ def extrude(
         Degrees that the upper end is turned about the z axis, clockwise seen from above, as in
         OpenSCAD.
     scale : float or (2,) float
-        Size of the upper end, as a part of that of the lower one; 0 makes it a point or a line.
+        Size of the upper end relative to the lower one; 0 makes it a point or a line.
     slices : int, optional
-        Parts of the height with straight walls, at least 1. By default one for each 32nd of a turn
-        of `twist`. What does not change on the way up needs no more than one.
+        The number of parts of the height with straight walls, at least 1. By default one for each
+        32nd of a turn of `twist`. A figure that does not change on the way up needs only one.
     taper : float
-        Degrees that the walls lean inwards, outwards if it is negative; between -90 and 90. Walls
-        that meet end there, as in a roof, which may be lower than `h`.
+        Angle in degrees by which walls lean inwards, or outwards if it is negative; between -90 and
+        90. Walls end where they meet, as in a roof, which may be lower than `h`.
 
     Raises
     ------
     InvalidParameterError
-        If a number is out of its range, or a leaning wall that turns or shrinks, too, loses its
+        If a number is out of its range, or a leaning wall that also turns or shrinks loses its
         upper edge; the message says where.
     LimitError
-        If the solid would have too many corners, or walls that vanish are more than a thousand.
+        If the solid would have too many corners, or more than a thousand walls vanish.
 
     Notes
     -----
-    Walls that meet on the way up, as leaning ones may, are united.
+    Leaning walls that meet on the way up are united.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def _rise(
 
 @counted
 def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) -> Solid:
-    """Return the solid that a polygon sweeps around the z axis, from the x axis on.
+    """Return the solid that a polygon sweeps around the z axis, starting at the x axis.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
     angle : float
         In degrees, above 0 and up to 360.
     segments : int
-        Sides around, each of less than a half turn: at least 3 for a full one.
+        The number of sides, each of less than a half turn: at least 3 for a full turn.
 
     Examples
     --------
@@ -171,18 +171,18 @@ def revolve(polygon: Any, *, angle: Scalar = 360.0, segments: int = SEGMENTS) ->
 
 
 def _with_ends_on_axis(contour: FloatArray) -> FloatArray:
-    """Return a contour whose points beside the axis by no more than rounding are on it."""
+    """Return a contour with points that are off the axis only by rounding moved onto it."""
     far = np.abs(contour[:, 0]) > _ROUNDING * np.abs(contour).max(initial=0)
     return np.column_stack([np.where(far, contour[:, 0], 0.0), contour[:, 1]])
 
 
 def least_segments(angle: float) -> int:
-    """Return in how many parts a turn in degrees is divided at least: each is below a half turn."""
+    """Return the least number of parts of a turn in degrees, so that each is below a half turn."""
     return int(abs(angle) // 180) + 1
 
 
 def _swept(rings: RingLayout, start: int, end: int, full: bool) -> IndexArray:
-    """Return the band that one edge of the polygon sweeps."""
+    """Return the band swept by one edge of the polygon."""
     low, high = rings.ring(start), rings.ring(end)
     if full:
         return strip(low, np.roll(low, -1), high, np.roll(high, -1))

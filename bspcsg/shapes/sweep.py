@@ -36,12 +36,12 @@ def _cos_sin_of_quarter(part: int, count: int) -> tuple[float, float]:
 def surface_of_revolution(
     profile: FloatArray, segments: int, *, closed: bool
 ) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh that a curve sweeps around the z axis in a full turn.
+    """Return the mesh of the surface that a curve sweeps around the z axis in a full turn.
 
     Parameters
     ----------
     profile : (n, 2) float64
-        Distance from the axis, never negative, and height; material on the left.
+        Distance from the axis, never negative, and height; the material is on the left.
     segments : int
         Sides around.
     closed : bool
@@ -63,7 +63,7 @@ def surface_of_revolution(
 
 
 class RingLayout:
-    """The places of the vertices of each profile point, point by point.
+    """The numbers of the vertices of each profile point, point by point.
 
     Parameters
     ----------

@@ -13,11 +13,11 @@ from ..geometry.transform import cos_sin
 from ..mesh.weld import welded
 from ..solid.solid import Solid
 
-#: Diagonals whose lengths differ by less than this part are equal.
+#: Diagonals are equal if their lengths differ by less than this fraction.
 _EQUAL = 1e-5
 
-#: Walls that turn back on themselves by less than this (one plus the cosine between their normals)
-#: move their corner more than a thousand times as far as they move.
+#: If walls turn back on themselves by less than this (one plus the cosine between their normals),
+#: their corner moves more than a thousand times as far as they do.
 _SHARPEST = 1e-6
 
 
@@ -34,7 +34,7 @@ class Rise:
     scale : (float, float)
         Of the upper end, along x and y.
     slices : int
-        Levels between the ends and the upper one.
+        The number of levels above the lower end.
     inset : float
         The distance of the walls of the upper end inside those of the lower one.
     """
@@ -48,21 +48,21 @@ class Rise:
 
     @property
     def is_upright(self) -> bool:
-        """True if nothing changes."""
+        """True if the figure does not change."""
         return self.only_leans and self.inset == 0
 
     @property
     def only_leans(self) -> bool:
-        """True if walls lean, and do not turn or shrink."""
+        """True if walls may lean, but do not turn or shrink."""
         return self.twist == 0 and self.scale == (1.0, 1.0)
 
     def section(self, points: FloatArray, lean: FloatArray, level: int) -> FloatArray:
-        """Return the points of a level, 0 being the lower end.
+        """Return the points of a level; level 0 is the lower end.
 
         Parameters
         ----------
         points, lean : (n, 2) float64
-            The lower end, and how far its corners have moved inwards at the upper end.
+            The lower end, and how far its corners move inwards up to the upper end.
         """
         part = level / self.slices
         cosine, sine = cos_sin(-self.twist * part)
@@ -73,7 +73,7 @@ class Rise:
 
 
 def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
-    """Return what contours sweep on the way up.
+    """Return the solid that contours sweep on the way up.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def risen(contours: Sequence[FloatArray], rise: Rise) -> Solid:
     Raises
     ------
     InvalidParameterError
-        If a wall that turns or shrinks, too, leans so far that its edge vanishes.
+        If a wall that also turns or shrinks leans so far that its edge vanishes.
     """
     lean, lost = _lean(contours, rise.inset)
     if lost is not None and rise.only_leans:
@@ -110,7 +110,7 @@ _Place: TypeAlias = tuple[FloatArray, int]
 
 
 def _lean(contours: Sequence[FloatArray], inset: float) -> tuple[FloatArray, _Place | None]:
-    """Return how far each corner moves when all walls move inwards, and where an edge vanishes."""
+    """Return how far each corner moves if all walls move inwards, and where an edge vanishes."""
     if inset == 0:
         return np.zeros((sum(map(len, contours)), 2)), None
     found = [_corner_moves(contour, inset) for contour in contours]
@@ -148,7 +148,7 @@ def _band(
     """Return the triangles between two levels, each quadrilateral cut along its shorter diagonal.
 
     Where the diagonals are equal, the direction of the twist and whether the edge belongs to a hole
-    decide; below an end without area the other diagonal is taken.
+    decide; below an end without area the other diagonal is used.
     """
     start, end = edges.T
     up, down = (
@@ -171,9 +171,9 @@ def _is_flat(level: FloatArray) -> bool:
 
 
 def _closed(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid of a mesh in which corners may coincide, and faces may cross.
+    """Return the solid of a mesh whose corners may coincide and whose faces may cross.
 
-    Contours may cross, and walls that turn or shrink unequally are no planes.
+    Contours may cross, and walls that turn or shrink unequally are not plane.
     """
     points, same = welded(vertices)
     triangles = same[faces]

@@ -1,1 +1,1 @@
-"""The checks of a result: other engines' answers, and exact rulings between them."""
+"""Checks of results: other engines' answers, and exact rulings between them."""

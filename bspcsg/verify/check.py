@@ -1,21 +1,22 @@
-"""Is a result right? Each operation against manifold3d's answer, as sets.
+"""Checks the result of an operation against manifold3d's answer, as sets.
 
-Both engines get the same operands: ours as they are, manifold3d the reduced boundaries of ours,
-in double precision (it has no notion of winding numbers, so a mesh that overlaps itself would mean
-something else to it). What is delivered, the rounded mesh, is read back and compared with
-manifold3d's mesh: the set of points around which the two wind differently is built exactly.
-Verdicts follow from the thickness t of its thickest piece, with s the lattice step, u the distance
-of neighbouring doubles at the farthest coordinate, and e the tolerance that manifold3d reports:
+Both engines get the same operands: ours as they are, manifold3d the reduced boundaries of ours, in
+double precision (it has no notion of winding numbers, so a mesh that overlaps itself would mean
+something else to it). The rounded mesh that we deliver is read back and compared with manifold3d's
+mesh: the set of points around which the two wind differently is built exactly. The verdict depends
+on the thickness t of its thickest piece. Let s be the lattice step, u the distance of neighbouring
+doubles at the farthest coordinate, and e the tolerance that manifold3d reports:
 
 * t ≤ 2 s + 8 u: the same set (both meshes are snapped by up to √3/2 steps per vertex; s is the
   step of the coarsest lattice that vertices were snapped to);
 * t ≤ 2 s + 8 u + 4 e: within rounding, as manifold3d itself sees it;
-* beyond: the engines disagree, and points of the pieces beyond are settled by counting crossings
-  with the operands in rational arithmetic. If all of that supports us, the oracle has failed.
+* t larger: the engines disagree. Points of the pieces beyond the bound are decided by counting
+  crossings with the operands in rational arithmetic. If all of them support us, the oracle has
+  failed.
 
-Volumes and areas in floating point, Euler numbers and closedness are compared besides, because the
-symmetric difference comes from the engine that is being judged. A quick check compares these and
-the sides of some points first, and builds the set only where they differ.
+Volumes and areas in floating point, Euler numbers and closedness are compared as well, because the
+symmetric difference comes from the engine under test. A quick check compares these and the sides of
+some points first, and builds the set only where they differ.
 """
 
 from collections import deque
@@ -53,13 +54,13 @@ __all__ = [
     "validate",
 ]
 
-#: The extent of the comparison: measures and some points, or the sets in any case.
+#: The extent of the comparison: measures and some points first, or always the sets.
 Depth: TypeAlias = Literal["quick", "full"]
 
-#: Lattice steps, neighbouring doubles and tolerances of manifold3d that are forgiven.
+#: Allowances: lattice steps, neighbouring doubles and tolerances of manifold3d.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
 
-#: The largest number of pieces of a dispute that are settled, the thickest first.
+#: The largest number of pieces of a dispute that are decided, the thickest first.
 _MAX_PIECES_SETTLED = 50
 
 
@@ -92,7 +93,7 @@ def check_result(
     operands: Sequence[Solid] | None = None,
     depth: Depth = "full",
 ) -> CheckReport:
-    """Compare a result with what manifold3d makes of the same operands.
+    """Compare a result with manifold3d's result for the same operands.
 
     Parameters
     ----------
@@ -102,8 +103,8 @@ def check_result(
     operands : sequence of Solid, optional
         The solids it was made from; needed with `op`.
     depth : {"full", "quick"}
-        The choice to build the symmetric difference with manifold3d's mesh in any case, or only
-        where volume, area, parts, Euler number or sides of points near the seam differ.
+        Whether to build the symmetric difference with manifold3d's mesh always, or only where
+        volume, area, parts, Euler number or the sides of points near the seam differ.
 
     Raises
     ------
@@ -117,14 +118,14 @@ def check_result(
 
 @dataclass(frozen=True, eq=False)
 class Examination:
-    """A report and the meshes it rests on.
+    """A report and the meshes that it is based on.
 
     Parameters
     ----------
     report : CheckReport
     program : sequence of (str, list of int)
     came : list of Solid
-        The operands; cut to a box if one is unbounded, fewer if manifold3d was not asked.
+        The operands; unbounded ones are cut to a box. Fewer if manifold3d was not asked.
     ours : Mesh
     theirs : Mesh or None
         manifold3d's, if it gave one.
@@ -141,7 +142,7 @@ class Examination:
 
     @property
     def operands(self) -> list[Mesh]:
-        """The operands' meshes, as they came."""
+        """The operands' meshes, as they were given."""
         return _meshes_of(self.came)
 
 
@@ -165,14 +166,14 @@ def examine(
 
 
 def same_set_bound(pitch: int, *meshes: Mesh, snapped_by: float = 0.0) -> float:
-    """Return the thickness up to which a difference of meshes on a lattice is rounding.
+    """Return the thickness up to which meshes on a lattice differ by rounding only.
 
     Parameters
     ----------
     pitch : int
     *meshes : Mesh
     snapped_by : float
-        The most that coordinates were moved onto the lattice, if that was a coarser one once.
+        The most that coordinates moved onto a lattice, if that was once coarser.
     """
     step = max(10.0**pitch, 2 * snapped_by)
     reach = max((float(np.abs(mesh.vertices).max(initial=0)) for mesh in meshes), default=0.0)
@@ -215,8 +216,8 @@ class _Check:
         return self._compared(mesh, ours, answer)
 
     def _asked(self, inside: Mesh | None) -> Answer:
-        """Return the oracle's answer; notes are made of all operands, also if one is refused."""
-        # A mesh is made when manifold3d takes it, and let go: it has a copy of its own.
+        """Return the oracle's answer; notes are made for all operands, even if one is refused."""
+        # Make each mesh when manifold3d takes it, and free it then: manifold3d has its own copy.
         given = (self._reduced(n, solid) for n, solid in enumerate(self.came, 1))
         try:
             return oracle.ask(self.program, given, inside)
@@ -225,7 +226,7 @@ class _Check:
             raise
 
     def _fault(self, mesh: Mesh, ours: Facts) -> str:
-        """Return what is wrong with our own result, whatever the oracle says."""
+        """Return the defect of our own result, if any, regardless of the oracle's answer."""
         if ours.open_edges:
             return f"the result has {ours.open_edges} open edges"
         status = oracle.status_of(mesh) if self.depth == "full" else "NoError"
@@ -237,7 +238,7 @@ class _Check:
         return ""
 
     def _film(self, *meshes: Mesh) -> float:
-        """Return how thick a film rounding may leave between our set and meshes of it."""
+        """Return how thick a film rounding may leave between our set and meshes of the set."""
         snapped_by = self.result.tree.snapped_by
         return same_set_bound(self.result.pitch, *meshes, snapped_by=snapped_by)
 
@@ -254,7 +255,7 @@ class _Check:
         return box_of(high - low).translate(low)
 
     def _cut(self, number: int, solid: Solid, box: Solid | None) -> Solid:
-        """Return an operand, inside a box if there is one and it is unbounded."""
+        """Return an operand; cut it to the box if it is unbounded."""
         if box is None or solid.is_bounded:
             return solid
         self.notes.append(
@@ -263,7 +264,7 @@ class _Check:
         return solid & box
 
     def _reduced(self, number: int, solid: Solid) -> Mesh:
-        """Return the reduced boundary of an operand, and note if that is another one."""
+        """Return the reduced boundary of an operand, and note if it differs from the operand."""
         reduced = passing_mesh(solid.normalized())
         if solid.normalized() is not solid:
             faces = passing_mesh(solid).faces
@@ -305,14 +306,14 @@ class _Check:
         return self._report(verdict, reason, ours, theirs, found, (same, rounding))
 
     def _alike(self, mesh: Mesh, other: Mesh, film: float) -> int | None:
-        """Return at how many points the meshes were compared, or None if the sets have to be."""
+        """Return the number of points that agree, or None if the sets have to be compared."""
         if self.depth == "full" or measures_differ(mesh, other, film):
             return None
         compared, is_other = sides_differ(mesh, other, film)
         return None if is_other else compared
 
     def _ruling(self, ours: Mesh, theirs: Mesh, pieces: MeshPieces, rounding: float) -> Ruling:
-        """Return whom the operands as they came support in the pieces that rounding leaves."""
+        """Return whom the given operands support in the pieces thicker than rounding explains."""
         disputed = pieces.thicker_than(rounding)[:_MAX_PIECES_SETTLED]
         points = [pieces.points_in(piece) for piece in disputed]
         return settle(self.program, _meshes_of(self.came), ours, theirs, points)
@@ -354,7 +355,7 @@ def _judged(
     rounding: float,
     mesh: Mesh,
 ) -> tuple[Verdict, str]:
-    """Return the verdict on two meshes, of which `mesh` is ours, and the reason for it."""
+    """Return the verdict on two meshes, where `mesh` is ours, and its reason."""
     gap = abs(ours.volume - theirs.volume)
     forgiven = volume_of_film(ours, theirs, rounding)
     if found.thickness > rounding:

@@ -1,8 +1,8 @@
-"""The test whether two solids are the same set, and the difference between them.
+"""Compares two solids: whether they are the same set, and how they differ.
 
-Whether they are the same is decided exactly. How far their boundaries are apart is estimated from
-points on the boundary of the symmetric difference: everywhere else they coincide, so even a small
-bump on a large body is sampled.
+Equality is decided exactly. The distance of the boundaries is estimated from points on the boundary
+of the symmetric difference: everywhere else the boundaries coincide, so even a small bump on a
+large body is sampled.
 """
 
 from dataclasses import asdict, dataclass
@@ -19,11 +19,11 @@ from ..solid.solid import Solid
 from .discrepancy import SetDifference, measured
 from .verdict import Facts
 
-#: Added to a distance, as a part of the largest coordinate: far more than its rounding.
+#: Added to a distance, as a fraction of the largest coordinate: far more than its rounding.
 _SLACK = 1e-12
 
-#: The numbers of points, and of their pairs with triangles, that are measured together: they bound
-#: the memory.
+#: The numbers of points, and of pairs of a point and a triangle, that are processed together. They
+#: bound the memory.
 _POINTS_PER_BATCH, _PAIRS_PER_BATCH = 1000, 1 << 16
 
 
@@ -38,8 +38,8 @@ class SetComparison:
     difference : SetDifference
         The symmetric difference; its volume is zero only if the sets are equal.
     hausdorff : float or None
-        A lower bound of the distance of the boundaries in model units, the larger of both ways,
-        from samples; None if it was not measured or one set is empty.
+        A lower bound of the Hausdorff distance of the boundaries in model units, from samples; None
+        if it was not measured or one set is empty.
     samples : int
         The number of points measured.
     """
@@ -97,16 +97,16 @@ def compare(a: Solid, b: Solid, samples: int = 10_000, seed: int = 0) -> SetComp
 def hausdorff(
     a: Mesh, b: Mesh, difference: Mesh | None, samples: int, seed: int = 0
 ) -> tuple[float, float, int]:
-    """Return how far each mesh reaches from the other, at least, and from how many points.
+    """Return lower bounds of the distances of each mesh from the other, and the number of points.
 
     Parameters
     ----------
     a, b : Mesh
     difference : Mesh or None
-        The boundary of their symmetric difference, which holds all that one has and the other has
-        not; None if there is none.
+        The boundary of their symmetric difference, which contains every part that only one of them
+        has; None if there is none.
     samples : int
-        The number of points of its faces, and of its vertices at most.
+        The number of points on its faces, and the largest number of its vertices.
     seed : int
     """
     if difference is None or not all(len(one.faces) for one in (a, b, difference)):
@@ -148,7 +148,7 @@ def distances(mesh: Mesh, points: FloatArray) -> FloatArray:
 
 
 class _Surface:
-    """Triangles, (m, 3, 3), in a tree; distances are sure to within a slack."""
+    """Triangles, (m, 3, 3), in a tree; distances are exact to within a slack."""
 
     def __init__(self, corners: FloatArray, slack: float) -> None:
         self._corners, self._slack = corners, slack
@@ -160,7 +160,7 @@ class _Surface:
         found = np.full(len(points), np.inf)
         near = self._tree.near_leaves(points)
         each = np.repeat(np.arange(len(points)), near.shape[1])
-        # What lies in leaves nearby bounds the search for the nearest.
+        # The triangles in leaves nearby bound the search for the nearest one.
         self._lower(found, points, np.column_stack([each, near.ravel()]))
         search = Nearness(BoxTree.of_points(points), self._tree, self._limit(found))
         for pairs in search.leaves():
@@ -172,7 +172,7 @@ class _Surface:
         return (found + self._slack) ** 2
 
     def _lower(self, found: FloatArray, points: FloatArray, pairs: BoxPairs) -> None:
-        """Lower what was found to the distances from the triangles of leaves."""
+        """Lower the distances found to those of triangles in leaves."""
         numbers, rows = self._tree.members(pairs[:, 1])
         owners = pairs[rows, 0]
         for at in range(0, len(owners), _PAIRS_PER_BATCH):

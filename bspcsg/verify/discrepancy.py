@@ -1,8 +1,8 @@
 """The difference of two meshes as sets, and its thickness.
 
-A volume alone does not tell rounding from error: a film of one lattice step over a large body has
-more of it than a small lost part. So the symmetric difference is built exactly, taken apart into
-its connected pieces, and judged by the thickest one.
+A volume alone does not distinguish rounding from error: a film of one lattice step over a large
+body has more volume than a small missing part. So the symmetric difference is built exactly,
+divided into connected pieces, and judged by the thickest piece.
 """
 
 from dataclasses import dataclass
@@ -24,11 +24,11 @@ class SetDifference:
     Parameters
     ----------
     volume : float
-        Of both meshes as they lie on the lattice, rounded once; zero only if the sets are equal.
+        Of the difference on the lattice, rounded once; zero only if the sets are equal.
     area : float
     thickness : float
-        Of its thickest piece, in model units: twice the volume by the area, which is the thickness
-        of a film, and a third of the side of a cube.
+        The thickness of its thickest piece, in model units: twice the volume divided by the area.
+        For a film that is its thickness, for a cube a third of its side.
     place : tuple of float or None
         A point of that piece.
     """
@@ -48,15 +48,15 @@ def difference_of(
     ----------
     a, b : Mesh
     pitch : int
-        Of the lattice that both are read onto.
+        Of the lattice to which both meshes are snapped.
     film : float
-        Thickness in model units below which nothing need be known exactly.
+        The thickness in model units below which differences need not be exact.
 
     Returns
     -------
     SetDifference
     Pieces or None
-        Of the difference, if it is not empty.
+        The pieces of the difference, if it is not empty.
 
     Raises
     ------
@@ -72,21 +72,21 @@ def difference_of(
 def measured(
     volume: float, mesh: Mesh, film: float = 0.0
 ) -> tuple[SetDifference, MeshPieces | None]:
-    """Return how much a difference with this volume and boundary is, and its pieces, if any."""
+    """Return the size of a difference with this volume and boundary, and its pieces, if any."""
     if len(mesh.faces) == 0 or mesh.area == 0:
         return SetDifference(volume), None
     pieces = MeshPieces.of(mesh, film)
     worst = pieces.thickest
-    # The exact volume also counts what rounding to doubles has pressed flat.
+    # The exact volume also counts parts that rounding to doubles has flattened.
     thickness = max(float(pieces.thickness[worst]), 2 * volume / mesh.area)
     return SetDifference(volume, mesh.area, thickness, pieces.corner_of(worst)), pieces
 
 
 def _where_windings_differ(a: Mesh, b: Mesh, pitch: int) -> Solid:
-    """Return the set of points around which the two meshes wind differently often.
+    """Return the set of points at which the winding numbers of the two meshes differ.
 
     Both meshes are taken as one, the second inside out: its winding number is the difference, and
-    the faces that the meshes have in common cancel before any geometry is done.
+    faces that the meshes share cancel before any geometry is done.
     """
     count = len(a.vertices)
     vertices, same = welded(np.concatenate([a.vertices, b.vertices]))
@@ -100,12 +100,12 @@ def _where_windings_differ(a: Mesh, b: Mesh, pitch: int) -> Solid:
     except InvalidMeshError as error:
         if error.code != "empty_mesh":
             raise
-        # Whatever is left has no area on the lattice.
+        # The faces that are left have no area on the lattice.
         return Solid.empty()
 
 
 def _cancelled(faces: IndexArray) -> IndexArray:
-    """Return the faces without pairs over the same corners that run opposite ways."""
+    """Return the faces without pairs that have the same corners in opposite order."""
     faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
     first = faces.argmin(axis=1)
     rows = np.arange(len(faces))

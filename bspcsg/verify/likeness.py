@@ -1,9 +1,9 @@
-"""The test whether two meshes are alike in all that is cheap to measure.
+"""Tests whether two meshes agree in everything that is cheap to measure.
 
-Volume, area, bounds, parts and Euler number, and at points near the seam, where faces from several
-operands meet, the side on which they lie. That finds what is missing, surplus or moved, but not two
-errors that outweigh each other in all measures, away from the points: who needs to be sure builds
-the symmetric difference.
+These are volume, area, bounds, parts and Euler number, and the sides of points near the seam, where
+faces from several operands meet. The test finds missing, surplus or moved parts, but not two errors
+that cancel in all measures and are away from the points. To be sure, build the symmetric
+difference.
 """
 
 import numpy as np
@@ -20,21 +20,21 @@ SUMMING = 1e-11
 #: The largest number of faces at the seam that are probed, each on both sides.
 _MAX_FACES_PROBED = 16
 
-#: The distance of a point from the face it belongs to, in lengths by which rounding moves surfaces.
+#: The distance of a point from its face, in multiples of the distance that rounding moves surfaces.
 _CLEAR = 64.0
 
-#: The least distance of a point from its face, in lengths of the root of the face's area.
+#: The least distance of a point from its face, in multiples of the root of the face's area.
 _NEAR = 0.01
 
 
 def measures_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
-    """Return whether a measure of two meshes differs by more than a film explains.
+    """Return whether a measure of two meshes differs by more than a film between them explains.
 
     Parameters
     ----------
     mesh, other : Mesh
     film : float
-        The most that the surfaces may be apart, in model units.
+        The largest distance between the surfaces, in model units.
     """
     ours, theirs = Facts.of(mesh), Facts.of(other)
     return (
@@ -54,12 +54,12 @@ def _bounds_differ(mesh: Mesh, other: Mesh, film: float) -> bool:
 
 
 def volume_of_film(ours: Facts, theirs: Facts, film: float) -> float:
-    """Return by how much volumes may differ for surfaces that are a film apart."""
+    """Return by how much volumes may differ if the surfaces are a film apart."""
     return film * (ours.area + theirs.area) + SUMMING * abs(ours.volume)
 
 
 def areas_differ(ours: Facts, theirs: Facts, mesh: Mesh, film: float) -> bool:
-    """Return whether the areas differ by more than a film along all edges of our mesh has."""
+    """Return whether the areas differ by more than that of a film along all edges of our mesh."""
     gap = abs(ours.area - theirs.area) - SUMMING * ours.area
     return gap > 0 and gap > film * _edge_length(mesh)
 
@@ -70,7 +70,7 @@ def _edge_length(mesh: Mesh) -> float:
 
 
 def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
-    """Return at how many points near the seam the sides were compared, and whether one differs."""
+    """Return the number of points near the seam that were compared, and whether one differs."""
     points = _points_at_seam(ours, film)
     first, second = Columns(ours), Columns(theirs)
     sides = [(first.is_inside(point), second.is_inside(point)) for point in points]
@@ -79,7 +79,7 @@ def sides_differ(ours: Mesh, theirs: Mesh, film: float) -> tuple[int, bool]:
 
 
 def _points_at_seam(mesh: Mesh, film: float) -> list[Point]:
-    """Return points on both sides of faces that meet those of another operand, or of any."""
+    """Return points on both sides of faces at the seam, or of any faces if there is no seam."""
     faces = np.flatnonzero(_is_at_seam(mesh))
     if len(faces) == 0:
         faces = np.arange(len(mesh.faces))

@@ -1,7 +1,7 @@
-"""Another engine's answer to the same question: programs carried out by manifold3d.
+"""The answers of another engine to the same questions: manifold3d runs programs.
 
-manifold3d knows no complements, so every value here is a bounded solid and a flag that says
-whether its complement is meant; the laws of De Morgan do the rest.
+manifold3d knows no complements, so every value here is a bounded solid with a flag that says
+whether its complement is meant; De Morgan's laws reduce all operations to those of bounded solids.
 """
 
 from collections.abc import Iterable, Sequence
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class OracleRefusedError(Exception):
-    """manifold3d cannot take the question: an operand is unbounded or not to its liking."""
+    """manifold3d cannot take the question: an operand is unbounded or was refused."""
 
 
 class OracleFailedError(Exception):
@@ -38,8 +38,8 @@ class Answer:
     mesh : Mesh
         Its result; `source` is zero.
     tolerance : float
-        Largest distance in model units below which it does not tell things apart, over operands
-        and result.
+        The largest distance in model units below which it does not distinguish points, over
+        operands and result.
     """
 
     mesh: Mesh
@@ -53,7 +53,7 @@ def name() -> str:
 
 @cache
 def _version() -> str:
-    """Return it from the name of the package's metadata, which is quicker than to read them."""
+    """Return the version from the name of the metadata folder, which is faster than reading it."""
     import manifold3d
 
     found = list(Path(manifold3d.__file__).parent.glob("manifold3d-*.dist-info"))
@@ -65,7 +65,7 @@ def _version() -> str:
 
 
 def status_of(mesh: Mesh) -> str:
-    """Return manifold3d's word on a mesh, in double precision: ``"NoError"`` if it takes it."""
+    """Return manifold3d's status for a mesh, in double precision; ``"NoError"`` accepts it."""
     return "NoError" if len(mesh.faces) == 0 else str(interop.to_manifold(mesh).status().name)
 
 
@@ -77,10 +77,10 @@ def ask(
     Parameters
     ----------
     program : sequence of (str, list of int)
-        As the core takes it.
+        In the form that the core takes.
     operands : iterable of Mesh
     inside : Mesh, optional
-        Only what of the result lies in here is wanted.
+        Only the part of the result inside this mesh is wanted.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def ask(
 def _result_of(
     program: Sequence[ProgramLine], operands: Iterable[Mesh], inside: Mesh | None
 ) -> "tuple[manifold3d.Manifold, float]":
-    """Return manifold3d's result and the largest tolerance, and let go of its operands."""
+    """Return manifold3d's result and the largest tolerance, and free its operands."""
     solids = [_taken(number, operand) for number, operand in enumerate(operands, 1)]
     limit = None if inside is None else interop.to_manifold(inside)
     # An empty solid's tolerance is negative.
@@ -125,7 +125,7 @@ def _taken(number: int, operand: Mesh) -> "manifold3d.Manifold":
     status = solid.status().name
     if status != "NoError":
         raise OracleRefusedError(f"manifold3d refuses operand {number}: {status}")
-    # It takes inverted meshes without a word, and their results mean nothing.
+    # It accepts inverted meshes silently, and its results for them mean nothing.
     if solid.volume() <= 0 < operand.volume:
         raise OracleRefusedError(f"operand {number} has no positive volume in manifold3d")
     return solid

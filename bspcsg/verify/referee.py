@@ -1,7 +1,7 @@
-"""The ruling where two engines disagree: exact counts of crossings, with no tree in them.
+"""Rules where two engines disagree: counts crossings exactly, without any tree.
 
-A point of the dispute is classified against the operands by counting, in whole numbers, how
-a ray from it crosses their triangles. This shares no code with the core.
+It classifies a point of the dispute against the operands by counting, in integers, how a ray from
+the point crosses their triangles. It shares no code with the core.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from ..solid.program import TRUTH
 
 
 class Ruling(Enum):
-    """Whom the counts support, at every point that could be settled."""
+    """Whom the counts support, at all points that could be decided."""
 
     OURS = "ours"
     THEIRS = "theirs"
@@ -31,7 +31,7 @@ def settle(
     theirs: Mesh,
     pieces: Sequence[Sequence[Point]],
 ) -> Ruling:
-    """Say who is right in every piece of a dispute.
+    """Decide who is right in every piece of a dispute.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def settle(
         A point is inside where the winding number is positive.
     ours, theirs : Mesh
     pieces : sequence of sequences of points
-        For each piece some points, of which at least one should be inside it.
+        Some points for each piece, at least one of which should be inside the piece.
     """
     rulings = {_settled_piece(program, operands, ours, theirs, points) for points in pieces}
     return rulings.pop() if len(rulings) == 1 else Ruling.UNCLEAR
@@ -52,7 +52,7 @@ def count_agreeing(
     ours: Mesh,
     points: Sequence[Point],
 ) -> tuple[int, int]:
-    """Return at how many points our result is right, and how many could be settled."""
+    """Return at how many points our result is right, and at how many that was decided."""
     agreeing = settled = 0
     for point in points:
         inside = is_inside(ours, point)
@@ -120,7 +120,7 @@ class Columns:
         return winding
 
     def _met(self, point: Point, order: list[int]) -> FloatArray:
-        """Return the (k, 3, 3) corners of triangles whose boxes a ray meets, in another order."""
+        """Return the (k, 3, 3) corners of triangles whose boxes a ray meets, axes reordered."""
         across, other = order[1:]
         low, high = self._extent(across)
         near = np.flatnonzero((low <= point[across]) & (high >= point[across]))
@@ -159,7 +159,7 @@ def _crossing(triangle: FloatArray, start: list[float]) -> int | None:
 
 
 def _whole(numbers: list[float]) -> list[int]:
-    """Return doubles as multiples of the same power of two."""
+    """Return doubles as integer multiples of one power of two."""
     ratios = [number.as_integer_ratio() for number in numbers]
     scale = lcm(*(below for _, below in ratios))
     return [above * (scale // below) for above, below in ratios]

@@ -1,4 +1,4 @@
-"""The losses of a file format: the mesh that was written against the one that reads back."""
+"""The losses of a file format: compares the mesh that was written with the mesh read back."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -25,7 +25,7 @@ class Losses:
     Parameters
     ----------
     triangles, points : tuple of int
-        Numbers before and after; points are different positions.
+        Numbers before and after; points are distinct positions.
     shift : float or None
         Largest change of a coordinate in model units; None if triangles do not correspond.
     size : float
@@ -35,13 +35,13 @@ class Losses:
     solid : tuple of bool
         True where the mesh bounds a set, before and after.
     names : tuple of str
-        Names of objects that are gone.
+        Names of objects that were lost.
     passed_by : tuple of str
-        The things that the reader of the input said it left out.
+        Parts of the input that its reader reported as left out.
     dropped : tuple of str
-        Kinds of data in the input that a mesh of triangles has no room for.
+        Kinds of data in the input that a triangle mesh cannot store.
     attributes : tuple of str
-        Names of attributes that are gone or have other values.
+        Names of attributes that were lost or changed.
     """
 
     triangles: tuple[int, int]
@@ -61,7 +61,7 @@ class Losses:
         return bool(self.sentences())
 
     def sentences(self) -> list[str]:
-        """Return what was lost, a few words each."""
+        """Return the losses, in a few words each."""
         found = [sentence.rstrip(".") for sentence in self.passed_by]
         found += [", ".join(self.dropped)] if self.dropped else []
         if self.triangles[0] != self.triangles[1]:
@@ -94,12 +94,13 @@ class Losses:
 
 @uncounted
 def losses_between(before: RawMesh, after: RawMesh) -> Losses:
-    """Return what was lost on the way from one mesh to the other.
+    """Return the losses on the way from one mesh to the other.
 
     Parameters
     ----------
     before, after : RawMesh
-        The mesh that was written, with what its own file said, and the one that reads back.
+        The mesh that was written, with the reports of its own file's reader, and the mesh read
+        back.
     """
     kept = {name for name, _ in after.objects} | {after.name}
     names = [name for name, _ in before.objects if name and name not in kept]
@@ -118,7 +119,7 @@ def losses_between(before: RawMesh, after: RawMesh) -> Losses:
 
 
 def _changed_attributes(before: RawMesh, after: RawMesh) -> tuple[str, ...]:
-    """Return the attributes that are not there any more, or not everywhere as they were."""
+    """Return the attributes that were lost or have changed anywhere."""
     if before.attributes is None:
         return ()
     found = []

@@ -1,4 +1,4 @@
-"""The report of a check: verdicts, facts about meshes, and both in words and as JSON values."""
+"""The report of a check: verdicts and facts about meshes, as words and as JSON values."""
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum
@@ -73,19 +73,19 @@ class CheckReport:
     operation : str
     verdict : Verdict
     reason : str
-        The reason why it is not `Verdict.AGREE`, or empty.
+        Why the verdict is not `Verdict.AGREE`, or empty.
     ours : Facts
     theirs : Facts or None
     set_volume : float
-        Of our set before its vertices were rounded, itself rounded once.
+        The volume of our set before its vertices were rounded, itself rounded once.
     set_difference : SetDifference or None
     same_set_bound, rounding_bound : float
         Thicknesses up to which sets count as the same, and as within rounding; in model units.
     oracle : str
     notes : tuple of str
-        The changes to operands before manifold3d got them.
+        The changes made to operands for manifold3d.
     probes : int
-        If measures were compared instead of sets, at how many points the sides were, too.
+        If measures were compared instead of sets, the number of points whose sides were compared.
     """
 
     operation: str
@@ -103,7 +103,7 @@ class CheckReport:
 
     @property
     def ok(self) -> bool:
-        """True if nothing speaks against the result; a silent oracle does not."""
+        """True if nothing speaks against the result, even if the oracle gave no answer."""
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
     @property
@@ -125,7 +125,7 @@ class CheckReport:
         return found
 
     def summary(self) -> str:
-        """Return the verdict and what it rests on, in one line."""
+        """Return the verdict and its basis, in one line."""
         if self.reason:
             return f"{self.verdict}: {self.reason}"
         return f"{self.verdict} with {self.oracle}: {self._difference()}"

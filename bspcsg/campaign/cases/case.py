@@ -1,4 +1,4 @@
-"""One question to be asked of two engines, as a value that goes to another process as JSON."""
+"""One question for two engines, as a value that is sent to another process as JSON."""
 
 import hashlib
 import json
@@ -20,18 +20,18 @@ _KEY_DIGITS = 16
 
 @dataclass(frozen=True)
 class Operand:
-    """One mesh that goes in.
+    """One input mesh.
 
     Parameters
     ----------
     name : str
         A letter.
     file : str or None
-        As it was named.
+        The name as given.
     sha256 : str
         Of the bytes of the file, or of `mesh` as JSON.
     pose : list of list of float or None
-        Three rows of an affine map, if it is known beforehand.
+        Three rows of an affine map, if it is known in advance.
     mesh : dict or None
         ``vertices`` and ``faces``, if there is no file.
     """
@@ -50,12 +50,12 @@ class Case:
     Parameters
     ----------
     name : str
-        The same each time the campaign is run.
+        The same in every run of the campaign.
     kind : {"pair", "csg", "pose"}
     operation : str
     operands : tuple of Operand
     pose : str or None
-        The way the second operand is placed on the first (see `bspcsg.campaign.poses`).
+        How the second operand is placed on the first (see `bspcsg.campaign.poses`).
     seed, number : int or None
         Of the random draw, for poses.
     command : str
@@ -78,7 +78,7 @@ class Case:
             object.__setattr__(self, "key", self._hashed())
 
     def _hashed(self) -> str:
-        """Return the hash of all that the answer depends on."""
+        """Return the hash of everything that the answer depends on."""
         inputs = [[operand.sha256, operand.pose] for operand in self.operands]
         drawn = [self.pose, self.seed, self.number]
         text = json.dumps([__version__, self.kind, self.operation, inputs, drawn])
@@ -90,13 +90,13 @@ class Case:
 
     @classmethod
     def from_dict(cls, values: dict[str, Any]) -> "Case":
-        """Return the case that `to_dict` described."""
+        """Return the case from the values of `to_dict`."""
         operands = tuple(Operand(**operand) for operand in values["operands"])
         return cls(**{**values, "operands": operands})
 
 
 def command_for(files: Sequence[str], *options: str) -> str:
-    """Return a command line, fit for a shell."""
+    """Return a command line, quoted for a shell."""
     words = ["bspcsg", "crosscheck", *files, *options]
     return " ".join(shlex.quote(word) for word in words)
 

@@ -1,4 +1,4 @@
-"""The meshes of one case in one file, for pictures and for looking again."""
+"""The meshes of one case in one file, for pictures and later inspection."""
 
 import io
 import os
@@ -12,14 +12,14 @@ from ...mesh.mesh import Mesh
 
 @dataclass(frozen=True, eq=False)
 class CaseMeshes:
-    """The meshes that a file holds.
+    """The meshes in a file.
 
     Parameters
     ----------
     operands : dict of str to Mesh
         By letter.
     result, difference : Mesh
-        The latter without faces if the sets are equal or were not compared.
+        The difference has no faces if the sets are equal or were not compared.
     """
 
     operands: dict[str, Mesh]
@@ -36,13 +36,13 @@ def packed(operands: Sequence[Mesh], result: Mesh, difference: Mesh | None) -> b
         arrays[f"{name}_vertices"] = mesh.vertices
         arrays[f"{name}_faces"] = mesh.faces.astype(np.int32)
     buffer = io.BytesIO()
-    # The stubs of numpy take the arrays' names for its one option.
+    # The stubs of numpy take the arrays' names for its only option.
     np.savez_compressed(buffer, **arrays)  # type: ignore[arg-type]
     return buffer.getvalue()
 
 
 def unpacked(path: str | os.PathLike[str]) -> CaseMeshes:
-    """Return what `packed` wrote to a file."""
+    """Return the meshes that `packed` wrote to a file."""
     with np.load(path, allow_pickle=False) as arrays:
         names = [name.removesuffix("_faces") for name in arrays.files if name.endswith("_faces")]
         meshes = {

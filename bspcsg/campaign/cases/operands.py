@@ -19,14 +19,14 @@ _MAX_FILES_KEPT = 8
 
 
 def operands_of(case: Case) -> tuple[list[Solid], list[FloatArray | None]]:
-    """Return the operands in their places, and the rows of the map that put each there.
+    """Return the operands in their places, and the rows of the maps that put them there.
 
     Raises
     ------
     FormatError
         If a file cannot be read.
     InvalidMeshError, LimitError
-        If a mesh is no solid; the message names it.
+        If a mesh is not a solid; the message names it.
     """
     meshes = [_mesh_of(operand) for operand in case.operands]
     rows = [_given_pose(operand) for operand in case.operands]
@@ -74,7 +74,7 @@ def _mesh_of(operand: Operand) -> MeshArrays:
 
 @lru_cache(maxsize=_MAX_FILES_KEPT)
 def _read(file: str, sha256: str) -> MeshArrays:
-    del sha256  # what tells a file from itself after it was changed
+    del sha256  # distinguishes versions of a changed file
     raw = read(file)
     return raw.vertices, raw.faces
 

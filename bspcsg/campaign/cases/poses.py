@@ -1,6 +1,6 @@
-"""The placing of the second of two meshes on the first: at random, or so that parts coincide.
+"""Places the second of two meshes on the first: at random, or so that parts coincide.
 
-A pose is an affine map, given by the three rows of its matrix, which is applied to the vertices as
+A pose is an affine map, given by the three rows of its matrix. It is applied to the vertices as
 they were read, in double precision.
 """
 
@@ -26,7 +26,7 @@ def pose_matrix(
     name : str
         One of `POSES`.
     first, second : (n, 3) float64
-        Vertices. Poses out of `OF_THE_FIRST` place a copy of the first, so `second` is that.
+        Vertices. Poses in `OF_THE_FIRST` place a copy of the first mesh, so `second` is that copy.
     seed, number : int
         Of the random draw.
     """
@@ -34,7 +34,7 @@ def pose_matrix(
 
 
 def placed(mesh: MeshArrays, rows: FloatArray) -> MeshArrays:
-    """Return a mesh under an affine map; a map that mirrors turns its faces round."""
+    """Return a mesh under an affine map; a mirroring map also reverses its faces."""
     vertices = mesh[0] @ rows[:, :3].T + rows[:, 3]
     mirrors = np.linalg.det(rows[:, :3]) < 0
     return vertices, mesh[1][:, ::-1].copy() if mirrors else mesh[1]
@@ -80,12 +80,12 @@ def _rotation(rng: np.random.Generator) -> FloatArray:
 
 
 def _alike_in_size(first: FloatArray, second: FloatArray) -> float:
-    # A power of ten keeps short decimals short, and coplanar faces coplanar.
+    # A power of ten keeps decimals short, and coplanar faces coplanar.
     return float(10.0 ** round(float(np.log10(_size(first) / _size(second)))))
 
 
 def _corner(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Put the lowest corners of both boxes together: outer faces become coplanar."""
+    """Align the lowest corners of both boxes: outer faces become coplanar."""
     scale = _alike_in_size(first, second)
     return _rows(np.eye(3) * scale, first.min(axis=0) - (second * scale).min(axis=0))
 

@@ -1,4 +1,4 @@
-"""The cases that a command line means: files, folders, scripts and files of cases."""
+"""The cases that a command line describes: files, folders, scripts and files of cases."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -24,7 +24,7 @@ _EXAMPLE = '{"cases": [{"operation": "union", "operands": [{"file": "a.stl"}, {"
 
 @dataclass(frozen=True)
 class CaseInputs:
-    """The files that were named.
+    """The files that were given.
 
     Parameters
     ----------
@@ -38,17 +38,17 @@ class CaseInputs:
 
 @dataclass(frozen=True)
 class Draw:
-    """The rule by which pairs are placed.
+    """How pairs are placed.
 
     Parameters
     ----------
     count : int
-        The number of pairs drawn; 0 for all pairs of files, as they lie.
+        The number of pairs drawn; 0 for all pairs of files, without a pose.
     seed : int
     pose : str or None
-        The pose of each pair, or None for half random and half coincident ones.
+        The pose of each pair; None for random poses in one half and coincident ones in the other.
     number : int or None
-        The one number to draw for the first two files, instead of `count` numbers.
+        The only number to draw for the first two files, instead of `count` numbers.
     """
 
     count: int = 0
@@ -58,12 +58,12 @@ class Draw:
 
 
 def inputs_in(paths: Sequence[Path]) -> CaseInputs:
-    """Sort what was named by kind.
+    """Sort the given paths by kind.
 
     Raises
     ------
     FormatError
-        If a path is missing, or its suffix is of no known format.
+        If a path is missing, or its suffix is not of a known format.
     """
     meshes: list[Path] = []
     scripts: list[Path] = []
@@ -86,7 +86,7 @@ def _kind_of(path: Path, meshes: list[Path], scripts: list[Path], cases: list[Pa
 
 
 def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> list[Case]:
-    """Return the cases, in the order in which they are to be asked.
+    """Return the cases, in the order in which they are asked.
 
     Parameters
     ----------
@@ -94,12 +94,12 @@ def cases_of(inputs: CaseInputs, operations: Sequence[str], *draws: Draw) -> lis
     operations : sequence of str
         For pairs; files of cases name their own.
     *draws : Draw
-        By each of them all pairs are placed.
+        Each places all pairs.
 
     Raises
     ------
     FormatError
-        If a file of cases is not understood.
+        If a file of cases is malformed.
     """
     cases = [case for draw in draws for case in _pairs(inputs.meshes, operations, draw)]
     cases += [_script(path) for path in inputs.scripts]
@@ -167,12 +167,12 @@ def _in_pose(
 
 
 def _name(number: int, first: Path, second: Path, *words: str) -> str:
-    """Return what a case of two files is called; the number tells files of one name apart."""
+    """Return the name of a case of two files; the number distinguishes files of one name."""
     return "-".join([f"{number:04d}", first.stem, second.stem, *words])
 
 
 class _Operands:
-    """Operands by file, each of them hashed once."""
+    """Operands by file; each is hashed once."""
 
     def __init__(self) -> None:
         self._digests: dict[Path, str] = {}

@@ -1,4 +1,4 @@
-"""The program openscad, whose booleans are exact, but which writes six digits."""
+"""The program openscad, whose booleans are exact but whose output has six digits."""
 
 import os
 import shutil
@@ -14,13 +14,13 @@ from ...mesh.mesh import Mesh
 from ...processes import run_program
 from .questions import EngineAnswer, NoOpinionError, Question, mesh_of
 
-#: Significant digits in what openscad writes.
+#: The number of significant digits that openscad writes.
 _DIGITS = 6
 
 #: Its grid for plane figures, in units.
 _PLANE_GRID = 2.0**-16
 
-#: OpenSCAD is not asked about more triangles than this: its exact engine takes minutes for them.
+#: The largest number of triangles for OpenSCAD: its exact engine takes minutes for more.
 _MAX_TRIANGLES = 3000
 
 #: The longest time for OpenSCAD to print its version, in seconds.
@@ -28,7 +28,7 @@ _VERSION_TIMEOUT = 30
 
 
 def ask_openscad(question: Question) -> EngineAnswer:
-    """Return what openscad makes of the operands, as polyhedra with all digits.
+    """Return openscad's result for the operands, passed as polyhedra with all digits.
 
     Raises
     ------
@@ -71,7 +71,7 @@ def _scad_version() -> str:
 
 
 def run_script(path: Path, timeout: float) -> EngineAnswer:
-    """Return what openscad makes of a script.
+    """Return openscad's result for a script.
 
     Raises
     ------
@@ -82,14 +82,14 @@ def run_script(path: Path, timeout: float) -> EngineAnswer:
     with tempfile.TemporaryDirectory(prefix="bspcsg-") as name:
         target = Path(name, "answer.stl")
         done = _ran(["openscad", "-o", str(target), str(path.absolute())], timeout)
-        # It leaves out what it cannot convert, says so, and ends as if all were well.
+        # It leaves out nodes that it cannot convert, reports that, and exits as if all were well.
         errors = [line.strip() for line in done.stderr.splitlines() if "ERROR" in line]
         mesh = _written(target, done)
     return EngineAnswer(version, mesh, _shift(mesh), errors[0] if errors else "")
 
 
 def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
-    """Return the mesh that openscad wrote, or none if it says that nothing is left."""
+    """Return the mesh that openscad wrote, or an empty one if it reports an empty result."""
     if "Current top level object is empty" in done.stderr:
         return mesh_of(np.zeros((0, 3)), np.zeros((0, 3)))
     if done.returncode != 0 or not target.is_file():
@@ -103,7 +103,7 @@ def _written(target: Path, done: "subprocess.CompletedProcess[str]") -> Mesh:
 
 
 def _shift(mesh: Mesh) -> float:
-    """Return how far a vertex may be from where it was before it was written."""
+    """Return the largest distance that writing may move a vertex."""
     largest = float(np.abs(mesh.vertices).max(initial=0))
     unit = 10.0 ** (len(str(int(largest))) - _DIGITS)
     return 3**0.5 * (unit / 2 + _PLANE_GRID)

@@ -1,4 +1,4 @@
-"""pymeshlab's exact booleans, asked in a process of their own."""
+"""pymeshlab's exact booleans, run in a process of their own."""
 
 import json
 import os
@@ -17,7 +17,7 @@ _MISSING = 6
 
 
 def ask_pymeshlab(question: Question) -> EngineAnswer:
-    """Return what pymeshlab makes of the operands.
+    """Return pymeshlab's result for the operands.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def _put_operands(folder: Path, question: Question) -> None:
     }
     for number, mesh in enumerate(question.operands):
         arrays[f"vertices{number}"], arrays[f"faces{number}"] = mesh.vertices, mesh.faces
-    # The stubs of numpy take the arrays' names for its one option.
+    # The stubs of numpy take the arrays' names for its only option.
     np.savez(folder / "operands.npz", **arrays)  # type: ignore[arg-type]
 
 

@@ -1,4 +1,4 @@
-"""The process that asks pymeshlab: ``pymeshlab_child.py FOLDER`` combines what lies in there.
+"""The process that runs pymeshlab: ``pymeshlab_child.py FOLDER`` combines the meshes in there.
 
 It runs apart because pymeshlab is under another licence, and can crash or hang. It imports nothing
 of this package, reads ``operands.npz``, writes ``result.npz`` and ``said.json``, and exits with 6
@@ -14,7 +14,7 @@ import numpy as np
 
 MISSING = 6
 
-#: The words of pymeshlab when it cannot keep a result in which nothing is left.
+#: pymeshlab's message when it cannot store an empty result.
 _EMPTY = "Vertex matrix is empty"
 
 #: The boolean filters: exact, by mesh arrangements with CGAL's kernel inside libigl.
@@ -56,7 +56,7 @@ def main(folder: Path) -> int:
 
 
 def _note_failure(folder: Path, message: str, said: dict[str, str]) -> None:
-    """Say what failed; a result without vertices is raised as a failure too."""
+    """Record a failure; an empty result is raised as a failure too."""
     if _EMPTY in message:
         np.savez(folder / "result.npz", vertices=np.zeros((0, 3)), faces=np.zeros((0, 3), int))
     else:

@@ -30,7 +30,7 @@ class Question:
     timeout : float
         Seconds for one engine.
     snapped_by : float
-        The most that coordinates of operands moved onto a lattice, which may have been coarser.
+        The most that coordinates of operands moved onto a lattice, possibly a coarser one.
     """
 
     operation: str
@@ -51,9 +51,10 @@ class EngineAnswer:
     version : str
     mesh : Mesh
     shift : float
-        The most that a vertex may be off its place because of how it was written, in model units.
+        The largest distance of a vertex from its true place due to the output format, in model
+        units.
     complaint : str
-        The engine's words on what it could not do although it gave an answer, or empty.
+        The engine's message on what failed although it gave an answer, or empty.
     """
 
     version: str
@@ -63,7 +64,7 @@ class EngineAnswer:
 
 
 def mesh_of(vertices: np.ndarray, faces: np.ndarray) -> Mesh:
-    """Return a mesh of what another program gave, with equal corners joined."""
+    """Return a mesh from another program's output, with equal corners joined."""
     points = np.ascontiguousarray(vertices, dtype=np.float64).reshape(-1, 3)
     corners: IndexArray = np.ascontiguousarray(faces, dtype=np.int64).reshape(-1, 3)
     if len(corners):

@@ -36,32 +36,32 @@ from .facts import facts_of
 from .opinions import crossings_opinion, is_installed, opinion, script_opinion
 from .ruling import ruled
 
-#: Verdicts after which further engines are asked.
+#: Verdicts after which more engines are asked.
 _DOUBTFUL = frozenset({Verdict.DISAGREE, Verdict.ORACLE_REFUSED, Verdict.ORACLE_FAILED})
 
-#: Verdicts whose meshes nobody needs to look at.
+#: Verdicts whose meshes need not be kept.
 _DULL = frozenset({str(Verdict.AGREE), str(Verdict.OTHER_TOPOLOGY)})
 
-#: The largest share of a case's time that one further engine may take.
+#: The largest share of a case's time that one additional engine may take.
 _MAX_ENGINE_SHARE = 0.4
 
 
 @dataclass(frozen=True)
 class EvaluationSettings:
-    """The settings with which cases are evaluated.
+    """The settings for the evaluation of cases.
 
     Parameters
     ----------
     against : tuple of str
-        Engines to ask in every case besides manifold3d; the others are asked where it matters.
+        Engines to ask in every case besides manifold3d; others are asked only where it matters.
     samples : int
-        Points to measure distances from; 0 for none.
+        The number of points from which distances are measured; 0 for none.
     timeout : float
         Seconds for a case.
     meshes : str or None
         Folder for the meshes of interesting cases, or None to keep none.
     relative : str
-        The name that records give that folder.
+        The name of that folder in records.
     """
 
     against: tuple[str, ...] = ()
@@ -86,7 +86,7 @@ class _Clock:
 
 
 def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
-    """Return the record of a case that nothing more is known about."""
+    """Return the record of a case about which nothing more is known."""
     return {
         "schema": SCHEMA,
         "type": "case",
@@ -123,14 +123,14 @@ def blank_record(case: Case, verdict: str, reason: str) -> CaseRecord:
 
 
 def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> CaseRecord:
-    """Return what comes of a case; what the package refuses is an answer too.
+    """Return the record of a case; a refusal by the package is an answer, too.
 
     Parameters
     ----------
     case : Case
     settings : EvaluationSettings
     keep : bool
-        Keep the meshes even if nothing is interesting about them.
+        Keep the meshes even if the case is not interesting.
     """
     forget_peak()
     clock = _Clock()
@@ -202,7 +202,7 @@ class _Evaluation:
     def _further(
         self, found: Examination, solids: list[Solid], result: Solid
     ) -> list[OracleRecord]:
-        """Return what the engines that have to be asked besides manifold3d say."""
+        """Return the answers of the engines that have to be asked besides manifold3d."""
         wanted = [name for name in self._settings.against if name != "manifold3d"]
         limit = self._settings.timeout * _MAX_ENGINE_SHARE
         if self._is_script:

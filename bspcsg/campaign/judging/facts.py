@@ -1,4 +1,4 @@
-"""Facts about meshes, as records hold them."""
+"""Facts about meshes, as records store them."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ def facts_of(mesh: Mesh, facts: Facts | None = None, crossings: bool = False) ->
     ----------
     mesh : Mesh
     facts : Facts, optional
-        Those that are known already.
+        The facts that are known already.
     crossings : bool
         True to look for faces that cross.
     """
@@ -39,12 +39,12 @@ def facts_of(mesh: Mesh, facts: Facts | None = None, crossings: bool = False) ->
 
 
 def _finite(array: FloatArray) -> Any:
-    """Return an array as lists, or None if it has no number."""
+    """Return an array as lists, or None if it is not finite."""
     return array.tolist() if np.isfinite(array).all() else None
 
 
 def _crossings(mesh: Mesh) -> int | None:
-    """Return 0 if no two faces of a mesh cross, exactly; None if that cannot be said."""
+    """Return 0 if no two faces of a mesh cross, exactly; None if that is not certain."""
     if len(mesh.faces) == 0:
         return 0
     try:

@@ -1,7 +1,7 @@
-"""Further engines, asked when two disagree: pymeshlab, openscad, and counts of crossings.
+"""More engines, asked when two disagree: pymeshlab, openscad, and counts of crossings.
 
-Each says what set it finds, and whether that is ours. None of them is asked about scripts but
-openscad, whose language they are in.
+Each returns the set that it finds, and whether it equals ours. For scripts only openscad is asked,
+because they are in its language.
 """
 
 import shutil
@@ -24,7 +24,7 @@ from ..engines.questions import EngineAnswer, NoOpinionError, Question
 from ..record import OracleRecord
 from .facts import facts_of
 
-#: Engines by name, and what installs each that is optional.
+#: Engines by name, and how to install the optional ones.
 ENGINES = {
     "manifold3d": "",
     "pymeshlab": 'pip install "bspcsg[repair]"',
@@ -34,7 +34,7 @@ ENGINES = {
 #: The number of points at which crossings are counted, half of them beside the surfaces.
 _POINTS_COUNTED = 24
 
-#: The distance of these from the surfaces, by the size of the model.
+#: The distance of these from the surfaces, as a fraction of the model's size.
 _BESIDE = 1e-4
 
 
@@ -56,12 +56,12 @@ def require(engines: Sequence[str]) -> None:
 
 
 def opinion(engine: str, question: Question) -> OracleRecord:
-    """Ask an engine, and compare what it finds with ours as sets."""
+    """Ask an engine, and compare its result with ours as sets."""
     return _recorded(engine, question, lambda: _ASKED[engine](question))
 
 
 def script_opinion(path: Path, ours: Solid, timeout: float) -> OracleRecord:
-    """Ask openscad what it makes of a script of which we made a solid."""
+    """Ask openscad for the result of a script that we made into a solid."""
     mesh = ours.normalized().to_mesh()
     question = Question("csg", [], [], mesh, ours.pitch, timeout, ours.tree.snapped_by)
     return _recorded("openscad", question, lambda: run_script(path, timeout))
@@ -80,7 +80,7 @@ def _recorded(engine: str, question: Question, asked: Callable[[], EngineAnswer]
 
 
 def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
-    """Count how rays from some points cross the operands and our result, in rational numbers."""
+    """Count how rays from some points cross the operands and our result, in rational arithmetic."""
     began = time.perf_counter()
     points = _points(question, np.random.default_rng(seed))
     agreeing, settled = count_agreeing(
@@ -129,7 +129,7 @@ _ASKED: dict[str, Callable[[Question], EngineAnswer]] = {
 
 
 def _points(question: Question, rng: np.random.Generator) -> np.ndarray:
-    """Return points all over the operands' boxes and beside the surfaces."""
+    """Return points throughout the operands' boxes and near the surfaces."""
     meshes = [mesh for mesh in (*question.operands, question.ours) if len(mesh.faces)]
     if not meshes:
         return np.zeros((0, 3))

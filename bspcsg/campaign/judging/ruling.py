@@ -1,4 +1,4 @@
-"""The verdict on a case once everybody has spoken, and who stands alone."""
+"""The verdict on a case from the answers of all engines."""
 
 from collections.abc import Sequence
 
@@ -25,9 +25,10 @@ def ruled(
 
     Notes
     -----
-    Counts of crossings are exact, so a point in the wrong place overrules everybody. Of engines
-    that round, one alone against ours and another is taken to be wrong; ours alone never is
-    excused. For scripts openscad counts alone: manifold3d gets the leaves that we have made.
+    Counts of crossings are exact, so a point in the wrong place overrules all engines. A rounding
+    engine that alone contradicts ours and another one is taken to be wrong; ours is never excused
+    when it stands alone. For scripts only openscad counts, because manifold3d gets the leaves that
+    we have made.
     """
     verdict, reason = report.verdict, report.reason
     if identity is not None and not identity["holds"]:
@@ -48,7 +49,7 @@ def ruled(
 def _weighed(
     verdict: Verdict, reason: str, engines: Sequence[OracleRecord], counted: bool
 ) -> tuple[str, str]:
-    """Return the verdict after engines have supported ours or not."""
+    """Return the verdict after other engines have supported or contradicted our result."""
     for_us = [engine["name"] for engine in engines if engine["agrees"] is True]
     against = [engine for engine in engines if engine["agrees"] is False]
     if verdict is Verdict.DISAGREE:

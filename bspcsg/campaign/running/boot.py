@@ -1,7 +1,7 @@
-"""Starts a worker, and beside it what ends it with its runner.
+"""Starts a worker, and a process that ends the worker together with its runner.
 
-No part of the package is imported before: that takes a while, in which a runner can end, and starts
-threads, with which a process is not divided.
+No part of the package is imported before. Imports take a while, in which a runner can end, and
+start threads, and a process with threads must not fork.
 """
 
 import os
@@ -13,14 +13,14 @@ _MAX_DESCRIPTORS = 1024
 
 
 def end_with_runner() -> None:
-    """Start a process of this group that kills it when its input has no writer any more.
+    """Fork a process of this group that kills the group once nobody can write to its input.
 
-    A thread would wait for the lock of Python's, which another library may hold for minutes.
+    A thread would have to wait for Python's lock, which another library may hold for minutes.
     """
     if os.name != "posix" or os.getpgrp() != os.getpid() or os.fork():
         return
     try:
-        # Who reads what the worker says must not wait for the end of this process.
+        # Readers of the worker's output must not wait for the end of this process.
         os.closerange(1, _MAX_DESCRIPTORS)
         waiting = select.poll()
         waiting.register(0, 0)

@@ -1,4 +1,4 @@
-"""A child process that can be killed: what it does cannot hurt the runner."""
+"""A child process that can be killed, so that its failures cannot harm the runner."""
 
 import json
 import os
@@ -34,7 +34,7 @@ class CrashedError(Exception):
 
 
 class Child:
-    """A worker (see `worker`), started when it is first needed and after each crash.
+    """A worker (see `worker`), started on first use and again after each crash.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Child:
         Raises
         ------
         TimedOutError
-            If there is none in time.
+            If no answer arrives in time.
         CrashedError
             If the process ends before it answers.
         """
@@ -77,14 +77,14 @@ class Child:
         except queue.Empty:
             self._kill()
             raise TimedOutError from None
-        except OSError:  # it ended while it was spoken to
+        except OSError:  # it ended while the request was sent
             line = ""
         if not line:
             raise CrashedError(self._buried())
         return json.loads(line)
 
     def stop(self) -> None:
-        """End the process for good; an answer that is waited for does not come any more."""
+        """End the process for good; a pending answer will not arrive."""
         with self._lock:
             self._stopped = True
         self._kill()
@@ -115,8 +115,8 @@ class Child:
             env=_environment(),
             text=True,
             encoding="utf-8",
-            # A group of its own, so that what it has started dies with it, and Ctrl-C does not
-            # reach it.
+            # A group of its own, so that its child processes die with it, and Ctrl-C does not reach
+            # it.
             start_new_session=os.name == "posix",
         )
         listener = threading.Thread(target=_listen, args=(process, self._lines), daemon=True)
@@ -127,7 +127,7 @@ class Child:
         return process
 
     def _await_start(self) -> None:
-        """Wait until the process has imported what it needs: that is no part of a case's time."""
+        """Wait until the process has imported its modules, which no case's time includes."""
         try:
             if not self._lines.get(timeout=_START_TIMEOUT):
                 raise CrashedError(self._buried())
@@ -136,7 +136,7 @@ class Child:
             raise CrashedError(f"the process did not start within {_START_TIMEOUT:g} s") from None
 
     def _buried(self) -> str:
-        """Return how the process has ended, and forget it."""
+        """Return how the process ended, and forget the process."""
         process, code = self._process, None
         if process is not None:
             try:
@@ -158,13 +158,13 @@ class Child:
         if process is None:
             return
         if os.name == "posix":
-            # A group whose members have all ended is no more.
+            # All members of the group may have ended already.
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
         else:
             process.kill()
         process.wait()
-        # What was not sent any more cannot be.
+        # Closing may fail on unsent output.
         with suppress(OSError):
             held(process.stdin, "the process's input").close()
 
@@ -176,7 +176,7 @@ def _how(code: int | None) -> str:
 
 
 def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -> None:
-    """Pass the lines of a process on; an empty one says that there are no more."""
+    """Pass on the lines of a process; an empty one marks the end."""
     with held(process.stdout, "the process's output") as answers:
         for line in answers:
             lines.put(line)
@@ -184,7 +184,7 @@ def _listen(process: "subprocess.Popen[str]", lines: "queue.SimpleQueue[str]") -
 
 
 def _environment() -> dict[str, str]:
-    """Return the environment in which the child finds this very package."""
+    """Return the environment in which the child finds the same package."""
     home = str(Path(__file__).parents[3])
     paths = [home, *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
     return {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in paths if path)}

@@ -1,7 +1,7 @@
 """Answers from a cluster: the workers of Dask distributed, each with children of its own.
 
-Dask neither limits the time of a task nor survives what crashes its worker, so a task only passes
-a request to a child process and waits, as `bspcsg.campaign.pool` does on one machine.
+Dask neither limits the time of a task nor survives a crash of its worker. So a task only passes a
+request to a child process and waits, as `bspcsg.campaign.pool` does on one machine.
 """
 
 import json
@@ -19,7 +19,7 @@ from .pool import answer_of
 #: The longest wait for a scheduler, and for a worker while there is none, in seconds.
 _TIMEOUT = 30
 
-#: The time between two looks for answers, in seconds.
+#: The time between two checks for answers, in seconds.
 _POLL_INTERVAL = 0.05
 
 _children: dict[tuple[int, str], Child] = {}
@@ -27,7 +27,7 @@ _lock = threading.Lock()
 
 
 def answer_on_worker(request: Any, greeting: str, seconds: float) -> Any:
-    """Answer a request on a worker of the cluster, by the child of the thread that runs this."""
+    """Answer a request on a worker of the cluster, with the child of the current thread."""
     key = threading.get_ident(), greeting
     with _lock:
         if key not in _children:
@@ -75,8 +75,8 @@ class Cluster:
         Raises
         ------
         MissingPartError
-            If the scheduler cannot be reached; code "no_scheduler". If it has had no worker for
-            a while; code "no_workers".
+            If the scheduler cannot be reached; code "no_scheduler". If it has no worker for a
+            while; code "no_workers".
         """
         import distributed
 
@@ -99,7 +99,7 @@ class Cluster:
             client.close()
 
     def _await_one(self, completed: Any, client: Any) -> None:
-        """Wait until an answer is there, as long as somebody works on it."""
+        """Wait until an answer arrives, as long as there are workers."""
         seen = looked = time.monotonic()
         while not completed.has_ready():
             time.sleep(_POLL_INTERVAL)
@@ -126,7 +126,7 @@ class Cluster:
 
 
 def _result_of(future: Any) -> Any:
-    """Return the answer, or that the worker itself was lost."""
+    """Return the answer, or the failure if the worker itself was lost."""
     try:
         return future.result()
     except Exception as error:

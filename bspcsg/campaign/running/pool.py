@@ -1,4 +1,4 @@
-"""The pool that answers requests: children of this process, as many at once as it has been told."""
+"""A pool that answers requests in child processes, several at a time."""
 
 import queue
 import threading
@@ -15,23 +15,23 @@ class Answering(Protocol):
     def answers(
         self, requests: Sequence[Any], seconds: float
     ) -> Generator[tuple[int, Any], None, None]:
-        """Yield the number of each request and its answer as it comes.
+        """Yield the number of each request and its answer as it arrives.
 
-        An answer that never came is a dict with ``failure`` ("timeout" or "crash"), ``reason`` and
-        ``seconds``. Closing the iterator ends what is still under way.
+        A missing answer is replaced by a dict with ``failure`` ("timeout" or "crash"), ``reason``
+        and ``seconds``. Closing the iterator stops requests that are still running.
         """
         ...
 
 
 def answer_of(child: Child, request: Any, seconds: float) -> Any:
-    """Return a child's answer, or what became of the child."""
+    """Return a child's answer, or how the child failed."""
     began = time.perf_counter()
     try:
         return child.answer(request, seconds)
     except TimedOutError:
         kind, reason = "timeout", f"stopped after {seconds:g} s"
     except (CrashedError, OSError, ValueError) as error:
-        # Neither a process that cannot be started nor an answer that is none ends the campaign.
+        # Neither a process that does not start nor a malformed answer ends the campaign.
         kind, reason = "crash", str(error)
     spent = round(time.perf_counter() - began, 4)
     return {"failure": kind, "reason": reason, "seconds": spent}

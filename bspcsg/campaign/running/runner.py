@@ -1,4 +1,4 @@
-"""Cases in, records out: what was finished is on file before the next thing happens."""
+"""Runs cases and records the results: each is on file before anything else happens."""
 
 import os
 import platform
@@ -28,12 +28,12 @@ class CampaignPlan:
     ----------
     cases : sequence of Case
     known : dict of str to CaseRecord
-        Answers from an earlier run, by key; those cases are not asked again.
+        Answers from an earlier run, by key; their cases are not asked again.
     timeout : float
         Seconds for a case.
     keep : str
-        The cases whose meshes are kept: "interesting", "all", "none", or a number of others
-        besides.
+        The cases whose meshes are kept: "interesting", "all", "none", or the interesting ones and a
+        number of others.
     fail_fast : bool
         Stop at the first failure.
     """
@@ -46,12 +46,12 @@ class CampaignPlan:
 
     @property
     def open_cases(self) -> list[Case]:
-        """The cases that have to be asked."""
+        """The cases without a known answer."""
         return [case for case in self.cases if case.key not in self.known]
 
 
 def greeting(settings: EvaluationSettings, memory: int | None, threads: int) -> dict[str, Any]:
-    """Return what a worker is told first."""
+    """Return the first message to a worker."""
     told = {"settings": asdict(settings), "memory": memory, "threads": threads}
     return {**told, "folder": os.getcwd()}
 
@@ -62,16 +62,16 @@ def run_cases(
     journal: Journal | None,
     notice: Callable[[CaseRecord], None],
 ) -> list[CaseRecord]:
-    """Ask all cases that are open; return the records of all that were answered, now or before.
+    """Ask all open cases; return the records of all cases answered now or before.
 
     Parameters
     ----------
     plan : CampaignPlan
     answering : Answering
     journal : Journal or None
-        The journal that gets each record as it comes.
+        Gets each record as it arrives.
     notice : callable
-        Told each new record.
+        Called with each new record.
     """
     found = {case.key: plan.known[case.key] for case in plan.cases if case.key in plan.known}
     with closing(_records(plan, answering)) as records:
@@ -103,9 +103,9 @@ def _record_of(case: Case, answer: Any) -> CaseRecord:
 
 
 def _chosen(count: int, keep: str) -> set[int]:
-    """Return the numbers of cases whose meshes are kept however dull they are."""
+    """Return the numbers of cases whose meshes are kept even if they are not interesting."""
     wanted = count if keep == "all" else int(keep) if keep.isdecimal() else 0
-    # Spread over all of them, so that every kind is seen.
+    # Spread over all cases, so that every kind is included.
     return {number * count // wanted for number in range(min(wanted, count))} if wanted else set()
 
 
@@ -114,8 +114,8 @@ def survey(
 ) -> dict[Path, dict[str, Any]]:
     """Return for each file its ``triangles``, and why it is ``refused`` as a solid, or None.
 
-    A file on which the worker crashes or hangs counts as a solid without triangles: it stays in,
-    so that its cases say so, and the draw does not depend on how busy the machine is.
+    A file on which the worker crashes or hangs counts as a solid without triangles. It stays in, so
+    that its cases report the failure, and so that the draw does not depend on the machine's load.
     """
     requests = [{"survey": str(file)} for file in files]
     found: dict[Path, dict[str, Any]] = {}

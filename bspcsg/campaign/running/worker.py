@@ -1,7 +1,7 @@
 """The process that evaluates cases: a JSON line in, a JSON line out.
 
-Started by `boot`. When its input ends, because the runner has finished or was
-killed, it ends at once with everything it has started.
+Started by `boot`. When its input ends, because the runner has finished or was killed, it ends at
+once together with everything that it has started.
 """
 
 import json
@@ -24,7 +24,7 @@ def main() -> None:
     """Answer requests until there are no more."""
     lines: queue.SimpleQueue[str] = queue.SimpleQueue()
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    # What libraries print must not get between the answers.
+    # Output of libraries must not get between the answers.
     os.dup2(2, 1)
     started = json.loads(sys.stdin.readline())
     os.chdir(started["folder"])
@@ -65,7 +65,7 @@ def _answered(request: dict[str, Any], settings: EvaluationSettings) -> Any:
 
 
 def _surveyed(file: str) -> dict[str, Any]:
-    """Say whether a file is a solid, and of how many triangles."""
+    """Say whether a file is a solid, and how many triangles it has."""
     try:
         solid = Solid.load(file)
         return {"file": file, "triangles": len(solid.to_mesh().faces), "refused": None}

@@ -1,4 +1,4 @@
-"""Trees in which moves stand around single parts."""
+"""Moves transforms inwards, to single parts."""
 
 from dataclasses import replace
 
@@ -10,17 +10,18 @@ from ..syntax.tree import Node, Value
 #: Nodes that combine their children where they stand.
 COMBINING = frozenset({"group", "union", "color", "render", "difference", "intersection"})
 
-#: The largest number of moves inside one another that are taken apart: each part repeats all of the
-#: moves around it.
+#: The largest number of nested moves that are distributed to parts: each part repeats all moves
+#: around it.
 _MAX_NESTED_MOVES = 64
 
 
 def moved_apart(root: Node) -> Node:
-    """Return a tree that says the same, in which what is combined is moved part by part.
+    """Return an equivalent tree in which the operands of set operations are moved one by one.
 
-    Moves go through set operations. So do maps that scale, mirror or swap axes, and flatten none:
-    the parts inside of them are parts of the model, and faces across axes stay such. What is turned
-    otherwise stays one part, whose faces would be bent by a lattice. Nodes may nest to any depth.
+    Matrices that shift, scale, mirror or swap axes, and flatten none, move inwards through set
+    operations: the parts inside are parts of the model, and axis-aligned faces stay axis-aligned. A
+    body that is rotated otherwise stays one part, because a lattice would bend the faces of its
+    parts. Nodes may nest to any depth.
     """
     waiting: list[tuple[Node, tuple[Node, ...], bool]] = [(root, (), False)]
     done: list[Node] = []
@@ -51,7 +52,7 @@ def _combined(node: Node, children: tuple[Node, ...]) -> Node:
 
 
 def _keeps_axes(node: Node) -> bool:
-    """Say whether a node only moves its children by a matrix that has one number for each axis."""
+    """Say whether a node is a matrix whose linear part has one entry in each row and column."""
     if node.name != "multmatrix" or len(node.arguments) != 1:
         return False
     [argument] = node.arguments

@@ -1,4 +1,4 @@
-"""Outlines whose edges are divided, so that walls that turn or shrink follow their curves."""
+"""Divides the edges of outlines, so that walls that turn or shrink follow their curves."""
 
 import heapq
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ class Stretch(NamedTuple):
 
     @property
     def is_even(self) -> bool:
-        """True if walls stay plane, so that nothing is gained by dividing them."""
+        """True if walls stay plane, so that dividing them gains nothing."""
         return self.twist == 0 and self.scale[0] == self.scale[1]
 
     def lengths(self, vectors: FloatArray) -> FloatArray:
@@ -50,10 +50,10 @@ class Stretch(NamedTuple):
 
 
 def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
-    """Return an outline with up to so many edges, where it has fewer: OpenSCAD's `segments`.
+    """Divide the edges of an outline until it has up to `segments`, as OpenSCAD does.
 
-    Whichever edge has the longest parts is divided once more; edges that are alike are divided
-    together or not at all, so that what is symmetric stays so.
+    The edge with the longest parts is divided once more, again and again. Edges of about the same
+    length are divided together or not at all, which keeps symmetry.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def divided(outline: FloatArray, segments: int, stretch: Stretch) -> FloatArray:
 
 
 def _counts(lengths: Sequence[float], segments: int) -> IndexArray:
-    """Return into how many parts edges of these lengths are divided."""
+    """Return the number of parts of each edge, given the edges' lengths."""
     counts = np.ones(len(lengths), dtype=np.int64)
     longest = [(-length / 1.5, edge) for edge, length in enumerate(lengths)]
     heapq.heapify(longest)
@@ -85,6 +85,6 @@ def _counts(lengths: Sequence[float], segments: int) -> IndexArray:
             break
         for edge in alike:
             counts[edge] += 1
-            # Half way between the lengths of its parts now and once it is divided again.
+            # Midway between the lengths of its parts now and after one more division.
             heapq.heappush(longest, (-lengths[edge] / (counts[edge] + 0.5), edge))
     return counts

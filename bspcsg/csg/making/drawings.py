@@ -1,4 +1,4 @@
-"""Drawings as OpenSCAD imports them: arcs in as many chords as circles get."""
+"""DXF drawings as OpenSCAD imports them: arcs get as many chords as circles."""
 
 import math
 from collections.abc import Iterable, Iterator
@@ -27,7 +27,7 @@ _JOINED = 2.0**-10
 def dxf_region(
     path: Path, layer: str, origin: FloatArray, scale: float, arguments: Arguments, lost: LeftOut
 ) -> Region:
-    """Return what the outlines of a DXF file surround, by the even-odd rule.
+    """Return the region inside the outlines of a DXF file, by the even-odd rule.
 
     Lines, light polylines, circles, arcs, ellipses and inserted blocks count, as in OpenSCAD;
     outlines that stay open are closed by a chord. With nothing in the model space, the paper space
@@ -43,14 +43,14 @@ def dxf_region(
     scale : float
         Multiplied then.
     arguments : Arguments
-        Those of the node, which say how fine arcs are.
+        The arguments of the node, which say how fine arcs are.
     lost : LeftOut
-        Gets what is left out.
+        Collects what is left out.
 
     Raises
     ------
     FormatError
-        If the file is no DXF, or the drawing would have too many corners; code ``"too_large"``.
+        If the file is not DXF, or the drawing would have too many corners; code ``"too_large"``.
     """
     document = read_document(path)
     with format_errors(str(path), "DXF"):
@@ -128,7 +128,7 @@ def _walk(
 
 
 def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
-    """Yield entities, and those of inserted blocks in the place of these."""
+    """Yield entities; inserted blocks are replaced by their entities."""
     waiting: list[Iterator[tuple[Any, bool]]] = [((entity, True) for entity in entities)]
     left = MAX_BLOCK_ENTITIES
     while waiting:
@@ -141,7 +141,7 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
         elif not is_placed or (entity.dxftype() == "INSERT" and len(waiting) > _MAX_BLOCK_DEPTH):
             lost.add(entity.dxftype())
         elif entity.dxftype() == "INSERT":
-            # OpenSCAD knows no rows of them.
+            # OpenSCAD does not repeat blocks in rows.
             lost.add("INSERT", entity.mcount - 1)
             waiting.append(inserted(entity, rows=False))
         else:
@@ -151,7 +151,7 @@ def _flat(entities: Iterator[Any], lost: LeftOut) -> Iterator[Any]:
 def _limited(
     entities: Iterable[Any], arguments: Arguments, scale: float, lost: LeftOut
 ) -> Iterator[Any]:
-    """Yield the chains of all entities, as long as they are not too many corners together."""
+    """Yield the chains of all entities; raise an error if they have too many corners."""
     corners = 0
     for entity in entities:
         if entity.dxftype() not in _CURVES and entity.dxftype() != WINDOW:

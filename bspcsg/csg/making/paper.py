@@ -25,10 +25,10 @@ _LENGTH = re.compile(r"\s*([0-9.]+(?:[eE][+-]?\d+)?)\s*([a-zA-Z%]*)\s*")
 #: Chords of a Bézier curve, and of a quarter of a circle or an ellipse.
 _CURVE_STEPS, _QUARTER_STEPS = 20, 10
 
-#: Chords of half a turn of another arc, which has four more.
+#: Chords per half turn of any other arc, which gets four more.
 _TURN_STEPS = 10
 
-#: The rest that rounding leaves of a whole number of steps.
+#: Allowance for rounding in a number of steps.
 _ROUNDING = 1e-6
 
 #: The smallest width of a line in user units. A line with a smaller one is drawn one unit wide.
@@ -48,13 +48,12 @@ class _Page:
 
 
 def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
-    """Return the shapes of an SVG file as OpenSCAD has them.
+    """Return the shapes of an SVG file as OpenSCAD imports them.
 
-    What is closed is filled, whatever its fill says, and what is open becomes as wide as its
-    stroke; curves have OpenSCAD's corners, whose number does not depend on their size. The view box
-    is fitted into its width and height, as browsers do; without a view box, user units count as
-    they are. Style sheets and uses of shapes do not count. What is hidden is left out; OpenSCAD
-    2021.01 draws it.
+    Closed paths are filled, whatever their fill; open paths become as wide as their stroke. Curves
+    have OpenSCAD's corners, whose number does not depend on their size. The view box is fitted into
+    width and height, as in browsers; without a view box, user units count as they are. Style sheets
+    and ``use`` elements are ignored. Hidden shapes are left out; OpenSCAD 2021.01 draws them.
 
     Parameters
     ----------
@@ -64,7 +63,7 @@ def svg_region(path: Path, dpi: float, centered: bool, lost: LeftOut) -> Region:
     centered : bool
         True if the middle of the drawing is at the origin, rather than a corner of the page.
     lost : LeftOut
-        Gets what is left out.
+        Collects what is left out.
     """
     region = _drawn(path, lost)
     page = _page(path, dpi)
@@ -92,14 +91,14 @@ def _drawn(path: Path, lost: LeftOut) -> Region:
 
 
 def _prepare(root: ElementTree.Element) -> None:
-    """Take away what does not count, and the view box, which is looked at apart."""
+    """Remove elements that are ignored, and the view box, which is read separately."""
     for parent in list(root.iter()):
         parent[:] = [child for child in parent if name_of(child) != "style"]
         if name_of(parent) == "switch":
             # All of its children are drawn.
             parent.tag = parent.tag.removesuffix("switch") + "g"
         if name_of(parent) == "use":
-            # It shows nothing then, and is told.
+            # It then shows nothing, and is reported.
             parent.attrib = {key: parent.attrib[key] for key in parent.attrib if key not in HREF}
     for name in ("viewBox", "width", "height", "x", "y", "preserveAspectRatio"):
         root.attrib.pop(name, None)
@@ -122,7 +121,7 @@ def _steps_of(shapes: Sequence[Shape]) -> Steps:
 
 
 def _meets(corners: FloatArray) -> bool:
-    """Say whether a subpath that nothing closes ends where it begins."""
+    """Say whether a subpath without a closing command ends where it begins."""
     return len(corners) > 2 and bool(np.hypot(*(corners[0] - corners[-1])) <= _CLOSED)
 
 
@@ -152,7 +151,7 @@ def _page(path: Path, dpi: float) -> _Page:
 
 
 def _length(text: str, dpi: float) -> float | None:
-    """Return a length in millimetres; None for what is missing or relative."""
+    """Return a length in millimetres; None if it is missing or relative."""
     match = _LENGTH.fullmatch(text)
     if match is None or match.group(2) == "%":
         return None

@@ -1,4 +1,4 @@
-"""The mending of what six digits took away: inexact rotations, and faces that no longer meet."""
+"""Undoes rounding to six digits: makes rotations exact, and lets faces meet again."""
 
 import math
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from ...solid.solid import Solid
 #: Entries of a matrix may be this far from a rotation's to be taken for one.
 NEARLY = 1e-5
 
-#: OpenSCAD writes so many digits.
+#: The number of digits that OpenSCAD writes.
 DIGITS = 6
 
 
@@ -30,7 +30,7 @@ def polished_matrix(matrix: FloatArray) -> FloatArray:
     Notes
     -----
     The nearest orthogonal matrix is U V' of the singular value decomposition U S V' (Schönemann
-    1966). Mirror images stay such. Entries that are 0 or ±1 up to rounding become so.
+    1966). Mirror images stay mirror images. Entries that are 0 or ±1 up to rounding become exact.
     """
     u, _, v = np.linalg.svd(matrix[:3, :3])
     rotation = u @ v
@@ -51,7 +51,7 @@ class Polish(NamedTuple):
     pitch : int or None
         Exponent of the step of the lattice that corners were moved to; None if none had to move.
     moved : float
-        The farthest that a corner went, in model units: each moves once, by half a step
+        The largest distance that a corner moved, in model units: each moves once, by half a step
         along each axis at most, √3/2 · 10**pitch in all.
     """
 
@@ -60,16 +60,16 @@ class Polish(NamedTuple):
 
 
 def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | None:
-    """Return the finest lattice that brings most of different parts together; None if none does.
+    """Return the finest lattice on which most of different parts coincides; None if none helps.
 
-    What coincides within one part was told apart on purpose, and counts against a lattice. Lattices
-    go up to one whose step is a unit of the sixth digit of the largest coordinate: nothing was
-    written finer there, so what differs by rounding alone differs by less.
+    Things that would coincide within one part are distinct on purpose, and count against a lattice.
+    The coarsest lattice has a step of one unit of the sixth digit of the largest coordinate: things
+    that differ only by rounding differ by less.
 
     Parameters
     ----------
     kinds : sequence of sequence of (n, d) float64
-        Of each kind of thing that may coincide, such as corners, those of each part.
+        For each kind of thing that may coincide, such as corners, the things of each part.
     finest : int
         Exponent of the step of the lattice that they lie on.
     """
@@ -85,14 +85,14 @@ def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | 
 
 
 def _gain(parts: Sequence[FloatArray], pitch: int) -> int:
-    """Return what parts share on a lattice less what each loses on it, but for a constant."""
+    """Return how much parts share on a lattice, less how much each loses, up to a constant."""
     rounded = [np.unique(np.round(rows, -pitch), axis=0) for rows in parts]
-    # Each part's things count once for what they share, and once for what is left of them.
+    # Counted twice: once for what parts share, and once for what they do not lose.
     return 2 * sum(map(len, rounded)) - len(np.unique(np.concatenate(rounded), axis=0))
 
 
 def corners_and_levels(bodies: Sequence[Solid | Region]) -> list[list[FloatArray]]:
-    """Return what may coincide: corners, and for each axis the places of faces across it."""
+    """Return what may coincide: corners, and the coordinates of faces perpendicular to an axis."""
     meshes = [body.to_mesh() for body in bodies if isinstance(body, Solid)]
     figures = [body.to_polygons() for body in bodies if isinstance(body, Region)]
     corners = [mesh.vertices for mesh in meshes]
@@ -102,7 +102,7 @@ def corners_and_levels(bodies: Sequence[Solid | Region]) -> list[list[FloatArray
 
 
 def _levels(mesh: Mesh, axis: int) -> FloatArray:
-    """Return where faces across an axis lie on it: (n, 1)."""
+    """Return the (n, 1) coordinates along an axis of the faces perpendicular to it."""
     along = mesh.vertices[mesh.faces][:, :, axis]
     levels: FloatArray = along[np.ptp(along, axis=1) == 0][:, :1]
     return levels
@@ -114,9 +114,9 @@ def pitch_of(body: Solid | Region) -> int:
 
 
 def snapped(body: Solid | Region, pitch: int) -> tuple[Solid | Region, float]:
-    """Return a body with its corners on a lattice, and how far the farthest moved.
+    """Return a body with its corners on a lattice, and the largest distance that one moved.
 
-    One of which a piece or a hole would lose more than half of its size stays as it is.
+    A body stays as it is if a piece or a hole of it would lose more than half its size.
     """
     if isinstance(body, Region):
         loops = body.to_polygons()
@@ -134,7 +134,7 @@ def snapped(body: Solid | Region, pitch: int) -> tuple[Solid | Region, float]:
 
 
 def _survive(before: ArrayLike, after: ArrayLike) -> bool:
-    """Say whether all signed sizes stay what they were, by half at least."""
+    """Say whether all signed sizes keep at least half of their value."""
     whole = np.asarray(before)
     return bool((np.asarray(after) * np.sign(whole) >= np.abs(whole) / 2).all())
 

@@ -14,7 +14,7 @@ from ..syntax.arguments import MAX_NUMBER, Arguments
 #: The smallest angle of a side in degrees, and its smallest length.
 _MIN_SIDE = 0.01
 
-#: Lengths below are zero: a 2**20th of a unit.
+#: Lengths below this count as zero: a 2**20th of a unit.
 _NOTHING = 2.0**-20
 
 
@@ -35,7 +35,7 @@ class Fineness:
 
     @classmethod
     def of(cls, arguments: Arguments) -> "Fineness":
-        """Return those of a node."""
+        """Return the special variables of a node."""
         fn = arguments.value("$fn")
         if isinstance(fn, float) and not math.isfinite(fn):
             # OpenSCAD makes triangles of it.
@@ -80,7 +80,7 @@ class Fineness:
         return max(min(math.ceil(turn / self.fa), math.ceil(length / self.fs)), least)
 
     def _step_within(self, radius: float) -> float:
-        """Return the angle whose chord leaves a circle by what is allowed, in radians."""
+        """Return the angle in radians whose chord is `fe` away from a circle at most."""
         return 2 * math.acos(max(1 - self.fe / radius, 0.0))
 
     def taper_slices(self, shift: float, height: float) -> float:
@@ -100,7 +100,7 @@ class Fineness:
 
 
 def _step(arguments: Arguments, name: str, default: float) -> float:
-    """Return the smallest angle or length of a side; what is no number counts as very small."""
+    """Return the smallest angle or length of a side; NaN counts as very small."""
     value = arguments.value(name)
     if isinstance(value, float) and not math.isfinite(value):
         return MAX_NUMBER if value == math.inf else _MIN_SIDE

@@ -1,1 +1,1 @@
-"""The nodes of a script, each with what it evaluates to."""
+"""The evaluation of each kind of node."""

@@ -24,10 +24,10 @@ from ..syntax.tree import Node, Value
 from .registry import Evaluation, Geometry, node
 from .signature import Signature
 
-#: The pixels per inch of drawings that do not give them, and the smallest number that is accepted.
+#: The default, and the smallest accepted number, of pixels per inch of a drawing.
 _DEFAULT_DPI, _MIN_DPI = 72.0, 0.001
 
-#: Arguments that concern some kinds of files, with the values that dumps of OpenSCAD have anyway.
+#: Arguments that only some kinds of files use, with the values that OpenSCAD always dumps.
 _ASKING_NOTHING: dict[str, Value] = {
     "id": "", "layer": "", "origin": (0.0, 0.0), "scale": 1.0, "dpi": _DEFAULT_DPI,
 }  # fmt: skip
@@ -71,15 +71,15 @@ def import_file(owner: Node, children: list[Geometry], run: Evaluation) -> Geome
 def _tell_of_unused(
     owner: Node, arguments: Arguments, run: Evaluation, used: tuple[str, ...]
 ) -> None:
-    """Tell of arguments that do not concern this kind of file, and ask for something."""
+    """Warn of arguments that this kind of file does not use, unless they have default values."""
     for name, nothing in _ASKING_NOTHING.items():
         if name not in used and arguments.value(name) not in (None, nothing):
             run.warn(owner, f"its {name} does not count for such a file, all of which is read")
 
 
 def drawing_of(owner: Node, arguments: Arguments, run: Evaluation) -> Region:
-    """Return the DXF file that an extrusion names, as scripts of before 2013 have it."""
-    # What an extrusion scales is its upper end.
+    """Return the DXF drawing that an extrusion names, as in scripts from before 2013."""
+    # The `scale` of an extrusion is that of its upper end.
     return _dxf(_path(arguments, run), owner, arguments, run, 1.0)
 
 
@@ -102,7 +102,7 @@ def _dxf(path: Path, owner: Node, arguments: Arguments, run: Evaluation, scale: 
 
 
 def _with_warning(owner: Node, run: Evaluation, name: str, lost: LeftOut, region: Region) -> Region:
-    """Return the region of a drawing; the caller is told what it lacks."""
+    """Return the region of a drawing, and warn of what was left out."""
     words = lost.words(region)
     if words:
         run.warn(owner, f"{name}: {words}")
@@ -127,14 +127,14 @@ def surface(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 def _path(arguments: Arguments, run: Evaluation) -> Path:
     name = arguments.text("file")
     path = run.folder / name
-    # What lies elsewhere is refused first, so that nobody learns whether it is there.
+    # Refuse forbidden files first, so that nobody learns whether they exist.
     if name and "\0" not in name and not _is_allowed(path, run):
         message = (
             f"the file “{name}” lies outside the script's folder; --allow-path DIR (in Python,"
             " allow_paths) names further folders that may be read."
         )
         raise arguments.error(message, "forbidden_path")
-    # Names that no file can have, for they are too long, are no files either.
+    # A name that is too long for any file counts as a missing file.
     if not name or not os.path.isfile(path):
         message = f"there is no file “{name}”; names are relative to the script's folder."
         raise arguments.error(message, "missing_file")
@@ -142,7 +142,7 @@ def _path(arguments: Arguments, run: Evaluation) -> Path:
 
 
 def _is_allowed(path: Path, run: Evaluation) -> bool:
-    """Say whether a file, links followed, lies where the script may read."""
+    """Say whether a file is in an allowed folder once links are resolved."""
     try:
         target = path.resolve()
         return any(target.is_relative_to(one) for one in (run.folder.resolve(), *run.allowed))

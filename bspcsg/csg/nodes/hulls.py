@@ -29,7 +29,7 @@ def hull(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("minkowski")
 def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Return the sums of a point of each child: the first swept along the others.
+    """Return the Minkowski sum of the children: the first one swept along the others.
 
     Empty solids do not count, as in OpenSCAD.
     """
@@ -47,7 +47,8 @@ def minkowski(owner: Node, children: list[Geometry], run: Evaluation) -> Geometr
 def _summands(children: list[Geometry], regions: list[Region]) -> list[Region]:
     """Return the plane figures that are summed; a lone empty one if the sum is empty.
 
-    OpenSCAD leaves empty operands out, but in the plane not the first one, nor the only other one.
+    OpenSCAD leaves out empty operands. In the plane the sum is empty if the first operand is, or if
+    fewer than two are left.
     """
     figures = [region for region in regions if not region.is_empty]
     first = children[0]

@@ -9,7 +9,7 @@ from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .registry import Geometry
 
-#: Nodes that make solids, and such as make plane figures.
+#: Nodes that make solids, and nodes that make plane figures.
 _SOLIDS = frozenset(
     {
         "cube", "sphere", "cylinder", "polyhedron", "surface", "linear_extrude", "rotate_extrude",
@@ -19,15 +19,15 @@ _SOLIDS = frozenset(
 _FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection", "fill"})
 _DRAWINGS = (".dxf", ".svg")
 
-#: Codes of errors after which OpenSCAD goes on without the node.
+#: Codes of errors after which OpenSCAD continues without the node.
 _OPENSCADS = frozenset({"missing_file", "missing_argument", "not_finite"})
 
 
 def is_left_out(error: BspcsgError, *, lenient: bool) -> bool:
-    """Say whether a node that fails so is left out with a warning.
+    """Say whether a node that fails with this error is left out with a warning.
 
-    In a lenient evaluation each is whose own fault it is; defects of this package and missing parts
-    of the installation never are.
+    A lenient evaluation leaves out every node that is itself at fault, but never hides defects of
+    this package or missing parts of the installation.
     """
     if error.code in _OPENSCADS:
         return True

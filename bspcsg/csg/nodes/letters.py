@@ -41,7 +41,7 @@ _TEXT = Signature(
 
 @node("text", takes=_TEXT)
 def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Write a line of text; fonts that are not there are replaced by the package's own."""
+    """Write a line of text; missing fonts are replaced by the package's own."""
     del children
     arguments = run.arguments(owner)
     string, size = arguments.text("text", ""), arguments.number("size", 10.0)
@@ -67,7 +67,7 @@ def text(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 
 def _ink(file: FontFile) -> float:
-    """Return how much larger FreeType makes a font that wants its em to be whole pixels."""
+    """Return FreeType's scale factor for a font whose em must be a whole number of pixels."""
     pixels = EM / _PIXEL
     return round(pixels) / pixels if wants_whole_pixels(file) else 1.0
 
@@ -84,7 +84,7 @@ def _font(owner: Node, arguments: Arguments, run: Evaluation) -> FontFile:
 def _choice(
     owner: Node, arguments: Arguments, run: Evaluation, name: str, default: str, known: Any
 ) -> Any:
-    """Return one of the words that an argument may be; another counts as the default."""
+    """Return an argument that must be one of some words; any other value counts as the default."""
     word = arguments.text(name, default)
     if word == "default":  # which dumps of OpenSCAD have since 2024
         return default

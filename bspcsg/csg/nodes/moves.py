@@ -23,7 +23,7 @@ _MAX_SAFE_ENTRY = 1e15
 
 @node("multmatrix", takes=Signature(("m",)), makes_corners=False)
 def multmatrix(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Move the children by a matrix; what it flattens is left out."""
+    """Transform the children by a matrix; leave out those that it flattens."""
     body = union_of(owner, children, run)
     arguments = run.arguments(owner)
     matrix = _matrix(arguments)
@@ -43,12 +43,12 @@ def _moved(owner: Node, body: Geometry, matrix: FloatArray, run: Evaluation) -> 
         return body.transform(matrix[:2, [0, 1, 3]])
     moved = body.transform(matrix)
     if np.abs(matrix).max() > _MAX_SAFE_ENTRY:
-        moved.tree  # noqa: B018  builds it, so that what no lattice holds is this node's error
+        moved.tree  # noqa: B018  builds it, so that errors name this node
     return moved
 
 
 def _flat_map(matrix: FloatArray) -> FloatArray:
-    """Return what the matrix does in the plane z = 0, as a map of space."""
+    """Return the action of the matrix on the plane z = 0, as a map of space."""
     flat = np.eye(4)
     flat[:2, :2] = matrix[:2, :2]
     return flat

@@ -13,11 +13,11 @@ from .registry import Evaluation, Geometry, node
 from .sets import union_of
 from .signature import Signature
 
-#: Nodes that hand down an only child as it is.
+#: Nodes that do not clean the outlines of an only child.
 _PASSING = frozenset({"group", "union", "color", "render", "multmatrix", "resize", "difference",
                       "intersection"})  # fmt: skip
 
-#: Figures that are as the script has them.
+#: Figures whose outlines are exactly those of the script.
 _PRIMITIVE = frozenset({"square", "circle", "polygon"})
 
 
@@ -46,7 +46,7 @@ def circle(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("polygon", takes=Signature(("points", "paths", "convexity")))
 def polygon(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Make what is inside an odd number of times of one path around all points, or of `paths`."""
+    """Fill one path through all points, or `paths`, by the even-odd rule."""
     del children
     arguments = run.arguments(owner)
     points = np.array(arguments.points("points", 2)).reshape(-1, 2)
@@ -84,7 +84,7 @@ def offset(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 @node("fill")
 def fill(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Fill the holes of the children, and what is in these."""
+    """Fill the holes of the children, with everything inside the holes."""
     figure = union_of(owner, run.figures(owner, children), run)
     if not isinstance(figure, Region):
         return None
@@ -93,7 +93,7 @@ def fill(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
 
 
 def _is_combined(owner: Node) -> bool:
-    """Say whether the figure in a node is made of others, so that OpenSCAD has cleaned it."""
+    """Say whether a node's figure is computed from others, so that OpenSCAD has cleaned it."""
     while True:
         children = [child for child in owner.children if not child.is_ignored]
         if len(children) != 1:

@@ -21,5 +21,5 @@ def projection(owner: Node, children: list[Geometry], run: Evaluation) -> Geomet
 
 
 def _section(body: Solid) -> Region:
-    """Return the section of the closed body: what touches the plane from either side counts."""
+    """Return the section of the closed body, with faces that touch the plane from either side."""
     return body.slice(0) | body.mirror((0, 0, 1)).slice(0)

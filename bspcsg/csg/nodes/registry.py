@@ -18,7 +18,7 @@ from ..syntax.arguments import Arguments
 from ..syntax.tree import Node
 from .signature import Signature
 
-#: The shape that a node stands for; None is nothing at all, which has no dimension.
+#: The geometry of a node; None is nothing at all, which has no dimension.
 Geometry: TypeAlias = Solid | Region | None
 
 
@@ -30,7 +30,7 @@ _BOUND_NOTHING = frozenset({"not_closed", "empty_mesh"})
 
 
 class CsgWarning(UserWarning):
-    """Something in a script was left out, as OpenSCAD leaves it out."""
+    """Something in a script was left out, as OpenSCAD does."""
 
 
 @dataclass
@@ -44,24 +44,25 @@ class Evaluation:
     folder : Path
         The folder in which imported files are looked for.
     allowed : tuple of Path
-        Folders beside it, links followed, in which imported files may lie.
+        Other folders from which files may be imported, with links resolved.
     polish : bool
-        True if matrices are made exact rotations where they nearly are.
+        True to turn matrices that are nearly rotations into exact ones.
     on_invalid : {"error", "warn", "repair"}
         The treatment of polyhedra and imported meshes that are not closed: error, left out, or
         closed.
     lenient : bool
         True if nodes that cannot be made are left out.
     explained : callable
-        Adds to a message that begins with a place what is known about that.
+        Takes a message that begins with a place, and adds what is known about the place.
     united : dict
         Unions of plane figures by their `id`, each with the figures that it is made of.
     in_hull : bool
         True while a child of a hull is made, of which only the corners count.
     loose : dict
-        Empty solids for meshes in hulls that bound nothing by their `id`, each with its corners.
+        Empty solids that stand for meshes in hulls that bound nothing, by `id`, each with the
+        corners of its mesh.
     told : set of str
-        The messages that the caller has heard.
+        The warnings that were issued already.
     """
 
     script: str = "<csg>"
@@ -81,40 +82,40 @@ class Evaluation:
         return Arguments(node, self.script, RECIPES[node.name].takes.order)
 
     def tell_of_arguments(self, node: Node) -> None:
-        """Tell the caller of arguments of a node that do not count."""
+        """Warn of the arguments of a node that are ignored."""
         if node.name in RECIPES:
             for complaint in RECIPES[node.name].takes.complaints(node):
                 self.warn(node, complaint)
 
     def figures(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
-        """Return the children of a node that takes plane figures; solids are left out and told."""
+        """Return the children of a node that takes plane figures; warn of solids among them."""
         figures: list[Geometry] = [child for child in children if not isinstance(child, Solid)]
         if len(figures) < len(children):
             self.warn(owner, "its children that are solids are ignored")
         return figures
 
     def solids(self, owner: Node, children: list[Geometry]) -> list[Geometry]:
-        """Return the children of a node that takes solids; plane figures are left out and told."""
+        """Return the children of a node that takes solids; warn of plane figures among them."""
         solids: list[Geometry] = [child for child in children if not isinstance(child, Region)]
         if len(solids) < len(children):
             self.warn(owner, "its children that are plane figures are ignored")
         return solids
 
     def parts_of(self, figure: Region) -> list[Region]:
-        """Return the figures whose union a figure is; itself if it is none."""
+        """Return the figures that a union was made of; any other figure alone."""
         return self.united[id(figure)][1] if id(figure) in self.united else [figure]
 
     def corners_or(self, solid: Solid) -> Solid | FloatArray:
-        """Return the corners of a mesh in a hull that bounds nothing, or the solid that it is."""
+        """Return the corners of a mesh in a hull that bounds nothing; any other solid itself."""
         return self.loose[id(solid)][1] if id(solid) in self.loose else solid
 
     def warn(self, node: Node, message: str) -> None:
-        """Tell the caller what was left out."""
+        """Warn that something at a node was left out."""
         place = node.place
         self.tell(f"{self.script}:{place.line}:{place.column}: {node.name}(): {message}")
 
     def tell(self, message: str) -> None:
-        """Tell the caller what was left out, once, by a message that names its place."""
+        """Issue a warning that names its place, each message once."""
         # A polished model is evaluated twice.
         if message in self.told:
             return
@@ -122,10 +123,10 @@ class Evaluation:
         warnings.warn(harmless(self.explained(message)), CsgWarning, stacklevel=2)
 
     def closed_solid(self, node: Node, vertices: Any, faces: Any) -> Solid | None:
-        """Return the solid of a mesh from outside, whichever way round it is oriented.
+        """Return the solid of a mesh that the user gave, oriented either way.
 
-        One that is not closed is an error, or left out or closed with a warning; in a hull its
-        corners are kept.
+        A mesh that is not closed is an error, or is left out or repaired with a warning; in a hull
+        its corners are kept.
         """
         try:
             solid = Solid(vertices, faces, winding="nonzero")
@@ -150,9 +151,9 @@ class Evaluation:
     def same_kind(
         self, node: Node, children: Sequence[Geometry]
     ) -> tuple[list[Solid], list[Region]]:
-        """Return the solids or the regions among the children, whichever comes first.
+        """Return the solids or regions among the children, whichever the first one is.
 
-        Children of the other dimension do not count, as in OpenSCAD.
+        The others are ignored with a warning, as in OpenSCAD.
         """
         there = [child for child in children if child is not None]
         solids = [child for child in there if isinstance(child, Solid)]

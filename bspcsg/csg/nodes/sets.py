@@ -18,10 +18,10 @@ def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry
         return setops.union(solids)
     if len(regions) <= 1:
         return regions[0] if regions else None
-    # Outlines wind once around what is inside: all of them together wind at least once.
+    # Outlines wind once around the inside, so all of them wind at least once around the union.
     loops = [loop for region in regions for loop in region.to_polygons()]
     union = Region(loops, pitch=min(region.pitch for region in regions))
-    # It is kept beside its parts, so that no other figure takes its `id`.
+    # Kept with its parts, so that no other figure gets its `id`.
     run.united[id(union)] = union, [part for region in regions for part in run.parts_of(region)]
     return union
 
@@ -29,13 +29,13 @@ def union_of(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry
 @node("group", "union", "render", makes_corners=False)
 @node("color", takes=Signature(("c", "alpha")), makes_corners=False)
 def group(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Unite the children; colours and hints for the preview make no difference."""
+    """Unite the children; ignore colours and hints for the preview."""
     return union_of(owner, children, run)
 
 
 @node("difference", makes_corners=False)
 def difference(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
-    """Take all children but the first from the first; if that is nothing, so is the result."""
+    """Subtract all other children from the first; if the first is nothing, so is the result."""
     if not children or children[0] is None:
         return None
     solids, regions = run.same_kind(owner, children)

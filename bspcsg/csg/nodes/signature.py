@@ -1,4 +1,4 @@
-"""The arguments that a node knows, and what is said of others."""
+"""The arguments that a node knows, and complaints about others."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ..syntax.tree import SPECIAL, Argument, Node, Value
 
-#: What every node may have: special variables, of which some concern the preview alone.
+#: Special variables, which every node may have; some of them concern the preview only.
 _EVERYWHERE = frozenset(
     {*SPECIAL, "$t", "$preview", "$vpr", "$vpt", "$vpd", "$vpf", "convexity"}
 )  # fmt: skip
@@ -19,11 +19,11 @@ class Signature:
     Parameters
     ----------
     order : tuple of str
-        The names that arguments without one take, one after another.
+        The names that positional arguments take, one after another.
     named : tuple of str
-        Those that go by their names only.
+        Arguments that are given by name only.
     beside : tuple of (str, tuple of str)
-        Arguments, each with others: where all of these are given, it does not count.
+        Arguments, each with others that override it if all of them are given.
     """
 
     order: tuple[str, ...] = ()
@@ -31,7 +31,7 @@ class Signature:
     beside: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
     def complaints(self, node: Node) -> Iterator[str]:
-        """Yield what is wrong with a node's arguments: such as are passed over."""
+        """Yield a complaint for each argument of a node that is ignored."""
         names = self._names(node.arguments)
         given = Counter(name for name in names if name is not None)
         for name, count in given.items():
@@ -48,7 +48,7 @@ class Signature:
                 yield f"its {name} does not count beside {' and '.join(others)}"
 
     def _names(self, arguments: tuple[Argument, ...]) -> list[str | None]:
-        """Return the names of arguments, None for those that stand behind the last of the order."""
+        """Return the names of arguments; None for positional ones beyond the end of `order`."""
         left = iter(self.order)
         return [next(left, None) if one.name is None else one.name for one in arguments]
 
@@ -58,5 +58,5 @@ class Signature:
 
 
 def _asks(value: Value) -> bool:
-    """Say whether a value asks for something: undef and false do not."""
+    """Say whether a value is set: undef and false are not."""
     return value is not None and value is not False

@@ -18,7 +18,7 @@ from .registry import Evaluation, Geometry, node
 from .sets import union_of
 from .signature import Signature
 
-#: What scripts of before 2013 say of the drawing that an extrusion names.
+#: Arguments of scripts from before 2013 for the drawing that an extrusion names.
 _DRAWING = ("file", "layer", "origin", "timestamp")
 
 _LINEAR = Signature(
@@ -44,9 +44,9 @@ def linear_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
 
 
 def _way(arguments: Arguments) -> tuple[float, float, float]:
-    """Return the way from the lower to the upper end: `v`, as long as the height if that is given.
+    """Return the vector from the lower to the upper end: `v`, scaled to the height if one is given.
 
-    A height below 0 leaves nothing, as in OpenSCAD 2021.01; later ones write such as a `v` that
+    A negative height makes nothing, as in OpenSCAD 2021.01; later versions dump it as a `v` that
     points downwards.
     """
     name = "height" if "height" in arguments else "h"
@@ -62,7 +62,7 @@ def _way(arguments: Arguments) -> tuple[float, float, float]:
 
 
 def _leaning(upright: Solid, way: tuple[float, float, float]) -> Solid:
-    """Return what stands upright along another way of the same height, or depth."""
+    """Shear an upright solid along a vector of its height; mirror it if the vector points down."""
     x, y, z = way
     if z < 0:
         upright = upright.mirror((0, 0, 1))
@@ -94,7 +94,7 @@ def _extruded(arguments: Arguments, figure: Region, height: float) -> Solid:
 def _segmented(
     arguments: Arguments, outlines: list[FloatArray], stretch: Stretch
 ) -> list[FloatArray]:
-    """Return outlines with as many edges as `segments` wants."""
+    """Return the outlines divided into the number of edges that `segments` asks for."""
     wanted = arguments.number("segments", 0.0)
     arguments.limited(wanted * len(outlines) * (stretch.slices + 1), "this extrusion")
     return [
@@ -130,7 +130,7 @@ def _slices(
 def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Turn the children around the z axis, their x axis pointing away from it.
 
-    It starts where `start` says. Without that a full turn starts on the negative x axis, and any
+    It starts at the angle `start`. By default a full turn starts on the negative x axis, and any
     other on the positive one, as in OpenSCAD 2021.01.
     """
     arguments = run.arguments(owner)
@@ -154,7 +154,7 @@ def rotate_extrude(owner: Node, children: list[Geometry], run: Evaluation) -> Ge
 
 
 def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
-    """Return what a figure on one side of the axis sweeps; its far corners begin at `start`."""
+    """Revolve a figure on one side of the axis; its far corners begin at the angle `start`."""
     bounds = figure.bounds
     right = figure.mirror((1, 0)) if bounds is not None and bounds[0, 0] < 0 else figure
     solid = right.revolve(angle=abs(angle), segments=segments)
@@ -166,8 +166,8 @@ def _turned(figure: Region, angle: float, segments: int, start: float) -> Solid:
 def roof(owner: Node, children: list[Geometry], run: Evaluation) -> Geometry:
     """Build a roof over the children, all sides of which rise by 45 degrees.
 
-    Over figures without corners that point inwards both methods give the same; over others a roof
-    by "voronoi", which is curved there, is refused.
+    Without reflex corners both methods give the same roof. With them, "voronoi" gives a curved
+    roof, which is refused.
     """
     arguments = run.arguments(owner)
     figure = union_of(owner, run.figures(owner, children), run)

@@ -1,4 +1,4 @@
-"""A node's arguments, checked as they are asked for; errors name line and column."""
+"""A node's arguments, checked when they are read; errors name line and column."""
 
 import math
 from typing import Any, TypeGuard
@@ -12,7 +12,7 @@ from .writer import value_text
 #: The largest number that may be a length or an angle: the product of three still fits a double.
 MAX_NUMBER = 1e100
 
-#: The type of the numbers in trees and of defaults; that of true and false is another.
+#: The type of numbers in trees and of defaults; true and false have another type.
 _FLOAT = frozenset({float})
 
 #: The largest number of characters of a value that an error quotes.
@@ -22,8 +22,8 @@ _MAX_QUOTED_CHARACTERS = 40
 class Arguments:
     """The arguments of one node.
 
-    Arguments without a name take the names of `order`, one after another; undef stands for the
-    default, as an argument that is missing does.
+    Positional arguments take the names of `order`, one after another. Missing arguments and undef
+    stand for the default.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class Arguments:
         return float(value)
 
     def flag(self, name: str, default: bool = False) -> bool:
-        """Return true or false; numbers count as what they are not zero."""
+        """Return true or false; a number is true if it is not zero."""
         value = self._given(name, default)
         if not isinstance(value, (bool, float, int)):
             raise self._wrong(name, "true or false", value)
@@ -80,7 +80,7 @@ class Arguments:
     def vector(
         self, name: str, size: int, default: tuple[float, ...] | None = None
     ) -> tuple[float, ...]:
-        """Return `size` such numbers; one number stands for equal ones."""
+        """Return `size` numbers; one number alone stands for all of them."""
         value = self._given(name, default)
         if is_number(value):
             value = (value,) * size
@@ -89,14 +89,14 @@ class Arguments:
         return tuple(float(entry) for entry in value[:size])
 
     def padded(self, name: str, size: int) -> tuple[float, ...]:
-        """Return `size` such numbers, 0 for those that are not given."""
+        """Return `size` numbers, 0 for those that are not given."""
         value = self._given(name, ())
         if isinstance(value, tuple) and len(value) < size and _all_usable(value):
             return (*map(float, value), *(0.0,) * (size - len(value)))
         return self.vector(name, size)
 
     def points(self, name: str, size: int) -> list[tuple[float, ...]]:
-        """Return points of `size` such numbers each."""
+        """Return points of `size` numbers each."""
         value = self._given(name, None)
         if not isinstance(value, tuple):
             raise self._wrong(name, "a list of points", value)
@@ -106,7 +106,7 @@ class Arguments:
         return list(value)
 
     def index_lists(self, name: str, count: int, *, single: bool = False) -> list[list[int]]:
-        """Return lists of whole numbers from 0 up to below `count`; maybe a `single` one alone."""
+        """Return lists of indices below `count`; if `single`, one list need not be in a list."""
         value = self._given(name, None)
         if single and isinstance(value, tuple) and value and is_number(value[0]):
             value = (value,)
@@ -152,12 +152,12 @@ class Arguments:
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Say whether a value is a number; true and false are none."""
+    """Say whether a value is a number; true and false are not."""
     return isinstance(value, (int, float)) and not isinstance(value, bool)
 
 
 def _is_finite(value: Any) -> bool:
-    """Say whether no number of a value, however deep in it, is infinite or none at all."""
+    """Say whether all numbers in a value are finite, at any depth."""
     waiting = [value]
     while waiting:
         one = waiting.pop()
@@ -173,5 +173,5 @@ def _is_usable(value: float) -> bool:
 
 
 def _all_usable(values: tuple[Any, ...]) -> bool:
-    # Long lists are looked at by functions written in C alone.
+    # Only functions written in C look at long lists.
     return _FLOAT.issuperset(map(type, values)) and all(map(MAX_NUMBER.__ge__, map(abs, values)))

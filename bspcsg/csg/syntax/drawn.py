@@ -24,9 +24,9 @@ class _Place(NamedTuple):
     depth : int
         From 1.
     ended : tuple of bool
-        Of the outer nodes around it, whether they are the last of their siblings.
+        For each node around it, whether it is the last of its siblings.
     is_last : bool
-        True if it is the last of its own.
+        True if it is the last of its siblings itself.
     """
 
     node: Node

@@ -1,4 +1,4 @@
-"""The file that openscad made of a script: errors name its lines, which are not the script's."""
+"""The file that openscad made from a script: errors name its lines, which are not the script's."""
 
 import re
 from dataclasses import dataclass
@@ -36,9 +36,9 @@ class Intermediate:
         return f"{self.script}, as openscad's .csg"
 
     def explained(self, error: BspcsgError) -> BspcsgError:
-        """Return an error with the line of the `.csg` text that it names, and the script's own.
+        """Return an error with the line of the `.csg` text that it names, and the script's line.
 
-        The script's line is known where one line alone of it, and no other file, has the node.
+        The script's line is known if the node is on exactly one of its lines, and in no other file.
         """
         place = re.match(rf"{re.escape(self.name)}:(\d+):(\d+): ", error.message)
         lines = self.text.splitlines()

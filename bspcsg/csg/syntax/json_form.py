@@ -1,4 +1,4 @@
-"""Trees as JSON, both ways.
+"""Converts trees to JSON and back.
 
 A document is ``{"format": "bspcsg-csg", "version": 1, "nodes": [...]}``; a node is
 ``{"node": "cube", "arguments": [{"name": "size", "value": [1, 2, 3]}], "children": [...]}``, with
@@ -37,7 +37,7 @@ def to_json(tree: CsgTree, *, indent: int | None = None) -> str:
     Raises
     ------
     FormatError
-        If nodes nest deeper than 200, which readers of JSON do not all take; code "too_deep".
+        If nodes nest deeper than 200, which not all readers of JSON accept; code "too_deep".
     """
     steps = None if indent is None else min(at_least(0, indent, "indent"), _MAX_INDENT)
     nodes = [_node_data(node, 1, tree.name) for node in of_kind(CsgTree, tree, "tree").nodes]
@@ -51,7 +51,7 @@ def from_json(text: str, name: str = "<json>", folder: str | Path | None = None)
     Raises
     ------
     FormatError
-        If the text is no JSON, or no such document; the message says where.
+        If the text is not JSON, or not such a document; the message says where.
     """
     place = Path() if folder is None else Path(file_path(folder, "folder"))
     text_value(name, "name")
@@ -141,7 +141,7 @@ def _value(data: Any, where: str, name: str, depth: int) -> Value:
 
 
 def _is_text(data: Any) -> TypeGuard[str]:
-    """Say whether it is text that can be written: JSON may hold one half of a character."""
+    """Say whether it is text that can be encoded: JSON may hold lone surrogates."""
     try:
         return isinstance(data, str) and data.encode() is not None
     except UnicodeEncodeError:

@@ -1,4 +1,4 @@
-"""Scripts as trees.
+"""Parses scripts to trees.
 
 The grammar is OpenSCAD's own dump of an evaluated model, its `.csg` files::
 
@@ -38,8 +38,8 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
     Raises
     ------
     FormatError
-        If the text is no such script. The message begins with name, line and column, `where`
-        holds the two numbers.
+        If the text is not such a script. The message begins with name, line and column; `where`
+        holds line and column.
 
     Examples
     --------
@@ -53,12 +53,12 @@ def parse(text: str, name: str = "<csg>", folder: str | Path | None = None) -> C
 
 
 def value_of(text: str) -> Value:
-    """Return the value that a text stands for, such as ``1.5``, ``"text"`` or ``[1, 2]``.
+    """Return the value of a text such as ``1.5``, ``"text"`` or ``[1, 2]``.
 
     Raises
     ------
     FormatError
-        If it stands for none.
+        If the text is not a value.
     """
     return _Parser(Script(text_value(text, "text"), "<value>")).value()
 
@@ -121,7 +121,7 @@ class _Parser:
             frame.braced = True
 
     def _close(self, open_frames: list[_Frame], top: list[Node]) -> None:
-        """Give the innermost node to its parent, and parents of one child to theirs."""
+        """Add the innermost node to its parent; also close parents without braces."""
         while True:
             node = open_frames.pop().node()
             (open_frames[-1].children if open_frames else top).append(node)
@@ -191,14 +191,14 @@ class _Parser:
                 return value
 
     def _numbers(self, deepest: int) -> Value:
-        """Pass a vector of plain numbers; None if it has to be read word by word."""
+        """Read a vector of plain numbers at once; None if it has to be read word by word."""
         found = self._words.numbers(self._next.offset, deepest)
         if found is not None:
             self._next = self._words.next()
         return found
 
     def _comma_before_value(self) -> bool:
-        """Pass a comma and say whether another value follows it."""
+        """Skip a comma, and say whether another value follows it."""
         if self._next.text == ",":
             self._take()
             return self._next.text != "]"

@@ -1,4 +1,4 @@
-"""Trees without the nodes that make no difference."""
+"""Removes nodes that make no difference from trees."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,10 +12,10 @@ from .tree import CsgTree, Node
 #: Nodes that only unite their children, unless they have arguments.
 _PLAIN = frozenset({"group", "union"})
 
-#: Nodes whose children may be several instead of their union.
+#: Nodes that unite their children, so a child may be replaced by the parts of its union.
 _UNITING = frozenset({*_PLAIN, "color", "multmatrix", "render"})
 
-#: Nodes that make plane figures, and such as make what their first child is.
+#: Nodes that make plane figures, and nodes that make whatever their first child is.
 _FIGURES = frozenset({"square", "circle", "polygon", "text", "offset", "projection", "fill"})
 _KEEPING = _UNITING | {"difference", "intersection", "hull", "minkowski", "resize"}
 
@@ -23,9 +23,9 @@ _KEEPING = _UNITING | {"difference", "intersection", "hull", "minkowski", "resiz
 def simplified(tree: CsgTree) -> CsgTree:
     """Return a tree of the same solid with fewer nodes.
 
-    Left out are nodes that modifiers take out of the model, groups and unions of one child or
-    within others, and matrices that move nothing. Other nodes and their arguments stay, those that
-    cannot be evaluated as well.
+    It leaves out nodes that modifiers remove from the model, groups and unions of one child or
+    inside others, and matrices that move nothing. Other nodes and all arguments stay, even if they
+    cannot be evaluated.
     """
     roots = of_kind(CsgTree, tree, "tree").roots()
     return replace(tree, nodes=_with_children(Node("union", (), roots)))
@@ -40,7 +40,7 @@ class _SimplifiedNode(NamedTuple):
     is_flat : bool or None
         True for a plane figure, False for a solid, None for nothing.
     is_mixed : bool
-        True if its children are both, of which those of one kind do not count.
+        True if its children have both dimensions, so that some of them are ignored.
     """
 
     node: Node
@@ -91,7 +91,7 @@ def _is_flat(node: Node, kinds: Sequence[bool]) -> bool | None:
 
 
 def _parts(child: _SimplifiedNode) -> tuple[Node, ...]:
-    """Return what a child of a node that unites may be replaced by."""
+    """Return the nodes that may replace a child of a node that unites."""
     is_loose = _is_plain(child.node) and not child.is_mixed
     return child.node.children if is_loose else (child.node,)
 

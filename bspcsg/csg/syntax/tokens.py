@@ -1,4 +1,4 @@
-"""Words of a script."""
+"""Splits a script into words."""
 
 import json
 import math
@@ -58,12 +58,12 @@ class Words:
         self._position = 0
 
     def next(self) -> Token:
-        """Pass the next word and return it: an "end" after the last.
+        """Return the next word and move past it; an "end" follows the last one.
 
         Raises
         ------
         FormatError
-            If something is no word, such as a text without its closing quote.
+            If the text is not a word, such as a string without its closing quote.
         """
         text = self._script.text
         match = _WORD.match(text, self._position)
@@ -78,22 +78,22 @@ class Words:
         return Token("end", "", self._position)
 
     def numbers(self, start: int, deepest: int) -> "Numbers | None":
-        """Pass a whole vector of numbers and of such vectors, and return it.
+        """Return a whole vector of numbers, or of such vectors, and move past it.
 
-        It is read as JSON, ten times as fast as word by word.
+        It is parsed as JSON, ten times as fast as word by word.
 
         Parameters
         ----------
         start : int
             The offset of its opening bracket.
         deepest : int
-            Most vectors within each other.
+            The largest number of nested vectors.
 
         Returns
         -------
         tuple or None
-            None, without passing anything, for a vector that JSON writes in another way, that
-            holds something else or too much, or that is wrong.
+            None, without moving, if the vector is not JSON, holds anything else, nests too deep or
+            is malformed.
         """
         try:
             found, end = _JSON.raw_decode(self._script.text, start)
@@ -141,7 +141,7 @@ def _unreadable(script: Script, position: int) -> Exception:
 
 
 def unquoted(text: str) -> str:
-    r"""Return what a quoted text stands for: ``\n``, ``\t``, ``\x41``, ``\u0041`` and so on."""
+    r"""Return the value of a quoted text, with ``\n``, ``\t``, ``\x41``, ``\u0041`` replaced."""
     return _ESCAPE.sub(_character, text[1:-1])
 
 

@@ -1,4 +1,4 @@
-"""The tree that a script stands for: nodes with arguments and children, as plain values."""
+"""The tree of a script: nodes with arguments and children, as plain values."""
 
 import math
 import re
@@ -43,7 +43,7 @@ class Place(NamedTuple):
 
 NOWHERE = Place(0, 0)
 
-#: The special variables, which hold in the nodes inside of the one that has them, too.
+#: The special variables, which also apply to the nodes inside the one that has them.
 SPECIAL = ("$fn", "$fa", "$fs", "$fe")
 
 
@@ -53,7 +53,7 @@ def is_name(name: Any) -> TypeGuard[str]:
 
 
 def _plain(value: Any, depth: int = 0) -> "Value":
-    """Return a value as trees hold it: numbers as doubles, vectors as tuples."""
+    """Return a value as trees store it: numbers as doubles, vectors as tuples."""
     if type(value) in _SCALAR:
         return value  # type: ignore[no-any-return]
     if isinstance(value, (tuple, list)) and depth < MAX_VECTOR_DEPTH:
@@ -95,13 +95,13 @@ class Argument:
     Parameters
     ----------
     name : str or None
-        Such as ``"size"`` or ``"$fn"``; None for an argument that goes by its position.
+        Such as ``"size"`` or ``"$fn"``; None for a positional argument.
     value : Value
 
     Raises
     ------
     InvalidParameterError
-        If the name or the value is none that a script can hold.
+        If a script cannot hold the name or the value.
     """
 
     name: str | None
@@ -223,7 +223,7 @@ class Node:
 
 
 def _head(node: Node) -> tuple[str, tuple[Argument, ...], str, int]:
-    """Return all that a node says, and how many children it has."""
+    """Return a node's own fields, and the number of its children."""
     return node.name, node.arguments, node.modifiers, len(node.children)
 
 
@@ -261,7 +261,7 @@ class CsgTree:
     folder : Path
         The folder of the files that it imports.
     intermediate : Intermediate, optional
-        The text whose lines the nodes' places name, if that is not the script's.
+        The text to which the nodes' places refer, if it is not the script.
     """
 
     nodes: tuple[Node, ...]
@@ -279,8 +279,8 @@ class CsgTree:
     def roots(self) -> tuple[Node, ...]:
         """Return the nodes that count: the first one marked ``!``, else all top nodes.
 
-        A node marked ``*`` does not exist, and neither do those in it. One marked ``!`` stands in
-        a group with the special variables that hold where it is, if there are such.
+        Nodes marked ``*`` and everything inside them do not exist. A node marked ``!`` is put into
+        a group with the special variables that apply to it, if there are any.
         """
         waiting: list[tuple[Node, dict[str, Argument]]] = [(node, {}) for node in self.nodes[::-1]]
         while waiting:

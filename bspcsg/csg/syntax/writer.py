@@ -1,4 +1,4 @@
-"""Trees as text."""
+"""Writes trees as text."""
 
 import math
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from .tree import Argument, CsgTree, Node, Value
 _MAX_INDENT_DEPTH = 40
 
 
-#: Numbers that are no literals, as dumps of a tree have them, and as OpenSCAD's own language does.
+#: The names of numbers without literals, in dumps of a tree and in OpenSCAD's own language.
 _IN_CSG = {math.inf: "inf", -math.inf: "-inf", math.nan: "nan"}
 _IN_SCAD = {math.inf: "1 / 0", -math.inf: "-1 / 0", math.nan: "0 / 0"}
 
@@ -71,8 +71,8 @@ def value_text(value: Value, odd: Mapping[float, str] = _IN_CSG) -> str:
 
 
 def number_text(value: float, odd: Mapping[float, str] = _IN_CSG) -> str:
-    """Return a number in as few digits as give the same double again."""
+    """Return a number with as few digits as identify the double."""
     if math.isfinite(value):
         return str(int(value)) if value == int(value) and abs(value) < 1e15 else repr(float(value))
-    # Not a number is not equal to itself, so it is no key to be found.
+    # NaN is not equal to itself, so no lookup finds it.
     return odd[math.nan if math.isnan(value) else value]
