@@ -1,6 +1,7 @@
 """Suggestions for mistyped or foreign names."""
 
-from collections.abc import Iterable
+import sys
+from collections.abc import Collection, Iterable
 
 #: Names in other libraries and languages, by the names of the same things here.
 _ELSEWHERE = {
@@ -16,15 +17,21 @@ _ELSEWHERE = {
     "bounds": "bbox bounding_box boundingbox extents",
     "volume": "mass",
     "area": "surface_area",
-    "centroid": "center_of_mass center",
+    "centroid": "center_of_mass center center_mass",
     "is_empty": "empty",
+    "findings": "is_valid is_volume is_watertight is_winding_consistent status",
     "components": "parts solids bodies",
+    "split": "split_by_plane slice_plane",
+    "trim": "trim_by_plane",
     "decompose": "split_components disjoint",
     "save": "export write dump to_file to_stl",
     "load": "import_stl read open from_file",
     "show": "display plot",
+    "Region": "crosssection cross_section polygon2d",
     "section": "cross_section",
     "slice": "cross_section section",
+    "from_mesh": "from_trimesh from_manifold from_arrays",
+    "tagged": "color colour paint set_color",
     "classify": "contains",
     "hull": "convex_hull",
     "project": "projection shadow",
@@ -43,11 +50,14 @@ def meant(word: str, known: Iterable[str]) -> str | None:
 
     names = [name for name in known if not name.startswith("_")]
     key = word.lower().replace("-", "_")
-    for name, others in _ELSEWHERE.items():
-        if name in names and key in others.split():
-            return name
     close = get_close_matches(key, names, n=1)
-    return close[0] if close else None
+    return _elsewhere(key, names) or (close[0] if close else None)
+
+
+def _elsewhere(word: str, names: Collection[str]) -> str | None:
+    """Return the name here for a word of other libraries, or None."""
+    found = (name for name, others in _ELSEWHERE.items() if word in others.split())
+    return next((name for name in found if name in names), None)
 
 
 def question(word: object, known: Iterable[str]) -> str:
@@ -67,6 +77,18 @@ def no_attribute(owner: object, name: str, what: str) -> AttributeError:
     what : str
         The owner in the message: ``"'Solid' object"``.
     """
-    # Programs probe private names often, and nobody reads those errors.
-    asks = "" if name.startswith("_") else question(name, dir(owner))
-    return AttributeError(f"{what} has no attribute {name!r}{asks and '.'}{asks}")
+    text = f"{what} has no attribute {name!r}"
+    # Programs probe private names often, `dir` among them, and nobody reads those errors.
+    if name.startswith("_"):
+        return AttributeError(text)
+    known = dir(owner)
+    asks = question(name, known)
+    if not _elsewhere(name, known):
+        asks = _function(name) or asks
+    return AttributeError(f"{text}{asks and '.'}{asks}")
+
+
+def _function(name: str) -> str:
+    """Return the question whether the function of this name is meant, if there is one."""
+    functions = getattr(sys.modules.get("bspcsg"), "__all__", ())
+    return f" Is the function bspcsg.{name} meant?" if name in functions else ""

@@ -125,7 +125,7 @@ class Job(ABC):
         self._noticed = result.normalized().findings
         simple = result.simplify(self.settings["tolerance"])
         if simple is result:
-            self.out.note(f"{shown(self.target.path)}: --simplify changed nothing")
+            self.out.note(f"{shown(self.target.path)}: nothing to simplify within the tolerance")
             self._noticed = ()
         else:
             mesh = self._mesh_of(simple)

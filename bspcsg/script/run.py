@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any, TypeAlias
@@ -63,7 +63,7 @@ def show(*solids: Any) -> None:
 
     Parameters
     ----------
-    *solids : Solid, Region, Assembly or object
+    *solids : Solid, Region, Assembly, object, or lists of these
         Whatever `Solid.from_mesh` takes counts as a solid. A region is shown as a slab.
 
     Raises
@@ -76,9 +76,15 @@ def show(*solids: Any) -> None:
     if _shown is None:
         from ..report.viewer.showing import show as show_here
 
-        show_here(*solids)
+        show_here(*_flat(solids))
     else:
-        _shown.extend(Solid.from_mesh(solid) for solid in solids)
+        _shown.extend(Solid.from_mesh(solid) for solid in _flat(solids))
+
+
+def _flat(things: Iterable[Any]) -> Iterator[Any]:
+    """Yield things, and the things in lists."""
+    for thing in things:
+        yield from _flat(thing) if isinstance(thing, list) else [thing]
 
 
 @counted

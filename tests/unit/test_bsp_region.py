@@ -5,6 +5,7 @@ import math
 import pickle
 import time
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -292,3 +293,12 @@ def test_nearest_points_have_their_old_name() -> None:
             found = one.project([[0.5, 0.5][: one.dimension]])
         assert warned[0].filename == __file__
         assert (found[0] == one.nearest([[0.5, 0.5][: one.dimension]])[0]).all()
+
+
+def test_the_suffix_chooses_how_a_drawing_is_saved(tmp_path: Path) -> None:
+    region = R.rectangle(2, 1)
+    for name in ("x.svg", "x.DXF"):
+        region.save(tmp_path / name)
+    assert R.from_svg(tmp_path / "x.svg") == R.from_dxf(tmp_path / "x.DXF") == region
+    with pytest.raises(b.FormatError, match=r"written as \.svg or \.dxf"):
+        region.save(tmp_path / "x.png")

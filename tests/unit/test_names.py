@@ -86,6 +86,8 @@ def test_own_copies_of_methods_are_the_same_methods() -> None:
         (b.Region.circle(1), "xor", "symmetric_difference"),
         (b.cube(1), "bounding_box", "bounds"),
         (b.cube(1), "fillett", "fillet"),
+        (b.cube(1), "is_watertight", "findings"),
+        (b.cube(1), "hull", "the function bspcsg.hull"),
         (b.bsp.Intervals(), "add", "union"),
         (b, "diff", "difference"),
         (b, "symmetric_difference", "xor"),

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, Scalar, Vector, WindingRule
-from ...errors import LimitError, UnboundedError, core_errors, invalid_parameter
+from ...errors import FormatError, LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
 from ...geometry.arrays import doubles
 from ...geometry.per_axis import per_axis
@@ -655,6 +655,23 @@ class Region(PlaneQueries):
         from ..drawings.dxf import save_dxf
 
         save_dxf(self, path)
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write a drawing; the suffix chooses SVG or DXF (see `to_svg`, `to_dxf`).
+
+        Raises
+        ------
+        FormatError
+            If the suffix is neither; code ``"unknown_format"``.
+        """
+        suffix = os.path.splitext(os.fspath(path))[1].lower()
+        if suffix not in (".svg", ".dxf"):
+            message = f"{os.fspath(path)}: a region is written as .svg or .dxf."
+            raise FormatError(message, "unknown_format")
+        if suffix == ".svg":
+            self.to_svg(path, **options)
+        else:
+            self.to_dxf(path, **options)
 
     def show(self) -> None:
         """Show the region in a notebook, or as a slab in a browser (see `bspcsg.show`)."""

@@ -11,6 +11,8 @@ from ..options.shared import FilePath
 _SUFFIXES = (".html", ".htm")
 
 PAGE = click.option(
+    "-o",
+    "--output",
     "--html",
     "page",
     metavar="FILE",

@@ -148,7 +148,7 @@ class _Conversion:
         solid = self._inputs.as_solid(raw, path)
         simple = solid.simplify(self._settings["tolerance"])
         if simple is solid:
-            self._out.note(f"{shown(path)}: --simplify changed nothing")
+            self._out.note(f"{shown(path)}: nothing to simplify within the tolerance")
             return raw
         mesh = simple.normalized().to_mesh()
         self._inputs.tell(path, simple.normalized().findings)
