@@ -1,9 +1,9 @@
-"""Binary space partition trees and the sets they stand for, in one, two and three dimensions.
+"""Binary space partition trees and their sets, in one, two and three dimensions.
 
 The same definitions hold on the line, in the plane and in space: a hyperplane has a minus side,
 which is inside, and a plus side; a tree divides space by hyperplanes into convex regions; its
-leaves are in or out of a set. Everything is decided exactly on a decimal lattice that coordinates
-are snapped to first.
+leaves are in or out of a set. Coordinates are first snapped to a decimal lattice; all decisions
+after that are exact.
 """
 
 from .drawings.dxf import load_dxf, save_dxf

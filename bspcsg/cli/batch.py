@@ -1,4 +1,4 @@
-"""Files one by one: where each goes, and what came of all of them."""
+"""Process files one by one: find the output of each, and collect the results."""
 
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -29,24 +29,24 @@ def targets_of(
     *,
     keeps_format: bool = False,
 ) -> list[tuple[Path, Path]]:
-    """Return each file with where it goes.
+    """Return pairs of each input file and its output path.
 
     Parameters
     ----------
     files : sequence of Path
     target : Path or None
-        With several files, a name with % for theirs.
+        With several files, a name in which % stands for the name of each.
     outdir : Path or None
-        The folder that takes them under their own names.
+        The folder for the outputs, which keep the names of the inputs.
     suffix : str or None
-        Of the format that they get in that folder.
+        The suffix of the output format in that folder.
     keeps_format : bool
-        True if files in that folder have their own formats where none is said.
+        True if a file in that folder keeps its own format when no suffix is given.
 
     Raises
     ------
     click.UsageError
-        If it is not said where files go, or if two would go to one place, or over an input.
+        If no output is given, two files have the same output, or an output would replace an input.
     """
     if (target is None) == (outdir is None):
         raise click.UsageError("say where to write: either -o FILE or --outdir DIR.")
@@ -94,9 +94,9 @@ def _refuse_twins(pairs: Sequence[tuple[Path, Path]]) -> None:
 def each(
     pairs: Sequence[tuple[Path, Target]], out: Output, doing: Doing, word: str
 ) -> tuple[list[dict[str, Any]], int]:
-    """Do the same with many files; return the documents, and the worst exit code.
+    """Apply a function to each file; return the documents and the worst exit code.
 
-    One bad file of many does not keep the others; it is told, and its document says why.
+    A bad file does not stop the others: the error is printed, and the document of the file has it.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def each(
     out : Output
     doing : callable
     word : str
-        What is done, for whoever watches a terminal.
+        The word that describes the work on a terminal.
     """
     documents, worst = [], output.DONE
     with _progress(pairs, out, word) as shown:

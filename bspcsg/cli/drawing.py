@@ -1,4 +1,4 @@
-"""One drawing of one file, from reading to telling what came out."""
+"""One drawing of one file, from reading the file to reporting the result."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -41,14 +41,14 @@ class Drawing(ABC):
 
     @abstractmethod
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
-        """Return the bytes of the drawing, what to say of it, and its part of the document."""
+        """Return the bytes of the drawing, a line about it, and its part of the JSON document."""
 
     def sources(self) -> Sequence[Path]:
         """Return the files that are read."""
         return [self.file]
 
     def run(self) -> int:
-        """Do it, and return the exit code."""
+        """Make the drawing, and return the exit code."""
         from ..parameters import set_threads
 
         set_threads(self.settings["threads"])
@@ -63,7 +63,7 @@ class Drawing(ABC):
         return output.DONE
 
     def data(self, region: "Region") -> bytes:
-        """Return a region as a drawing of the format asked for, SVG or DXF."""
+        """Return a region as a drawing in the requested format, SVG or DXF."""
         from ..bsp.drawings.dxf import dxf_data
         from ..bsp.drawings.svg import svg_data
 

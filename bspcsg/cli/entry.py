@@ -1,4 +1,4 @@
-"""The start of the command line: before what takes time is imported, Ctrl-C is made quiet."""
+"""The start of the command line, which handles Ctrl-C before the slow imports begin."""
 
 import os
 
@@ -24,15 +24,15 @@ except KeyboardInterrupt:
 
 
 def _end_quietly(*_: object) -> None:
-    """End the process at once; nothing has been begun, or all is done."""
+    """End the process at once, before the work has begun or after it is done."""
     os._exit(_INTERRUPTED)
 
 
 def _end_in_order(number: int, frame: FrameType | None) -> None:
-    """Raise `KeyboardInterrupt`, which closes files; later, if it would be lost here.
+    """Raise `KeyboardInterrupt`, so that files are closed; postpone it where it would be lost.
 
-    While modules are imported an exception is lost in a lock's callback, or ends the process where
-    compiled modules begin.
+    During imports, an exception is lost in a lock's callback, and it ends the process while a
+    compiled module starts.
     """
     if _is_bad_moment(frame) and hasattr(signal, "setitimer"):
         _come_again()
@@ -54,7 +54,7 @@ def _come_again() -> None:
 
 
 def _end_for_good() -> None:
-    """See to what is still to come while Python takes itself down, without handlers of signals."""
+    """Act on a postponed interrupt before Python shuts down, and ignore later ones."""
     _replace(_end_quietly, signal.SIG_IGN)
     if hasattr(signal, "setitimer") and any(signal.setitimer(signal.ITIMER_REAL, 0)):
         # It would have come again.
@@ -62,7 +62,7 @@ def _end_for_good() -> None:
 
 
 def _catch_lost(lost: "sys.UnraisableHookArgs") -> None:
-    """Let an interrupt come again that a finaliser had swallowed; tell of all else as ever."""
+    """Repeat an interrupt that a finaliser swallowed; report other exceptions as usual."""
     if isinstance(lost.exc_value, KeyboardInterrupt) and hasattr(signal, "setitimer"):
         _come_again()
     else:
@@ -70,7 +70,7 @@ def _catch_lost(lost: "sys.UnraisableHookArgs") -> None:
 
 
 def _replace(old: object, new: object) -> None:
-    """Put one way to heed Ctrl-C in place of another; who started the process may have chosen."""
+    """Replace one Ctrl-C handler with another; keep one that the parent process chose."""
     if signal.getsignal(signal.SIGINT) is old:
         signal.signal(signal.SIGINT, new)  # type: ignore[arg-type]
 
@@ -89,7 +89,7 @@ class Quietly:
 
 
 def _replace_in_main_thread(old: object, new: object) -> None:
-    """Do as `_replace`, and nothing in threads that may not."""
+    """Call `_replace` in the main thread; do nothing in others, which may not set handlers."""
     with contextlib.suppress(ValueError):
         _replace(old, new)
 
@@ -110,7 +110,7 @@ def _run() -> None:
     from . import main as command_line
 
     try:
-        # From here on files may be open, which an exception closes and takes away.
+        # From here on files may be open; an exception closes and removes them.
         sys.unraisablehook = _catch_lost
         _replace(_end_quietly, _end_in_order)
         command_line.main(began=began)

@@ -1,4 +1,4 @@
-"""One set operation on files, from reading to telling what came out."""
+"""One set operation on files, from reading the files to reporting the result."""
 
 import dataclasses
 import time
@@ -53,10 +53,10 @@ class Job(ABC):
 
     @abstractmethod
     def combined(self) -> "Solid":
-        """Read the files and return what they make."""
+        """Read the files and return the result of the operation."""
 
     def compared(self, result: "Solid") -> "CheckReport | None":
-        """Return what manifold3d says, or None if there is nothing to compare."""
+        """Return the comparison with manifold3d, or None if there is nothing to compare."""
         from ..verify.check import check_result
 
         if result.last_operation is None:
@@ -68,7 +68,7 @@ class Job(ABC):
         """Return the files that are read."""
 
     def refuse_inputs(self) -> None:
-        """Refuse what can be known to fail before anything is read; tell what will be assumed."""
+        """Raise foreseeable errors before anything is read, and print assumptions about units."""
         self.inputs.refuse_early(self.paths())
         self.inputs.tell_units((path, self.target) for path in self.paths())
 
@@ -108,11 +108,11 @@ class Job(ABC):
         return output.DONE if report is None or report.ok else output.FOUND
 
     def cutters(self) -> "Sequence[Solid]":
-        """Return what was taken away, and lends the result no names."""
+        """Return the subtracted solids, whose objects give the result no names."""
         return ()
 
     def _write(self, result: "Solid", mesh: "Mesh") -> "tuple[Finding, ...]":
-        """Write a result, by parts if objects of the files have names, and say what was lost."""
+        """Write a result, in parts if the files have named objects, and return what was lost."""
         if self.target.names_objects and len(mesh.faces):
             target = self.target
             parted = self.inputs.objects.parted(result, self.cutters(), target.is_single)
@@ -121,7 +121,7 @@ class Job(ABC):
         return self.target.write(mesh)
 
     def _simplified(self, result: "Solid", mesh: "Mesh") -> "tuple[Solid, Mesh]":
-        """Return what is left of a result without short edges and slivers."""
+        """Return a result without short edges and slivers."""
         self._noticed = result.normalized().findings
         simple = result.simplify(self.settings["tolerance"])
         if simple is result:
@@ -133,7 +133,7 @@ class Job(ABC):
         return simple, mesh
 
     def _findings(self, result: "Solid") -> "tuple[Finding, ...]":
-        """Return what was noteworthy about a result, before it was simplified, too."""
+        """Return the findings about a result, also those from before it was simplified."""
         return self._noticed + result.normalized().findings
 
     def _mesh_of(self, result: "Solid") -> "Mesh":
@@ -185,7 +185,7 @@ class Job(ABC):
         }
 
     def lap(self, name: str) -> None:
-        """Note the time since the last call under a name."""
+        """Record the time since the last call under a name."""
         now = time.perf_counter()
         self.seconds[name] = round(now - self._last, 4)
         self._last = now
@@ -206,7 +206,7 @@ def mesh_values(mesh: "Mesh") -> dict[str, Any]:
 
 
 def certificate_values(mesh: "Mesh") -> dict[str, Any]:
-    """Return what was proved of a mesh as JSON values: counts, and the first crossings."""
+    """Return the certificate of a mesh as JSON values: counts, and the first crossings."""
     proof = mesh.certificate
     return {
         "ok": proof.ok,
@@ -229,7 +229,7 @@ def _exact_volume(result: "Solid", mesh: "Mesh") -> str | None:
 
 
 def summary(name: str, mesh: "Mesh", timed: bool) -> str:
-    """Return one line about a mesh that was written, maybe with the seconds that it took."""
+    """Return one line about a written mesh, with its time if `timed`."""
     words = [name, "empty"]
     if len(mesh.faces):
         triangles, surfaces = (

@@ -1,4 +1,4 @@
-"""Entry point: the verbs, and what every failure becomes."""
+"""The entry point: it runs a verb and turns each failure into a message and an exit code."""
 
 import codecs
 import errno
@@ -80,7 +80,7 @@ _COMPLETE = "_BSPCSG_COMPLETE"
 
 
 class _Verbs(click.Group):
-    """The verbs; a module is imported when its verb is asked for."""
+    """The verbs; the module of a verb is imported when the verb is used."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         return list(_VERBS)
@@ -122,27 +122,27 @@ def commands() -> None:
 
 
 def main(arguments: Sequence[str] | None = None, began: float | None = None) -> None:
-    """Run the command line, which began at some moment, and end the process with its exit code."""
+    """Run the command line, and end the process with its exit code; `began` is the start time."""
     _fill_closed_streams()
     standard.take_over(_ERRORS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments, began))
 
 
 def _fill_closed_streams() -> None:
-    """Give standard streams that were closed a file each, so that no other file takes their place.
+    """Open a file for each closed standard stream, so that no other file gets its number.
 
-    Reading finds nothing, and writing to standard output fails as it does on a full disk.
+    Reading yields nothing, and writing to standard output fails as on a full disk.
     """
     for number, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
-            # The lowest number that is free is the one that was closed.
+            # The system assigns the lowest free number, which is that of the closed stream.
             handle = os.open(os.devnull, os.O_WRONLY if name == "stderr" else os.O_RDONLY)
             if handle == number:
                 setattr(sys, name, os.fdopen(handle, "w" if number else "r", encoding="utf-8"))
 
 
 def run(arguments: Sequence[str], began: float | None = None) -> int:
-    """Run the command line and return its exit code; no exception leaves but with ``--debug``."""
+    """Run the command line and return its exit code; raise exceptions only with ``--debug``."""
     clock.start(began)
     try:
         code = _answered(list(arguments))
@@ -158,7 +158,7 @@ def run(arguments: Sequence[str], began: float | None = None) -> int:
 
 
 def _answered(arguments: list[str]) -> int:
-    """Run the command line; tell what fails but for standard output, which cannot be told to."""
+    """Run the command line and report its errors, except those of standard output."""
     try:
         return _invoked(arguments)
     except (BrokenPipeError, standard.FullOutputError):
@@ -179,13 +179,13 @@ def _answered(arguments: list[str]) -> int:
 
 
 def _unwritable(error: OSError) -> FormatError:
-    """Return what says which file could not be written."""
+    """Return the error that names the file that could not be written."""
     name = "a file" if error.filename is None else os.fsdecode(error.filename)
     return FormatError(f"{name}: cannot write: {error.strerror}.", "unwritable")
 
 
 def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:
-    """Write the bytes of a file name as they came; what the terminal cannot show becomes ``?``."""
+    """Write the bytes of a file name unchanged; characters that the terminal lacks become ``?``."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     letters = error.object[error.start : error.end]
@@ -227,7 +227,7 @@ def _usage_error(error: click.ClickException, as_json: bool) -> int:
 
 
 def _asks_for_json(arguments: Sequence[str]) -> bool:
-    """Say whether a document is wanted on standard output."""
+    """Say whether the arguments ask for a JSON document on standard output."""
     return "--json" in arguments
 
 

@@ -1,7 +1,7 @@
-"""Files that are either complete or not there.
+"""Atomic writing: a file is either complete or does not exist.
 
-A file is written under another name, which a process that is killed leaves behind. The next one
-that writes into the folder takes it away: the writer's lock on it ends with the writer.
+A file is written under a temporary name. If the process is killed, the temporary file stays; the
+next process that writes into the folder removes it, since the writer's lock on it has ended.
 """
 
 import contextlib
@@ -42,27 +42,27 @@ def write_file(
 ) -> None:
     """Write the chunks to a new file beside `path`, then give it that name in one step.
 
-    Whatever goes wrong, a file that was there before stays as it was. What goes to the null device
-    is made and proved, and kept nowhere.
+    If anything fails, an existing file stays unchanged. Output to the null device is made and
+    proved, but not kept.
 
     Parameters
     ----------
     path : str or path
     chunks : iterable of bytes
     prove : callable, optional
-        Is given the new file, to be read from its beginning, before that gets its name. The file is
-        written as it is read, and to its end before `prove` may find one.
+        Called with the new file, at its beginning, before the file gets its name. The file is
+        written while `prove` reads it, always ahead of the reader.
 
     Raises
     ------
     FormatError
-        If the file cannot be written; code ``"unwritable"``; and what `prove` raises.
+        If the file cannot be written; code ``"unwritable"``. Errors of `prove` are passed on.
     """
     name = file_path(path)
     if name == os.devnull:
         _drop(chunks, prove)
         return
-    # A link stays a link: what it points to is replaced.
+    # A link stays a link: its target is replaced.
     target = Path(os.path.realpath(name))
     with _writing(name):
         _check_target(name)
@@ -74,7 +74,7 @@ def write_file(
 
 
 def refuse_target(path: str | os.PathLike[str]) -> None:
-    """Raise a `FormatError` where no file can be, or where something else is than a file."""
+    """Raise a `FormatError` if a path cannot be that of a file, or is not that of a file."""
     name = file_path(path)
     with _writing(name):
         _check_target(name)
@@ -82,7 +82,7 @@ def refuse_target(path: str | os.PathLike[str]) -> None:
 
 @contextlib.contextmanager
 def _writing(name: str) -> Iterator[None]:
-    """Raise a `FormatError` where the block cannot write a file."""
+    """Turn errors of the block into a `FormatError` that the file cannot be written."""
     try:
         yield
     except OSError as error:
@@ -91,14 +91,14 @@ def _writing(name: str) -> Iterator[None]:
 
 
 def _drop(chunks: Iterable[bytes], prove: Proof | None) -> None:
-    """Make what would be written, and prove it."""
+    """Make the output and prove it, without keeping it."""
     data = b"".join(chunks)
     if prove is not None:
         prove(io.BytesIO(data))
 
 
 def _check_target(name: str) -> None:
-    # Not the real path, which names nothing where this is an open pipe, as /dev/stdout may be.
+    # Do not resolve the path: that of an open pipe, such as /dev/stdout, resolves to no file.
     path = Path(name)
     if path.is_dir():
         raise IsADirectoryError(21, "it is a folder")
@@ -115,7 +115,7 @@ _BUFFER_BYTES = 1 << 18
 
 
 def _sweep(folder: Path) -> None:
-    """Take away what processes of this machine left that were killed while they wrote here."""
+    """Remove the unfinished files that killed processes of this machine left in a folder."""
     if sys.platform == "win32" or folder in _swept:
         return
     _swept.add(folder)
@@ -131,7 +131,7 @@ def _take_away(part: str) -> None:
     if sys.platform == "win32":
         return
     with contextlib.suppress(OSError):
-        # What is no file, though it is called like one, is neither followed nor waited for.
+        # Skip links, and do not block on pipes, that have the name of an unfinished file.
         handle = os.open(part, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
         try:
             if stat.S_ISREG(os.fstat(handle).st_mode):
@@ -146,19 +146,19 @@ def _machine() -> str:
 
 
 class _TakenAwayError(Exception):
-    """Another process took the unfinished file in the moment before it was locked."""
+    """Another process removed the unfinished file just before it was locked."""
 
 
 @contextlib.contextmanager
 def _locked(handle: int, part: Path) -> Iterator[None]:
-    """Hold the lock on an unfinished file that tells others that its writer lives."""
+    """Hold the lock on an unfinished file, which tells other processes that its writer lives."""
     if sys.platform == "win32":
         yield
         return
     # The file may be closed before it gets its name.
     lock = os.dup(handle)
     try:
-        # Where the system of files has no locks nobody takes anything away.
+        # On a file system without locks, nobody removes unfinished files.
         with contextlib.suppress(OSError):
             fcntl.flock(lock, fcntl.LOCK_EX)
         if not part.exists():
@@ -171,7 +171,7 @@ def _locked(handle: int, part: Path) -> Iterator[None]:
 def _write_new(target: Path, chunks: Iterable[bytes], prove: Proof | None) -> None:
     name = f".{target.name[:_MAX_NAME_CHARACTERS]}.{_machine()}-{os.urandom(4).hex()}.part"
     part = target.with_name(name)
-    # Opened like any new file, so that the user's mask decides about its mode.
+    # Opened like any new file, so that the umask sets its mode.
     handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o666)
     try:
         with contextlib.ExitStack() as until_named:
@@ -196,7 +196,7 @@ def _write_new(target: Path, chunks: Iterable[bytes], prove: Proof | None) -> No
 
 
 def _flushed(handle: int) -> bool:
-    """Have a file put on the disk; say whether it stayed as it was."""
+    """Flush a file to the disk; say whether its content stayed the same."""
     before = os.fstat(handle)
     os.fsync(handle)
     after = os.fstat(handle)
@@ -216,24 +216,24 @@ def _write_and_prove(part: Path, stream: BinaryIO, chunks: Iterable[bytes], prov
 
 
 class _Growing(io.RawIOBase):
-    """A file that is written as far as it is read.
+    """A file that is written while it is read.
 
-    What was just written is still in the processor's cache when it is read back, and so is what it
-    was made of and is compared with: that takes less time than a second pass over both.
+    When a block is read back, both the block and the arrays it came from are still in the
+    processor's cache. This is faster than a second pass over both.
 
     Parameters
     ----------
     stream : binary file
-        The place that the chunks are written to.
+        The file to which the chunks are written.
     chunks : iterator of bytes
     back : file
-        The same file, to be read.
+        The same file, opened for reading.
     """
 
     def __init__(self, stream: BinaryIO, chunks: Iterator[bytes], back: io.FileIO) -> None:
         self._stream, self._chunks, self._back = stream, chunks, back
         self._size = 0
-        #: Whatever kept the chunks from being made or written.
+        # : The error of making or writing the chunks, if any.
         self.failure: Exception | None = None
 
     def readable(self) -> bool:
@@ -251,7 +251,7 @@ class _Growing(io.RawIOBase):
         return self._back.tell()
 
     def read(self, size: int = -1, /) -> bytes:
-        """Return so many bytes, or all that are left."""
+        """Return `size` bytes, or all that are left."""
         if size < 0:
             self.finish()
         elif self._size < (end := self._back.tell() + size):
@@ -259,13 +259,13 @@ class _Growing(io.RawIOBase):
         return self._back.read(size)
 
     def finish(self) -> None:
-        """Write all that is left."""
+        """Write all remaining chunks."""
         # Chunks may be single lines: a loop over them takes as long as making them.
         self._watched(lambda: self._stream.writelines(self._chunks))
         self._size = sys.maxsize
 
     def _write(self, end: int) -> None:
-        """Write so many bytes of the file, at least, if there are so many."""
+        """Write the file at least up to byte `end`, or to its end."""
 
         def write() -> None:
             while self._size < end and (chunk := next(self._chunks, None)) is not None:
@@ -275,7 +275,7 @@ class _Growing(io.RawIOBase):
         self._watched(write)
 
     def _watched(self, write: Callable[[], None]) -> None:
-        """Write, and remember what went wrong."""
+        """Call `write`, and remember its error."""
         try:
             write()
             self._stream.flush()

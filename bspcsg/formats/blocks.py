@@ -1,6 +1,6 @@
-"""Arrays a block at a time: what goes through them can be stopped soon, and needs little room.
+"""Arrays in blocks, so that long loops need little memory and can be interrupted.
 
-Signals are heard between two steps of Python: one step over a million rows would take a second.
+Python handles signals only between two steps; one step over a million rows would take a second.
 """
 
 import itertools
@@ -23,7 +23,7 @@ def blocks(count: int, together: int = ROWS_PER_BLOCK) -> Iterator[slice]:
 
 
 def listed(values: npt.NDArray[Any]) -> Iterator[Any]:
-    """Yield the rows of an array as numbers, or lists of numbers, of Python."""
+    """Yield the rows of an array as Python numbers or lists of numbers."""
     for block in blocks(len(values)):
         yield from values[block].tolist()
 

@@ -25,7 +25,7 @@ _BREP = (
     "{} is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh of it first, for"
     " example with FreeCAD, Gmsh or the Python package cascadio."
 )
-_NO_LIBRARY = "{} is not read, for want of a well-kept library; have {} written instead."
+_NO_LIBRARY = "{} cannot be read, for lack of a maintained library; export {} instead."
 
 #: Advice on formats that people try to read, and that are not for us.
 _REFUSALS = {
@@ -33,12 +33,12 @@ _REFUSALS = {
     **dict.fromkeys((".iges", ".igs"), _BREP.format("IGES")),
     ".brep": _BREP.format("BREP"),
     ".amf": _NO_LIBRARY.format("AMF", "3MF"),
-    ".vtp": "VTP is read by VTK's own package only, of some hundred megabytes, which is left out"
-    " here; have VTU written instead, or pass what pyvista read to Solid.from_mesh.",
+    ".vtp": "VTP cannot be read here, only by VTK's own large package. Export VTU instead, or read"
+    " the file with pyvista and pass the mesh to Solid.from_mesh.",
     ".gltf": "glTF with separate files is not read; pack it into one GLB file.",
 }
 
-_CURVED = "{} holds curved surfaces, which meshes have none of; write 3MF or STL."
+_CURVED = "{} is a format of curved surfaces, not of meshes; write 3MF or STL."
 
 #: Advice on formats that people try to write.
 _UNWRITTEN = {
@@ -57,7 +57,7 @@ def format_of(path: str | os.PathLike[str]) -> Format:
     Raises
     ------
     FormatError
-        If it names none; code ``"unknown_format"``.
+        If the suffix names no format; code ``"unknown_format"``.
     """
     return _format_of(path, _REFUSALS)
 
@@ -75,7 +75,7 @@ def _format_of(path: str | os.PathLike[str], refusals: Mapping[str, str]) -> For
 
 
 def form_of(path: str | os.PathLike[str], text: bool = False) -> Form:
-    """Return how the format that the suffix names is written.
+    """Return the form in which the format of the suffix is written.
 
     Raises
     ------
@@ -95,10 +95,10 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
     """Read a mesh file as it is; the suffix names the format.
 
     Several objects in one file become one mesh, in the order of the file. Polygons become
-    triangles. STL corners are joined where their coordinates are equal, exactly; nothing else is
-    joined, dropped or repaired, but where a file places meshes so that rounding would open them:
-    findings tell what was left out there. A file that `write` made of no triangles, byte for byte,
-    is the empty set, with the finding "empty".
+    triangles. STL corners are joined where their coordinates are exactly equal. Nothing else is
+    joined, dropped or repaired, with one exception: where a file places meshes and rounding would
+    open them, they are mended, and findings count the dropped triangles. A file that equals, byte
+    for byte, one that `write` made without triangles is the empty set, with the finding "empty".
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def read(path: str | os.PathLike[str]) -> RawMesh:
 
 
 def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
-    """Read a mesh file as what a suffix names, whatever its own suffix; else as `read`."""
+    """Read a mesh file in the format of a given suffix, whatever its own; see `read`."""
     name = file_path(path)
     if text_value(suffix, "suffix").lower() not in FORMATS:
         format_of(name)
@@ -128,16 +128,16 @@ def read_as(path: str | os.PathLike[str], suffix: str) -> RawMesh:
 def decoded(
     name: str, data: bytes, suffix: str, files: Mapping[str, bytes] | None = None
 ) -> RawMesh:
-    """Return the mesh in the bytes of a file.
+    """Return the mesh in the bytes of a file, in the format of a suffix.
 
     Parameters
     ----------
     name : str
-        For errors, and to find what lies beside the file.
+        The path of the file, for errors and to find companion files.
     data : bytes
     suffix : str
     files : dict of str to bytes, optional
-        The files beside it, instead.
+        The companion files, instead of those on the disk.
 
     Raises
     ------
@@ -160,7 +160,7 @@ def decoded(
 
 
 def _nothing(form: Form) -> bytes:
-    """Return the file of the empty set."""
+    """Return the bytes of a file of the empty set."""
     return b"".join(form.encode(empty_set()))
 
 
@@ -204,17 +204,17 @@ def write(
 
 @dataclass(frozen=True, eq=False)
 class Encoded:
-    """A file that is to be written.
+    """A file to be written.
 
     Parameters
     ----------
     chunks : iterator of bytes
     findings : tuple of Finding
-        The things that the format cannot keep.
+        Findings about data that the format cannot keep.
     prove : callable
-        Takes the file that was written, and raises FormatError if it does not hold the mesh.
+        Takes the written file, and raises FormatError if it does not hold the mesh.
     files : dict of str to bytes
-        The files that go beside it: its materials and pictures.
+        The companion files: materials and pictures.
     """
 
     chunks: Iterator[bytes]
@@ -224,7 +224,7 @@ class Encoded:
 
 
 def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> dict[Path, bytes]:
-    """Return files by the paths at which they lie beside one, which may be a link to another."""
+    """Return companion files by their paths; they lie beside the target if the path is a link."""
     folder = Path(path).parent
     if os.path.islink(path):
         folder = Path(os.path.realpath(path)).parent
@@ -232,7 +232,7 @@ def places_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> d
 
 
 def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
-    """Write the files that go beside one, which is to get its name after them."""
+    """Write the companion files of a file, before the file itself gets its name."""
     places = places_beside(path, files)
     for place in places:
         refuse_target(place)
@@ -243,7 +243,7 @@ def write_beside(path: str | os.PathLike[str], files: Mapping[str, bytes]) -> No
 def encoded(
     mesh: Mesh | RawMesh, path: str | os.PathLike[str], suffix: str, text: bool = False
 ) -> Encoded:
-    """Return the bytes of a file, what the format cannot keep, and the proof, as for `write`."""
+    """Return the bytes of a file, the findings about losses, and the proof, as for `write`."""
     name = file_path(path)
     form = form_of(f"mesh{text_value(suffix, 'suffix')}", text)
     if not isinstance(mesh, (Mesh, RawMesh)):
@@ -266,7 +266,7 @@ def encoded(
         proof = partial(prove, name, bare, form.scan, form.called, form.repeats)
         return Encoded(form.encode(bare), findings, proof)
     full = saying(mesh, kept)
-    # What goes beside a link to a file is named as that file.
+    # Companions of a link are named after its target.
     stem = Path(os.path.realpath(name)).stem
     head, files = form.beside(full, stem) if form.beside is not None else (b"", {})
     reader = partial(_read_back, suffix, files)
@@ -279,7 +279,7 @@ def _read_back(suffix: str, files: Mapping[str, bytes], name: str, data: bytes) 
 
 
 def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
-    """Refuse what no file, or no file of this form, can hold."""
+    """Raise an error for a mesh that no file, or no file of this form, can hold."""
     count = len(mesh.vertices)
     if not np.isfinite(mesh.vertices).all():
         raise FormatError(f"{name}: a coordinate is not a finite number.", "non_finite")
@@ -287,7 +287,7 @@ def _refuse_unwritable(name: str, mesh: Mesh | RawMesh, form: Form) -> None:
         message = f"{name}: a triangle names a vertex that does not exist."
         raise FormatError(message, "index_out_of_range")
     if form.needs_vertices and not count and not says_empty_set(mesh):
-        message = f"{name}: there are no vertices to write, without which this format is not read."
+        message = f"{name}: there are no vertices, and this format cannot be read without them."
         raise FormatError(f"{message} An empty Solid or Mesh can be written.", "empty")
     if form.beyond is not None and (reason := form.beyond(mesh)):
         raise FormatError(f"{name}: {reason}", "too_large")

@@ -1,4 +1,4 @@
-"""MTL: the materials of an OBJ, in a file beside it; pictures lie there, too."""
+"""MTL: the materials of an OBJ file, in a companion file; pictures are companions, too."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -30,7 +30,7 @@ class Libraries:
     missing : list of str
         The files that are not there.
     dropped : set of str
-        Kinds of data that a material has no room for.
+        Kinds of data that `Material` cannot hold.
     """
 
     materials: dict[str, Material] = field(default_factory=dict)
@@ -39,12 +39,12 @@ class Libraries:
 
 
 def name_of(words: Sequence[bytes]) -> str:
-    """Return the name that some words are."""
+    """Return the name that consists of some words."""
     return as_text(b" ".join(words))
 
 
 def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Libraries:
-    """Return the content of the libraries; the words of each are one name, or a name each."""
+    """Return the content of the libraries; their words are one name, or one name each."""
     found = Libraries()
     for words in libraries:
         whole = name_of(words)
@@ -60,7 +60,7 @@ def materials_in(source: Source, libraries: Sequence[Sequence[bytes]]) -> Librar
 
 
 def _sections(library: Source) -> list[tuple[str, dict[bytes, list[bytes]]]]:
-    """Return the statements of each material, the words by the first of each."""
+    """Return the statements of each material, as words by keyword."""
     found: list[tuple[str, dict[bytes, list[bytes]]]] = []
     for _, words in library.text_lines(b"#", _NAMING):
         if words[0] == b"newmtl":
@@ -71,7 +71,7 @@ def _sections(library: Source) -> list[tuple[str, dict[bytes, list[bytes]]]]:
 
 
 def _material(source: Source, said: Mapping[bytes, list[bytes]], found: Libraries) -> Material:
-    """Return a material; colours that are none leave it plain."""
+    """Return a material; invalid colours are ignored."""
     color = _color(said.get(b"Kd"))
     if color is None:
         found.dropped.add("colours of materials that are not three numbers")
@@ -85,7 +85,7 @@ def _material(source: Source, said: Mapping[bytes, list[bytes]], found: Librarie
 
 
 def _color(words: Sequence[bytes] | None) -> tuple[float, ...] | None:
-    """Return red, green and blue, of which one number is a grey; None if it is neither."""
+    """Return red, green and blue of three numbers or of one grey; None for anything else."""
     if words is None:
         return _PLAIN
     numbers = [_number(word) for word in words]
@@ -95,7 +95,7 @@ def _color(words: Sequence[bytes] | None) -> tuple[float, ...] | None:
 
 
 def _opacity(said: Mapping[bytes, list[bytes]]) -> float:
-    """Return the opacity, which is 1 where no number tells it."""
+    """Return the opacity, 1 if no number gives it."""
     if b"d" in said:
         told = _number(said[b"d"][-1]) if said[b"d"] else math.nan
     else:
@@ -104,7 +104,7 @@ def _opacity(said: Mapping[bytes, list[bytes]]) -> float:
 
 
 def _number(word: bytes) -> float:
-    """Return a number from 0 to 1, to which those beyond are moved; NaN if it is none."""
+    """Return a number clamped to the range from 0 to 1; NaN if the word is no number."""
     try:
         return float(np.clip(float(word), 0, 1))
     except ValueError:
@@ -118,14 +118,14 @@ def _picture(source: Source, words: Sequence[bytes], found: Libraries) -> bytes 
         if data is not None:
             return data
     if words:
-        # The words after an option may be numbers of it as well as of the name.
+        # Numbers after an option may belong to the option or to the name.
         has_options = words[0].startswith(b"-")
         found.missing.append(name_of(words[-1:] if has_options else words))
     return None
 
 
 def written(materials: Mapping[str, Material], stem: str) -> tuple[str, dict[str, bytes]]:
-    """Return the name of the library of an OBJ, and all files that go beside it."""
+    """Return the name of the library of an OBJ file, and all companion files."""
     library = f"{stem}.mtl"
     lines, files = [], {}
     for number, (name, material) in enumerate(materials.items()):

@@ -1,6 +1,6 @@
 """Wavefront OBJ: vertices and polygons, texture coordinates, normals, colours and materials.
 
-Groups, lines and curves are passed by.
+Groups, lines and curves are skipped.
 """
 
 import math
@@ -43,10 +43,10 @@ _FOLLOWING = frozenset({*_NAMING, *_NUMBERS, b"s"})
 
 @dataclass
 class _Found:
-    """The content of the statements, in their order; lines are those of the rows beside them.
+    """The content of the statements, in file order; `lines` has the line number of each row.
 
-    Corners are the rows of textures and of normals that the corners of some polygons name, from 0;
-    -1 where they name none.
+    `corners` has the rows of textures and normals that the corners of polygons name, from 0, or -1
+    for none.
     """
 
     rows: list[list[bytes]] = field(default_factory=list)
@@ -98,7 +98,7 @@ def read(source: Source) -> RawMesh:
 def _attributes_of(
     source: Source, found: _Found, polygons: IndexPolygons, positions: IndexArray
 ) -> tuple[Attributes, list[str]]:
-    """Return what is said besides the shape, and the files that are not there."""
+    """Return the attributes, and the names of missing files."""
     faces = polygons.corners[positions]
     vertex: dict[str, Values] = {}
     if found.rows and all(len(row) == 6 for row in found.rows):
@@ -112,7 +112,7 @@ def _attributes_of(
     ):
         if rows and found.corners:
             numbers = _references_at(found, place, len(rows))[positions]
-            # The last row stands for corners that name none.
+            # The last row is for corners that name no row.
             table = np.concatenate([_numbers(rows, width), np.full((1, width), np.nan)])
             corner[name] = table[numbers]
     if not found.materials:
@@ -125,7 +125,7 @@ def _attributes_of(
 
 
 def _numbers(rows: list[list[bytes]], width: int) -> FloatArray:
-    """Return the first numbers of some rows; what is none is NaN."""
+    """Return the first `width` numbers of each row, NaN for other words."""
     return np.array([[_number(row, k) for k in range(width)] for row in rows])
 
 
@@ -137,7 +137,7 @@ def _number(row: list[bytes], place: int) -> float:
 
 
 def _references_at(found: _Found, place: int, count: int) -> IndexArray:
-    """Return which of some rows each corner of each polygon names; -1 if it names none."""
+    """Return the row that each corner of each polygon names, -1 for none."""
     numbers = []
     for polygon, corners in enumerate(found.polygons):
         named = found.corners.get(polygon)
@@ -147,7 +147,7 @@ def _references_at(found: _Found, place: int, count: int) -> IndexArray:
 
 
 def _row(parts: list[bytes], place: int, known: int) -> int:
-    """Return which row a corner names; negative numbers count back from the last that is known."""
+    """Return the row that a corner names; negative numbers count back from the last known row."""
     try:
         number = whole(parts[place])
     except (ValueError, IndexError):
@@ -167,7 +167,9 @@ def _missing(names: list[str]) -> tuple[Finding, ...]:
     if not names:
         return ()
     told = ", ".join(f"“{name}”" for name in dict.fromkeys(names))
-    message = f"the files {told} are not beside this one; colours and pictures in them are gone."
+    message = (
+        f"the files {told} are missing beside this one, and so are their colours and pictures."
+    )
     return (Finding("ignored", "warning", message, (), len(names)),)
 
 
@@ -205,7 +207,7 @@ def _collected(source: Source) -> _Found:
 def _objects(
     begun: list[tuple[bytes, int]], triangles: list[int], total: int
 ) -> tuple[tuple[str, int], ...]:
-    """Return names and triangle counts of objects that begin at some polygons."""
+    """Return names and triangle counts of objects, given the polygons at which they begin."""
     if sum(triangles) != total:  # a polygon without area has fewer
         return ()
     if not begun or begun[0][1] > 0:
@@ -220,9 +222,9 @@ def _objects(
 
 
 def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
-    """Yield number and words of each line; a line that ends in a backslash goes on.
+    """Yield number and words of each line; a backslash at the end continues the line.
 
-    One of names does so only where no statement follows it: that backslash is part of a name.
+    A line of names continues only if no statement follows; else the backslash belongs to a name.
     """
     held: list[bytes] = []
     start, is_in_word = 0, False
@@ -238,20 +240,22 @@ def _statements(source: Source) -> Iterator[tuple[int, list[bytes]]]:
         yield start, held + words
         held = []
     if held and held[0] not in _NAMING:
-        raise source.error("the file ends in a line that must go on.", "truncated", line=start)
+        raise source.error(
+            "the file ends in a line that a backslash continues.", "truncated", line=start
+        )
     if held:
         yield start, _ended(held, is_in_word)
 
 
 def _is_statement(words: list[bytes], is_after_word: bool) -> bool:
-    """Say whether words after a line of names begin anew; after a lone mark, only if numbers do."""
+    """Say whether words begin a statement; after a lone backslash, only numbers count."""
     if is_after_word:
         return words[0] in _FOLLOWING
     return words[0] in _NUMBERS and len(words) > 2
 
 
 def _ended(names: list[bytes], is_in_word: bool) -> list[bytes]:
-    """Return a line of names that ended in a backslash, which belongs to the last of them."""
+    """Return a line of names with the backslash at its end, as part of the last name."""
     return [*names[:-1], names[-1] + b"\\"] if is_in_word else [*names, b"\\"]
 
 
@@ -291,12 +295,12 @@ def _curved(count: int) -> tuple[Finding, ...]:
 
 
 def called(name: str) -> str:
-    """Return an object's name as a line can hold it: without marks that end or go on a line."""
+    """Return an object's name without characters that end or continue a line."""
     return on_one_line(name).replace("#", "_").replace("\\", "_")
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return what OBJ holds of attributes.
+    """Return the attributes that OBJ can hold.
 
     Colours of vertices, without opacity, and materials of faces, or else their colours; texture
     coordinates and normals of corners.
@@ -327,7 +331,7 @@ def kept(said: Attributes) -> Attributes:
 
 
 def _with_colors_of_vertices(said: Attributes) -> Attributes:
-    """Return the attributes, opaque colours of faces as ones of vertices if those agree."""
+    """Return the attributes; opaque face colours become vertex colours where faces agree."""
     said = with_even_faces(said, COLOR)
     colors = said.face.get(COLOR)
     if colors is None or not is_color(COLOR, colors, 1) or not is_opaque(colors):
@@ -346,7 +350,7 @@ _COLORED = re.compile("color_([0-9a-f]{8})")
 
 
 def _with_colors(said: Attributes) -> Attributes:
-    """Return the attributes with colours for materials, if all are called after theirs."""
+    """Return the attributes with colours in place of materials, if colours are their names."""
     names = said.face.get("material")
     if names is None or COLOR in said.names:
         return said
@@ -360,7 +364,7 @@ def _with_colors(said: Attributes) -> Attributes:
 
 
 def _color_called(name: str, material: Material | None) -> bytes:
-    """Return the colour that a material is called after; none if it is another or has a picture."""
+    """Return the colour that a material is named after; None if it has another or a picture."""
     match = _COLORED.fullmatch(name)
     if match is None:
         return b""
@@ -373,7 +377,7 @@ _BYTE = 255
 
 
 def with_materials(said: Attributes | None) -> Attributes | None:
-    """Return the attributes with materials for colours of faces, for which OBJ has nothing else."""
+    """Return the attributes with face colours as materials, the only form that OBJ has for them."""
     if said is None or COLOR not in said.face:
         return said
     kinds, numbers = np.unique(said.face[COLOR], axis=0, return_inverse=True)
@@ -385,7 +389,7 @@ def with_materials(said: Attributes | None) -> Attributes | None:
 
 
 def _named_materials(said: Attributes) -> Values:
-    """Return the name of each face's material; none if faces have no names."""
+    """Return the material name of each face, or None if faces have no materials."""
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
         return names
@@ -393,20 +397,20 @@ def _named_materials(said: Attributes) -> Values:
 
 
 def _whole_rows(values: Values) -> Values | None:
-    """Return the rows of known numbers, and NaN for the others; None if no row is known."""
+    """Return rows with NaN in place of incomplete ones; None if no row is complete."""
     is_known = ~np.isnan(values).any(axis=-1, keepdims=True)
     rows: Values = np.where(is_known, values, np.nan).astype(np.float64)
     return rows if is_known.any() else None
 
 
 def _held_names(names: set[str]) -> dict[str, str]:
-    """Return materials' names as lines can hold them, each by the name: no two are the same."""
+    """Return the names of materials in a form that lines can hold, by name; all are distinct."""
     held = {"": ""}
     taken = {""}
-    # Those that can stay as they are come first.
+    # First come the names that need no change.
     for name in sorted(names - {""}, key=lambda name: (called(name) != name, name)):
         fit = called(name) or "_"
-        # What is a material stays one.
+        # A material whose name looks like a colour must not be read back as a colour.
         fit = free = f"{fit}_" if _COLORED.fullmatch(fit) else fit
         number = 1
         while free in taken:
@@ -422,7 +426,7 @@ _CORNERS = {"uv": 2, "normal": 3}
 
 
 def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
-    """Return the statement that names the library of materials, and the files beside an OBJ."""
+    """Return the statement that names the material library, and the companion files."""
     said = with_materials(said_of(mesh))
     if said is None or not said.materials:
         return b"", {}
@@ -431,9 +435,9 @@ def beside(mesh: RawMesh, stem: str) -> tuple[bytes, dict[str, bytes]]:
 
 
 def _as_word(stem: str) -> str:
-    """Return the stem of a file as one word, by which no other stem goes.
+    """Return the stem of a file as one word, distinct for each stem.
 
-    Many readers take a name with a blank for two.
+    Many readers take a name with a blank for two names.
     """
     return "".join(
         letter if letter.isprintable() and letter not in " #\\~" else f"~{ord(letter):02x}"
@@ -488,7 +492,7 @@ def _text_with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[by
 
 
 def _corner(numbers: Mapping[str, IndexArray], row: int, corner: int, vertex: int) -> str:
-    """Return what a face says of a corner: numbers of vertex, texture coordinates and normal."""
+    """Return the text of a corner in a face: numbers of vertex, texture coordinates and normal."""
     uv, normal = (_at(numbers.get(name), row, corner) for name in ("uv", "normal"))
     if normal:
         return f"{vertex + 1}/{uv}/{normal}"

@@ -38,18 +38,18 @@ def read(source: Source) -> RawMesh:
     except FormatError:
         number, words = lines[0]
         spread = _spread(vertex_count, face_count, [(number, words[3:]), *rest])
-        # Its kin say more of a vertex than its place.
+        # Related formats give more of a vertex than its position.
         if spread is None or (keyword.isalpha() and keyword != b"OFF"):
             raise
         return _mesh(source, keyword, vertex_count, face_count, spread)
 
 
 def _spread(vertex_count: int, face_count: int, lines: list[_Line]) -> list[_Line] | None:
-    """Return a line for each vertex and face if the file has their numbers, but on other lines.
+    """Return a line for each vertex and face if the numbers are complete, but on other lines.
 
-    A colour would end by its line: where there are more numbers, nothing is returned.
+    If there are additional numbers, nothing is returned: a colour needs the end of its line.
     """
-    # Where there are as many lines as there should be, one of them is wrong.
+    # If the number of lines is right, one of the lines must be wrong.
     is_spread = sum(bool(words) for _, words in lines) != vertex_count + face_count
     if not is_spread or sum(len(words) for _, words in lines) < 3 * vertex_count + face_count:
         return None
@@ -102,7 +102,7 @@ def _more_than_a_shape(
     vertex: dict[str, Values],
     face: dict[str, Values],
 ) -> tuple[str, ...]:
-    """Return what is said of vertices and faces besides the shape, and is not kept."""
+    """Return the kinds of data besides the shape that are not kept."""
     found = []
     if not vertex and any(len(words) > 3 for _, words in points):
         found.append("data of vertices")
@@ -126,7 +126,7 @@ def _colors(rows: Sequence[Sequence[bytes]]) -> Values | None:
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return what OFF holds of attributes: colours of vertices, else of faces, in bytes."""
+    """Return the attributes that OFF can hold: colours of vertices, else of faces, in bytes."""
     said = with_even_faces(said, COLOR)
 
     def keep(kind: Kind, name: str, values: Values) -> Values | None:

@@ -1,4 +1,4 @@
-"""Meshes that files place or units scale: what rounding makes cross is mended."""
+"""Meshes that files place or units scale, with crossings from rounding mended."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -30,9 +30,9 @@ class PlacedMesh:
     image : callable
         Takes and returns (n, 3) float64: it puts points in their places.
     keeps : bool
-        True if that rounds none of the coordinates.
+        True if `image` rounds no coordinate.
     map : bytes
-        A name of the image: what has one in common is placed as a whole.
+        A key of the image: meshes with equal keys are placed together.
     """
 
     mesh: RawMesh
@@ -83,12 +83,12 @@ def _is_sum_exact(values: FloatArray, offset: float) -> bool:
 
 
 def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
-    """Return meshes in their places as one, each an object of its name.
+    """Return meshes in their places as one mesh; each is an object with its name.
 
-    Where placing made surfaces cross that did not before, they are mended by changes of the width
-    of the rounding: within a mesh, and among those that one map placed. What rounding could open is
-    closed by index before. Findings tell what could not be mended, and how many triangles were left
-    out.
+    If placing makes surfaces cross that did not cross before, they are mended by changes as small
+    as the rounding, within a mesh and among meshes placed by one map. A mesh that rounding could
+    open is first closed by index. Findings name what could not be mended, and count dropped
+    triangles.
     """
     meshes = [piece.in_place() for piece in pieces]
     whole = joined(meshes)
@@ -115,8 +115,8 @@ def placed(pieces: Sequence[PlacedMesh]) -> RawMesh:
 def rescaled(raw: RawMesh, unit: float, new_unit: float = 1.0) -> RawMesh:
     """Return a mesh with its coordinates in another unit; its objects stay apart.
 
-    Where rounding made surfaces cross that did not before, they are mended; findings tell what
-    could not be, and how many triangles were left out.
+    If rounding makes surfaces cross that did not cross before, they are mended. Findings name what
+    could not be mended, and count dropped triangles.
 
     Parameters
     ----------
@@ -187,7 +187,7 @@ def _sewn(mesh: AttributedMesh) -> Sewn | None:
         with core_errors():
             tree = Tree.from_mesh(mesh.vertices, mesh.faces)
     except (InvalidMeshError, LimitError):
-        # What makes a solid of it says why that cannot be.
+        # The conversion to a solid reports the reason.
         return None
     return sewn(mesh, tree)
 
@@ -195,7 +195,7 @@ def _sewn(mesh: AttributedMesh) -> Sewn | None:
 def _take(
     found: Mended, members: list[int], meshes: list[RawMesh], crossing: dict[int, list[int]]
 ) -> None:
-    """Put what was mended as a whole in the place of its pieces."""
+    """Replace pieces by the parts of a mesh that was mended as a whole."""
     end = 0
     for number in members:
         start, end = end, end + len(meshes[number].faces)
@@ -220,29 +220,29 @@ def _with_findings(
 
 
 def _left_out(raw: RawMesh, found: Mended) -> int:
-    """Return how many triangles a mended mesh has no part of."""
+    """Return the number of triangles of which a mended mesh has no part."""
     return len(raw.faces) - len(np.unique(found.kept))
 
 
 def _flat(count: int) -> tuple[Finding, ...]:
-    """Return what is to be told of triangles that were left out."""
+    """Return the finding about dropped triangles."""
     if not count:
         return ()
     message = (
-        f"{count} triangles without area, or on others that face them, were left out: rounding to"
-        " where meshes are placed would open them there."
+        f"{count} triangles without area, or on others that face them, were left out: rounding the"
+        " placed meshes would open gaps there."
     )
     return (Finding("zero_area", "note", message, (), count),)
 
 
 def _crossing(places: list[int]) -> tuple[Finding, ...]:
-    """Return what is to be told of triangles that cross others still."""
+    """Return the finding about triangles that still cross others."""
     if not places:
         return ()
     return (Finding("crossing", "warning", _CROSSING, tuple(places), len(places)),)
 
 
 _CROSSING = (
-    "rounding meshes to where they are placed makes these triangles cross or overlap others, which"
+    "rounding the placed meshes makes these triangles cross or overlap others, which"
     " could not be mended"
 )

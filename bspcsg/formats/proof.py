@@ -1,7 +1,7 @@
-"""The proof that a file holds what was written: every corner of every triangle of every object.
+"""The proof that a file equals the mesh, in every corner of every triangle of every object.
 
-Corners that are equal, each coordinate rounded once to the file's precision, make equal counts,
-bounds and volumes, so nothing is compared within a tolerance.
+Corners must be equal after one rounding of each coordinate to the file's precision. Then counts,
+bounds and volumes are equal too, so no tolerance is needed.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -45,15 +45,15 @@ def prove(
     called : callable, optional
         None where files do not tell objects apart.
     repeats : bool
-        True if the format holds triangles that name a vertex twice.
+        True if the format can store triangles that name a vertex twice.
     file : binary file
-        To be read from its beginning.
+        The file, at its beginning.
 
     Raises
     ------
     FormatError
-        If it does not; code ``"write_mismatch"``, `where` holds the first triangle that differs,
-        if the number of triangles is right.
+        If it does not; code ``"write_mismatch"``. If the number of triangles is right, `where`
+        holds the first triangle that differs.
     """
     with _reading(path):
         held = [one for one in scan(file) if one.count]
@@ -70,7 +70,7 @@ def prove(
 
 @contextmanager
 def _reading(path: str) -> Iterator[None]:
-    """Say that a file cannot be read back, whatever damage leads to inside the block."""
+    """Turn all errors of the block into one that the file cannot be read back."""
     try:
         yield
     except MemoryError:
@@ -87,10 +87,10 @@ def prove_with_attributes(
     repeats: bool,
     file: BinaryIO,
 ) -> None:
-    """Raise an error unless a file holds a mesh and all that is said of it.
+    """Raise an error unless a file holds a mesh and its attributes.
 
-    Files with attributes have many layouts, and are read as anybody's are: the readers share no
-    code with the writers.
+    Files with attributes have many layouts, so the normal readers are used, which share no code
+    with the writers.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def prove_with_attributes(
     mesh : RawMesh
         The mesh that was written.
     read : callable
-        Returns what the bytes of a file hold.
+        Returns the mesh in the bytes of a file.
     called, repeats, file
         As for `prove`.
 
@@ -132,7 +132,7 @@ def _compare_attributes(path: str, mesh: RawMesh, found: RawMesh, rows: IndexArr
     meant_materials = {} if mesh.attributes is None else mesh.attributes.materials
     told_materials = {} if found.attributes is None else found.attributes.materials
     if any(told_materials.get(name) != one for name, one in meant_materials.items()):
-        raise _mismatch(path, "the materials are others")
+        raise _mismatch(path, "the materials differ")
 
 
 def _are_same(one: npt.NDArray[Any], other: npt.NDArray[Any]) -> bool:
@@ -143,7 +143,7 @@ def _are_same(one: npt.NDArray[Any], other: npt.NDArray[Any]) -> bool:
 
 def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatError:
     message = (
-        f"{path}: the file that was written is not the mesh, and was not put in place: {reason}."
+        f"{path}: the written file differs from the mesh and was discarded: {reason}."
         " The disk may be at fault; if it happens again, please report it."
     )
     return FormatError(message, "write_mismatch", where)
@@ -152,7 +152,7 @@ def _mismatch(path: str, reason: str, where: tuple[int, ...] = ()) -> FormatErro
 def _expected_objects(
     mesh: Mesh | RawMesh, called: Called | None, repeats: bool
 ) -> list[tuple[str, IndexArray]]:
-    """Return names and triangles of the objects that a file is to hold."""
+    """Return names and triangles of the objects that a file should hold."""
     parts = [("", mesh.faces)] if called is None else parts_of(mesh)
     if called is not None:
         parts = [(called(name), faces) for name, faces in parts]
@@ -191,7 +191,7 @@ def _compare_corners(
     for (_, faces), one in zip(expected, held, strict=True):
         at = _first_difference(rounded, faces, one)
         if at is not None:
-            message = f"the corners of triangle {before + at} are others"
+            message = f"the corners of triangle {before + at} differ"
             raise _mismatch(path, message, (before + at,))
         before += len(faces)
 

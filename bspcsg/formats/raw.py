@@ -1,8 +1,8 @@
-"""`RawMesh`: what a file says, before anything is made of it; polygons become triangles here.
+"""`RawMesh`: the content of a file, unprocessed, with polygons divided into triangles.
 
 Readers neither weld, orient, repair nor drop anything, with two exceptions: STL has no indices, so
-its corners with equal coordinates become one vertex; and where a file places a mesh, what rounding
-makes cross is mended (`bspcsg/formats/placing.py`).
+its corners with equal coordinates become one vertex; and where a file places a mesh, crossings from
+rounding are mended (`bspcsg/formats/placing.py`).
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ POLYGONS = "faces of more than three corners"
 
 @dataclass(frozen=True, eq=False)
 class RawMesh:
-    """Triangles as a file gives them; nothing says that they enclose anything.
+    """Triangles as a file gives them; they need not enclose a volume.
 
     Parameters
     ----------
@@ -34,22 +34,22 @@ class RawMesh:
     name : str
         The mesh's name in the file, or the file's stem.
     findings : tuple of Finding
-        The noteworthy things about the file.
+        The findings about the file.
     objects : tuple of (str, int)
-        Names of the objects in the file and how many triangles each has, in order; empty if the
-        file does not tell objects apart.
+        Names and triangle counts of the objects in the file, in order; empty if the file has no
+        separate objects.
     unit : str
-        ``"mm"`` if the format says how long a unit is, else empty.
+        ``"mm"`` if the format defines the unit of lengths, else empty.
     dropped : tuple of str
-        Kinds of data in the file that a mesh of triangles has no room for, such as "colours".
+        Kinds of data in the file that a mesh of triangles cannot hold, such as "colours".
     is_empty_set : bool
         True if the file is one that this package writes for the empty set. Any other file without
-        faces is no set: what should be in it may have got lost.
+        faces is not the empty set: its content may have been lost.
     attributes : Attributes, optional
         The values on vertices, corners and faces.
     is_mended : bool
-        True if placing made surfaces cross, which was mended in doubles: on the lattice they touch,
-        and may cross there.
+        True if placing made surfaces cross and they were mended in doubles. On the lattice they
+        touch, or may still cross.
     """
 
     vertices: FloatArray
@@ -65,12 +65,12 @@ class RawMesh:
 
     @property
     def passed_by(self) -> tuple[str, ...]:
-        """The things that the reader said it left out."""
+        """The findings about data that the reader skipped."""
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
 def says_empty_set(mesh: Mesh | RawMesh) -> bool:
-    """Say whether a file of this mesh is to say that it is the empty set."""
+    """Say whether a file of this mesh must be marked as the empty set."""
     return len(mesh.faces) == 0 and (isinstance(mesh, Mesh) or mesh.is_empty_set)
 
 
@@ -82,14 +82,14 @@ _PASSED_BY = frozenset({"ignored", "curves_ignored", "extra_data"})
 
 
 def empty_set() -> RawMesh:
-    """Return what is read from a file that this package wrote for the empty set."""
+    """Return the mesh that is read from a file of the empty set."""
     finding = Finding("empty", "note", "this file is the empty set.", (), 1)
     faces = np.zeros((0, 3), dtype=np.int64)
     return RawMesh(np.zeros((0, 3)), faces, "", (finding,), is_empty_set=True)
 
 
 def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
-    """Return names and triangles of the objects of a mesh; one that has none is one object."""
+    """Return names and triangles of the objects of a mesh; a mesh without objects is one."""
     objects = mesh.objects if isinstance(mesh, RawMesh) else ()
     if sum(count for _, count in objects) != len(mesh.faces):
         return [(mesh.name if isinstance(mesh, RawMesh) else "", mesh.faces)]
@@ -102,7 +102,7 @@ def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
 
 
 def on_one_line(name: str) -> str:
-    """Return a name as a line of text can hold it: words with a space between, in UTF-8."""
+    """Return a name on one line: words separated by single spaces, valid in UTF-8."""
     words = " ".join("".join(" " if ord(letter) < _SPACE else letter for letter in name).split())
     return words.encode("utf-8", "replace").decode("utf-8")
 
@@ -112,7 +112,7 @@ _SPACE = 32
 
 
 def compacted(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the vertices that triangles use, rising, and the triangles that number only those."""
+    """Return the vertices that triangles use, ascending, and the triangles renumbered for them."""
     if len(faces) == 0:
         return np.zeros(0, dtype=np.int64), faces
     low = int(faces.min())
@@ -123,7 +123,7 @@ def compacted(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
 
 
 def joined(meshes: Sequence[RawMesh]) -> RawMesh:
-    """Return several meshes as one, each an object of its name; nothing is welded."""
+    """Return several meshes as one, each as a named object; nothing is welded."""
     starts = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes]).tolist()
     vertices = [np.zeros((0, 3))] + [mesh.vertices for mesh in meshes]
     faces = [np.zeros((0, 3), dtype=np.int64)]
@@ -164,7 +164,7 @@ class IndexPolygons:
         return cls(np.array(flat, dtype=np.int64), counts)
 
     def of_strips(self) -> "tuple[IndexPolygons, IndexArray]":
-        """Return the triangles of these as strips, and the strip of each; -1 begins anew."""
+        """Return the triangles of these strips, and the strip of each; -1 restarts a strip."""
         corners, strips = self.corners, np.repeat(np.arange(len(self.counts)), self.counts)
         is_gap = corners == -1
         is_first = np.zeros(len(corners), dtype=bool)
@@ -181,12 +181,12 @@ class IndexPolygons:
 
     @property
     def dropped(self) -> tuple[str, ...]:
-        """The things that triangles do not keep of these polygons, as `RawMesh.dropped` says it."""
+        """The kinds of data that triangles do not keep of these polygons, for `RawMesh.dropped`."""
         return (POLYGONS,) if self.counts.max(initial=0) > 3 else ()
 
     @classmethod
     def from_rows(cls, rows: IndexArray) -> "IndexPolygons":
-        """Return polygons that all have as many corners as `rows` has columns."""
+        """Return polygons with as many corners each as `rows` has columns."""
         corners = np.ascontiguousarray(rows, dtype=np.int64).ravel()
         return cls(corners, np.full(len(rows), rows.shape[1], dtype=np.int64))
 
@@ -195,14 +195,14 @@ class IndexPolygons:
     ) -> IndexArray:
         """Return (m, 3) triangles, those of each polygon together, in the order of the polygons.
 
-        Polygons may be concave; the edges of each stay what they are, so a closed surface of
-        polygons gives a closed surface of triangles.
+        Polygons may be concave. Their edges stay, so a closed surface of polygons becomes a closed
+        surface of triangles.
 
         Parameters
         ----------
         vertices : (n, 3) float64
         error_at : callable
-            Makes the error for polygon k from k, a sentence and a code.
+            Makes the error for a polygon from its number, a message and a code.
 
         Raises
         ------
@@ -224,7 +224,7 @@ class IndexPolygons:
     def positions(
         self, vertices: FloatArray, error_at: Callable[[int, str, str], FormatError]
     ) -> IndexArray:
-        """Return the triangles of `triangles` as (m, 3) places in `corners`."""
+        """Return the triangles of `triangles` as (m, 3) positions in `corners`."""
         self._check(len(vertices), error_at)
         if (self.counts == 3).all():
             return np.arange(len(self.corners)).reshape(-1, 3)
@@ -232,7 +232,7 @@ class IndexPolygons:
         return places.triangles(vertices[self.corners], error_at)
 
     def owners(self, positions: IndexArray) -> IndexArray:
-        """Return which polygon each triangle is of, given as places in `corners`."""
+        """Return the polygon of each triangle, given as positions in `corners`."""
         return np.searchsorted(np.cumsum(self.counts), positions[:, 0], side="right")
 
     def _check(self, vertex_count: int, error_at: Callable[[int, str, str], FormatError]) -> None:
@@ -252,7 +252,7 @@ class IndexPolygons:
 
 
 def _triangulated(rows: IndexArray, vertices: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return triangles of (k, n) polygons, and for each the row that it is from."""
+    """Return triangles of (k, n) polygons, and the row that each comes from."""
     count = rows.shape[1]
     if count == 3:
         return rows, np.arange(len(rows))
@@ -261,7 +261,8 @@ def _triangulated(rows: IndexArray, vertices: FloatArray) -> tuple[IndexArray, I
     parts, owners = [fans], [np.repeat(np.flatnonzero(convex), count - 2)]
     for row in np.flatnonzero(~convex).tolist():
         corners = vertices[rows[row]]
-        # Measured from its own first corner, a small polygon far out keeps its shape.
+        # Coordinates relative to the first corner keep the shape of a small polygon far from the
+        # origin.
         faces = rows[row][triangulate_face(corners - corners[0])]
         parts.append(faces)
         owners.append(np.full(len(faces), row))
@@ -274,7 +275,7 @@ def _fan(count: int) -> IndexArray:
 
 
 def _are_convex(corners: FloatArray) -> "np.ndarray[tuple[int], np.dtype[np.bool_]]":
-    """Say whether (k, n, 3) polygons are strictly convex, with the fan of corner 0 inside."""
+    """Say whether (k, n, 3) polygons are strictly convex, so that the fan of corner 0 is inside."""
     local = corners - corners[:, :1]
     with np.errstate(over="ignore", invalid="ignore"):
         normal = np.cross(local, np.roll(local, -1, axis=1)).sum(axis=1)

@@ -1,4 +1,4 @@
-"""The table of formats by suffixes; the modules of a format are imported when it is asked for."""
+"""The table of formats by suffix; the modules of a format are imported on its first use."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
@@ -22,31 +22,30 @@ Limit: TypeAlias = Callable[[Mesh | RawMesh], str]
 
 @dataclass(frozen=True)
 class Form:
-    """One way to write a format, and to prove what was written.
+    """One way to write a format, and to prove the written file.
 
     Parameters
     ----------
     encode : callable
     scan : callable
-        Takes a written file apart.
+        Returns the content of a written file.
     called : callable, optional
-        The function that gives an object's name in the file; None if files do not tell objects
-        apart.
+        Returns the name of an object in the file; None if files have no separate objects.
     losses : callable, optional
-        The function that lists losses; raises OverflowError if the form cannot hold the numbers.
+        Returns the findings about losses; raises OverflowError if the form cannot hold the numbers.
     repeats : bool
-        True if it holds triangles that name a vertex twice.
+        True if it can store triangles that name a vertex twice.
     is_single : bool
-        True if it holds single precision only.
+        True if it stores single precision only.
     keeps : callable, optional
-        Returns what it holds of attributes over vertices, as they read back; None if it holds none.
+        Returns the attributes that it can hold, as they read back; None if it can hold none.
     beyond : callable, optional
-        Says why no file can hold so large a mesh; nothing if one can.
+        Returns why a mesh is too large for the form, or nothing if it fits.
     beside : callable, optional
-        Returns what a file begins with to name files beside it, and those, from the mesh and the
-        stem of the file.
+        Returns the beginning of a file, which names its companion files, and these files; takes the
+        mesh and the stem of the file.
     needs_vertices : bool
-        True if a file without vertices is read only as the empty set.
+        True if the reader refuses files without vertices, except for the empty set.
     """
 
     encode: Encoder
@@ -70,7 +69,7 @@ class Format:
     read : callable
     text, binary : Form, optional
     unit : str
-        ``"mm"`` if files say how long a unit is, and are read and written in millimetres.
+        ``"mm"`` if files state their unit, and are read and written in millimetres.
     up : {"z", "y"}
         The axis that is up in files; meshes in memory have z up.
     """

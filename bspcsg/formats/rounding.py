@@ -13,9 +13,9 @@ _Kind = TypeVar("_Kind", bound=Mesh | RawMesh)
 
 
 def rounded(mesh: _Kind, digits: int) -> tuple[_Kind, tuple[Finding, ...]]:
-    """Return a mesh whose coordinates have so many significant digits, and how far that moved them.
+    """Return a mesh with coordinates of so many significant digits, and a finding on the change.
 
-    Faces may cross, or lose their area, where they come closer to each other than that.
+    Faces that are closer to each other than this change may cross or lose their area.
 
     Parameters
     ----------

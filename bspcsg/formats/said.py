@@ -1,4 +1,4 @@
-"""The attributes in files besides the shape: those that a format keeps, and those it leaves out."""
+"""Attributes in files: those that a format keeps, and those that it drops."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -27,7 +27,7 @@ def saying(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawMesh:
 
 
 def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None]) -> Attributes:
-    """Return the attributes of which something is kept, as it is kept."""
+    """Return the kept attributes of a mesh, in the form in which they are kept."""
     vertex, corner, face = (
         {
             name: values
@@ -42,7 +42,7 @@ def chosen(said: Attributes, keep: Callable[[Kind, str, Values], Values | None])
 
 
 def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Finding, ...]:
-    """Return the findings about what a file does not hold of attributes."""
+    """Return the findings about attributes that a file does not hold."""
     held = Attributes(said.faces) if kept is None else kept
     lost = [name for name in said.names if name not in held.names]
     told = [f"“{name}” of {_PLURAL[said.kind_of(name) or 'face']}" for name in lost]
@@ -52,7 +52,7 @@ def left_out(said: Attributes, kept: Attributes | None, suffix: str) -> tuple[Fi
 
 
 def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about attributes in some words that a format has no place for."""
+    """Return the finding about attributes, given as words, that a format cannot hold."""
     if not told:
         return ()
     were = "was" if len(told) == 1 else "were"
@@ -61,7 +61,7 @@ def not_held(told: Sequence[str], suffix: str) -> tuple[Finding, ...]:
 
 
 def _changed_color(said: Attributes, held: Attributes, suffix: str) -> tuple[Finding, ...]:
-    """Return the finding about colours that are there, but not as they were."""
+    """Return the finding about colours that the file holds, but changed."""
     if COLOR not in said.names or COLOR not in held.names:
         return ()
     given, kept = said.at_corners(COLOR), held.at_corners(COLOR)

@@ -1,4 +1,4 @@
-"""`SceneNode`: what files say of things in things, before anything is made of it."""
+"""`SceneNode`: the tree of nested objects in a file, unprocessed."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ from .raw import RawMesh
 
 @dataclass(frozen=True, eq=False)
 class SceneNode:
-    """A named thing in its place, with a mesh or with things in it.
+    """A named node with a transform, and with a mesh or with children.
 
     Parameters
     ----------
     name : str
     matrix : (4, 4) float64
-        From this node to the one around it, for column vectors; millimetres, z upwards.
+        From this node to its parent, for column vectors; millimetres, z upwards.
     mesh : RawMesh or None
-        Instances have the same object.
+        Instances share one object.
     color : tuple of float or None
     children : tuple of SceneNode
     """
@@ -41,7 +41,7 @@ class SceneNode:
 
 
 def are_alike(one: SceneNode, other: SceneNode) -> bool:
-    """Say whether two trees have the same names, places, colours and corners, and share alike."""
+    """Say whether two trees have equal names, matrices, colours, corners and shared meshes."""
     pairs = list(zip(one.walk(), other.walk(), strict=False))
     if len(pairs) != sum(1 for _ in one.walk()) or len(pairs) != sum(1 for _ in other.walk()):
         return False
@@ -54,7 +54,7 @@ def are_alike(one: SceneNode, other: SceneNode) -> bool:
             return False
         if a.mesh is None or b.mesh is None:
             continue
-        # What has two colours is two meshes in a file.
+        # A mesh with two colours becomes two meshes in a file.
         known = shared.setdefault((id(a.mesh), a.color), id(b.mesh))
         if known != id(b.mesh) or not _same(a.mesh, b.mesh):
             return False
@@ -66,7 +66,7 @@ def _same(one: RawMesh, other: RawMesh) -> bool:
 
 
 def say_alike(one: SceneNode, other: SceneNode) -> bool:
-    """Say whether the meshes of two trees that are alike say the same, colours of nodes apart."""
+    """Say whether the meshes of two like trees have equal attributes, except node colours."""
     pairs = zip(one.walk(), other.walk(), strict=False)
     return all(
         _equal_attributes(a.mesh.attributes, b.mesh.attributes)

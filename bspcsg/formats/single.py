@@ -1,4 +1,4 @@
-"""The changes of a mesh by single precision: binary STL and GLB hold no more."""
+"""The changes of a mesh by single precision, the precision of binary STL and GLB."""
 
 import numpy as np
 
@@ -19,11 +19,11 @@ _MAX_TRIANGLES_NAMED = 8
 
 
 def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
-    """Return what single precision would change about a mesh.
+    """Return the findings about changes of a mesh by single precision.
 
     Vertices that merge, triangles that lose their area and triangles that turn over are counted
     exactly. A triangle turns over if its normals before and after are more than a right angle
-    apart; one that has no area before is neither lost nor turned.
+    apart; a triangle without area before counts as neither.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def losses(mesh: Mesh | RawMesh, format_name: str) -> tuple[Finding, ...]:
 
 
 def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
-    """Return a solid's mesh in single precision, crossing itself nowhere that could be mended.
+    """Return a solid's mesh in single precision, with crossings mended where possible.
 
-    Rounding moves every corner, so that surfaces near each other may cross and thin triangles lose
-    their area; such are taken out by changes of the width of the rounding. Where that would leave
-    nothing at all, surfaces are moved outwards by a spacing of single precision first.
+    Rounding moves every corner, so close surfaces may cross and thin triangles may lose their area.
+    Both are mended by changes as small as the rounding. If nothing would be left, surfaces are
+    first moved outwards by one spacing of single precision.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
     Returns
     -------
     mesh : Mesh
-        The given one if nothing had to be changed, or if nothing of it can be kept.
+        The given mesh if nothing had to be changed, or if no part of it can be kept.
     findings : tuple of Finding
         The number of triangles changed or moved, and the places where surfaces still cross.
 
@@ -91,7 +91,7 @@ def settled(mesh: Mesh) -> tuple[Mesh, tuple[Finding, ...]]:
 
 
 def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
-    """Return what can be kept of a mesh that rounding leaves nothing of, how, and what crosses."""
+    """Return the thickened form of a mesh that rounding would erase, a finding, and crossings."""
     spacing = _spacing(mesh.vertices)
     result, _, crossing = _mended(_thickened(mesh, spacing))
     if len(result.faces):
@@ -101,15 +101,15 @@ def _kept(mesh: Mesh) -> tuple[Mesh, Finding, IndexArray]:
 
 
 def _mended(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
-    """Return a mesh in single precision, how many triangles were mended, and which still cross."""
+    """Return a mesh in single precision, the number of mended triangles, and those that cross."""
     result, mended, crossing = _rounded(mesh)
     for _ in range(_MAX_ROUNDS):
         if not len(crossing) or not len(result.faces):
             break
         mended += len(crossing)
         result, more, _ = _rounded(_united(result))
-        # The lattice on which surfaces are united does not hold single precision. Faces that it
-        # leaves as they were may cross, so all are looked at.
+        # The lattice on which surfaces are united does not contain the numbers of single precision.
+        # Faces that stay unchanged there may cross, so all are checked.
         crossing = _faulty(result.certificate)
         mended += more
     return result, mended, crossing
@@ -122,7 +122,7 @@ _MAX_ROUNDS = 4
 
 
 def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
-    """Return a mesh rounded and mended once, of how many triangles, and which of them cross."""
+    """Round and mend a mesh once; return it, the count of mended triangles, and crossing ones."""
     with core_errors():
         found = mesh_in_single(mesh.vertices, mesh.faces)
     kept = found["kept"]
@@ -134,21 +134,20 @@ def _rounded(mesh: Mesh) -> tuple[Mesh, int, IndexArray]:
 
 
 def _faulty(proof: Certificate) -> IndexArray:
-    """Return the numbers of the triangles that cross others or have no area, rising."""
+    """Return the numbers of the triangles that cross others or have no area, ascending."""
     return _either(np.array(proof.crossings), np.array(proof.flat))
 
 
 def _either(some: IndexArray, others: IndexArray) -> IndexArray:
-    """Return the numbers that are in one of two lists, rising."""
+    """Return the numbers that are in at least one of two lists, ascending."""
     # Not numpy.unique, which imports numpy.ma: a tenth of a small boolean's time.
     return np.array(sorted({*some.ravel().tolist(), *others.tolist()}), dtype=np.int64)
 
 
 def _united(mesh: Mesh) -> Mesh:
-    """Return the mesh of the set of points that a mesh winds around, which crosses nowhere.
+    """Return the mesh of the set of points that a mesh winds around, free of crossings.
 
-    Iterated snap rounding: where triangles cross they are cut, exactly, and what is cut is rounded
-    again.
+    Iterated snap rounding: triangles that cross are cut exactly, and the pieces are rounded again.
     """
     result = solid_of_mesh(mesh).normalized().to_mesh()
     origins = mesh.source[result.source[:, 1]]
@@ -156,18 +155,18 @@ def _united(mesh: Mesh) -> Mesh:
 
 
 def _spacing(vertices: FloatArray) -> float:
-    """Return how far apart single precision has numbers as large as the largest coordinate."""
+    """Return the spacing of single precision at the largest coordinate."""
     return float(np.spacing(np.float32(np.abs(vertices).max())))
 
 
 def _thickened(mesh: Mesh, spacing: float) -> Mesh:
-    """Return a mesh with each vertex moved so far that most volume is gained.
+    """Return a mesh with each vertex moved outwards, along the gradient of the volume.
 
-    Opposite sides come to lie two spacings apart along an axis; rounding brings them nearer by one.
+    Opposite sides move two spacings apart along an axis; rounding brings them closer by one.
     """
     first, second, third = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     edges = np.stack([second - first, third - first])
-    # Shorter edges than doubles have squares for count, too.
+    # Edges count even if their squared length underflows in doubles.
     edges /= np.abs(edges).max()
     areas = np.cross(edges[0], edges[1])
     gained = np.zeros_like(mesh.vertices)
@@ -190,7 +189,7 @@ def _mending(count: int) -> Finding:
 
 def _thickening(count: int, spacing: float) -> Finding:
     message = (
-        "all of this is thinner than single precision, which leaves nothing of it; the surfaces of"
+        "all of this is thinner than single precision, and would vanish; the surfaces of"
         f" {count} triangles were moved outwards by {spacing:.2g}{_REMEDY}"
     )
     return Finding("thickened_in_single", "warning", message, (), count)
@@ -212,7 +211,7 @@ def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tupl
 
 
 def _beside_moved(rounded: FloatArray, moved: BoolArray) -> BoolArray:
-    """Say which vertices have a coordinate x that rounding has given to some: no others merge."""
+    """Say which vertices share a coordinate x with a rounded one; only these can merge."""
     x = rounded[:, 0]
     taken = np.sort(x[moved])
     place = np.minimum(np.searchsorted(taken, x), len(taken) - 1)

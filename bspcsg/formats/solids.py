@@ -1,4 +1,4 @@
-"""Solids of what mesh files hold."""
+"""Solids of mesh files."""
 
 import os
 from typing import Any
@@ -11,10 +11,10 @@ from .raw import RawMesh
 def solid_of(
     raw: RawMesh, path: str | os.PathLike[str], *, attributes: bool = True, **options: Any
 ) -> Solid:
-    """Return the solid of what was read from a file; errors name the file.
+    """Return the solid of the mesh of a file; errors name the file.
 
-    A file that `save` wrote of the empty set is the empty set again; any other without faces is
-    refused, as what should be in it may have got lost.
+    A file that `save` wrote of the empty set gives the empty set. Any other file without faces is
+    refused, since its content may have been lost.
     """
     if raw.is_empty_set:
         return Solid.empty()
@@ -23,7 +23,7 @@ def solid_of(
         solid = solid_with(raw.vertices, raw.faces, said, **options)
         return solid.normalized() if raw.is_mended else solid
     except BspcsgError as error:
-        # A file of nothing but what is passed by: that is why nothing is left.
+        # The file has only data that the reader skips, so no faces are left.
         reasons = raw.passed_by if len(raw.faces) == 0 else ()
         message = " ".join([f"{os.fspath(path)}: {error.message}", *reasons])
         raise type(error)(message, error.code, error.where) from error

@@ -1,4 +1,4 @@
-"""A file's bytes with the name and the places that errors about it carry."""
+"""The bytes of a file, with its name and positions for errors."""
 
 import codecs
 import errno
@@ -49,7 +49,7 @@ _MAX_POINTER_BYTES = 1024
 
 @dataclass(frozen=True)
 class Source:
-    """A file that a reader reads.
+    """The input of a reader.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Source:
     data : bytes
         The whole file.
     files : dict of str to bytes, optional
-        Files beside it that are not written yet.
+        Companion files that are not written yet.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Source:
     files: Mapping[str, bytes] | None = None
 
     def without_mark(self) -> "Source":
-        """Return the file without a byte order mark before it; a wide text becomes UTF-8."""
+        """Return the bytes without a byte order mark; UTF-16 and UTF-32 become UTF-8."""
         for mark, name in _WIDE_MARKS.items():
             if self.data.startswith(mark):
                 with suppress(UnicodeError):
@@ -74,13 +74,13 @@ class Source:
         return replace(self, data=self.data.removeprefix(BYTE_ORDER_MARK))
 
     def beside(self, name: str) -> bytes | None:
-        """Return a file in the same folder, or None if it is not there or too large."""
+        """Return the bytes of a file in the same folder, or None if it is missing or too large."""
         if self.files is not None:
             return self.files.get(name)
-        # What a mesh names may be anything: a folder, a device, a file of somebody else.
+        # A name in a mesh file may be anything: a folder, a device, another user's file.
         if Path(name).name != name:
             return None
-        # Beside a link may lie links; beside what it points to, the files written with that.
+        # Companions may lie beside a link, or beside its target if they were written with that.
         for path in (self.name, os.path.realpath(self.name)):
             data = _limited(Path(path).parent / name)
             if data is not None:
@@ -95,7 +95,7 @@ class Source:
         line: int | None = None,
         offset: int | None = None,
     ) -> FormatError:
-        """Return the error for a place in this file, a line (from 1) or a byte (from 0)."""
+        """Return the error for a position in this file, a line (from 1) or a byte (from 0)."""
         if line is not None:
             return FormatError(f"{self.name}:{line}: {message}", code, [line])
         if offset is not None:
@@ -105,10 +105,10 @@ class Source:
     def text_lines(
         self, comment: bytes = b"", naming: frozenset[bytes] = frozenset()
     ) -> Iterator[tuple[int, list[bytes]]]:
-        """Yield number and words of each line that is not blank, without its comment.
+        """Yield number and words of each line that is not blank, without comments.
 
-        After the words of `naming` follow names, which may hold the mark: there a comment begins by
-        the mark alone.
+        Names follow the words of `naming` and may contain the comment mark: there only a mark that
+        stands alone begins a comment.
         """
         for number, line in enumerate(self.without_mark().data.splitlines(), 1):
             words = line.split()
@@ -123,7 +123,7 @@ class Source:
         Raises
         ------
         FormatError
-            If a row has fewer than three words, or one is no finite number; names its line.
+            If a row has fewer than three words, or a word is no finite number; names its line.
         """
         try:
             numbers = [(float(row[0]), float(row[1]), float(row[2])) for row in rows]
@@ -155,7 +155,7 @@ def _uncommented(
 
 
 def _limited(path: Path) -> bytes | None:
-    """Return the bytes of a file, or None if it is not there or too large."""
+    """Return the bytes of a file, or None if it is missing or too large."""
     try:
         data = content_of(path) if path.stat().st_size <= _MAX_TEXT_BYTES else None
     except (OSError, ValueError):
@@ -164,7 +164,7 @@ def _limited(path: Path) -> bytes | None:
 
 
 def content_of(path: Path) -> bytes:
-    """Return the bytes of a file or pipe; devices, some of which never end, raise OSError."""
+    """Return the bytes of a file or pipe; raise OSError for devices, which may never end."""
     mode = path.stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
         raise OSError(errno.EINVAL, "it is a device")
@@ -204,7 +204,7 @@ def whole_content(path: str | os.PathLike[str]) -> bytes:
 
 
 def present(name: str, data: bytes) -> bytes:
-    """Return the bytes of a file, whatever its format, unless they stand for those of another.
+    """Return the bytes of a file, unless they are a pointer to another file.
 
     Raises
     ------
@@ -223,7 +223,7 @@ def _is_pointer(data: bytes) -> bool:
 
 @contextmanager
 def _readable(name: str) -> Iterator[None]:
-    """Raise a `FormatError` where the block cannot read a file."""
+    """Turn errors of the block into a `FormatError` that the file cannot be read."""
     try:
         yield
     except (OSError, ValueError) as error:
@@ -231,7 +231,7 @@ def _readable(name: str) -> Iterator[None]:
 
 
 def quoted(words: bytes) -> str:
-    """Return the beginning of some bytes in quotes, fit for a message."""
+    """Return the first characters of some bytes in quotes, for a message."""
     decoded = words.decode("utf-8", "replace")
     text = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in decoded)
     short = text if len(text) <= _MAX_QUOTED_CHARACTERS else text[:_MAX_QUOTED_CHARACTERS] + "…"
@@ -239,7 +239,7 @@ def quoted(words: bytes) -> str:
 
 
 def as_text(name: bytes) -> str:
-    """Return a name in a file as text; what is no UTF-8 is taken for Latin-1."""
+    """Return a name in a file as text, decoded as UTF-8 or else as Latin-1."""
     try:
         return name.decode("utf-8")
     except UnicodeDecodeError:
@@ -254,7 +254,7 @@ def whole(word: bytes) -> int:
 
 
 def integral(word: bytes) -> int:
-    """Return a whole number; some programs write ``1.0`` for all that they hold as floats."""
+    """Return a whole number, also of a text like ``1.0``, which some programs write."""
     try:
         return whole(word)
     except ValueError:

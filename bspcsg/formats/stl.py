@@ -1,7 +1,7 @@
 """STL, binary and ASCII: loose triangles, which are joined where coordinates are equal.
 
-The binary form holds single precision. Whether a file is binary follows from its size, never from
-its first word: binary files begin with "solid" often enough.
+The binary form has single precision. The size of a file decides whether it is binary, not its first
+word: many binary files begin with "solid".
 """
 
 import re
@@ -56,7 +56,7 @@ def read(source: Source) -> RawMesh:
     except FormatError as error:
         if error.code not in ("syntax", "truncated"):
             raise
-        # Errors name lines as they are in the file.
+        # Errors use the line numbers of the file.
         joined = _ENDS.sub(rb"end\1", text.data)
         for data in (joined, _STATEMENTS.sub(b"\n", b" ".join(joined.split()))):
             with suppress(FormatError):
@@ -86,7 +86,7 @@ def _read_binary(source: Source) -> RawMesh:
     if starts is not None:
         rows = b"".join(data[start : start + _RECORD.itemsize] for start in starts)
         records, extra = np.frombuffer(rows, _RECORD), 0
-    with np.errstate(invalid="ignore"):  # NaN, which the next line refuses
+    with np.errstate(invalid="ignore"):  # NaN, which the next line rejects
         corners = records["corners"].reshape(-1, 3).astype(np.float64)
     _check_finite(source, corners, starts)
     title, mark, _ = data[: _HEADER - 4].partition(_COLOR)
@@ -97,15 +97,15 @@ def _read_binary(source: Source) -> RawMesh:
 
 
 def _starts_by_lengths(data: bytes, attributes: Values) -> list[int] | None:
-    """Return where triangles begin if so many attribute bytes follow each as it says.
+    """Return where triangles begin if each is followed by as many attribute bytes as it states.
 
-    So the format wants it. Most programs write a colour there instead, and no bytes: it is taken
-    for a length if the triangles use up the file by it, exactly.
+    This is the format's rule. Most programs store a colour in the field and no bytes. The field
+    counts as a length only if the triangles then fill the file exactly.
     """
     named = np.flatnonzero(attributes)
     if not len(named):
         return None
-    # Up to the first that names bytes, both readings are the same.
+    # Both readings agree up to the first triangle with a number other than 0.
     starts = [_HEADER + _RECORD.itemsize * k for k in range(int(named[0]))]
     at = _HEADER + _RECORD.itemsize * len(starts)
     while len(starts) < len(attributes) and at + _RECORD.itemsize <= len(data):
@@ -185,7 +185,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 
 
 def called(name: str) -> str:
-    """Return a solid's name as its first line can hold it; a solid without a name gets ours."""
+    """Return the name of a solid on one line; a solid without a name is called "bspcsg"."""
     return on_one_line(name) or "bspcsg"
 
 

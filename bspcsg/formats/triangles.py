@@ -1,4 +1,4 @@
-"""Triangles that have no area, or that two placements of their corners turn over, exactly.
+"""Exact tests for triangles without area, and for triangles that a change of corners flips.
 
 Floating point decides where its error bound allows, fractions decide the rest.
 """
@@ -39,10 +39,11 @@ def are_flat(corners: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def _flat_by_products(corners: FloatArray) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
-    """Return which triangles are flat, and for which this is decided.
+    """Return which triangles are flat, and for which triangles this is certain.
 
-    It is where the edges are differences without rounding, as they are of corners in single
-    precision unless their sizes differ by a factor of 2**29: products in two doubles are exact.
+    The answer is certain if the edges are differences without rounding: then products in two
+    doubles are exact. Corners in single precision are such, unless their sizes differ by a factor
+    of 2**29.
     """
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     exact = _is_difference(first, corners[:, 1], corners[:, 0])
@@ -66,7 +67,7 @@ def _is_difference(found: FloatArray, end: FloatArray, start: FloatArray) -> npt
 
 
 def _product(one: FloatArray, other: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return products in two doubles each, the rounded one and what it lacks, by Dekker."""
+    """Return products as two doubles each, the rounded product and its error (Dekker)."""
     product = one * other
     (a, b), (c, d) = _halves(one), _halves(other)
     return product, b * d - (((product - a * c) - b * c) - a * d)
@@ -83,7 +84,7 @@ def are_turned(before: FloatArray, after: FloatArray) -> npt.NDArray[np.bool_]:
     (first, first_error), (second, second_error) = _normals(before), _normals(after)
     with np.errstate(over="ignore", invalid="ignore"):
         cosines = np.einsum("mi,mi->m", first, second)
-        # Each coordinate is off by an error at most, and the sum of three is rounded once more.
+        # Each coordinate has at most this error, and the sum of three is rounded once more.
         error = first_error * np.abs(second).sum(axis=1)
         error += second_error * (np.abs(first).sum(axis=1) + 3 * first_error)
         turned: npt.NDArray[np.bool_] = cosines < 0
@@ -95,7 +96,7 @@ def are_turned(before: FloatArray, after: FloatArray) -> npt.NDArray[np.bool_]:
 
 
 def _normals(corners: FloatArray) -> _Normals:
-    """Return normals (m, 3), as long as twice the areas, and how far their coordinates are off."""
+    """Return normals (m, 3), as long as twice the areas, and error bounds of coordinates."""
     with np.errstate(over="ignore", invalid="ignore", under="ignore"):
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = np.ascontiguousarray(corners.transpose(1, 2, 0))
         px, py, pz, qx, qy, qz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az

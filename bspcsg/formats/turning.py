@@ -1,4 +1,4 @@
-"""Meshes turned about the x axis, by quarters: from one axis upwards to another."""
+"""Meshes turned about the x axis by quarters, for formats with another axis up."""
 
 from dataclasses import replace
 

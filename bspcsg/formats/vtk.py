@@ -60,7 +60,7 @@ def reader(suffix: str) -> Callable[[Source], RawMesh]:
 
 
 def writer(suffix: str) -> Callable[[Mesh | RawMesh], Iterator[bytes]]:
-    """Return what writes ``.vtk`` or ``.vtu``, in binary; every double is kept."""
+    """Return the writer for ``.vtk`` or ``.vtu``, in binary; every double is kept."""
 
     def write(mesh: Mesh | RawMesh) -> Iterator[bytes]:
         return _write(mesh, suffix)
@@ -77,7 +77,7 @@ def _meshio() -> Any:
 
 
 def _grid_of(source: Source, suffix: str) -> Any:
-    """Return the `meshio.Mesh` of a file, whose packed data may unpack to a bounded size.
+    """Return the `meshio.Mesh` of a file; limit the size of its unpacked data.
 
     Raises
     ------
@@ -100,7 +100,7 @@ def _grid_of(source: Source, suffix: str) -> Any:
                 warnings.catch_warnings(action="ignore"),
             ):
                 return meshio.read(path)
-        except (Exception, SystemExit) as error:  # of any kind: meshio checks little itself
+        except (Exception, SystemExit) as error:  # of any type: meshio itself checks little
             reason = f"{type(error).__name__}: {words_of(error)}"
             reason = reason.replace(str(path), source.name)
             raise source.error(f"meshio cannot read this file ({reason}).") from error
@@ -111,13 +111,13 @@ _ONE_AT_A_TIME = threading.Lock()
 
 
 class _OfOthers:
-    """A stream that takes what other threads write, and not what the thread that made it does."""
+    """A stream for the output of all threads but the one that created it."""
 
     def __init__(self, stream: TextIO | None) -> None:
         self._stream, self._thread = stream, threading.get_ident()
 
     def write(self, text: str) -> int:
-        """Pass a text on."""
+        """Pass a text on, unless the creating thread writes it."""
         if self._stream is None or threading.get_ident() == self._thread:
             return len(text)
         return self._stream.write(text)
@@ -127,13 +127,13 @@ class _OfOthers:
 
 
 class _Unpacker:
-    """Stands for zlib in meshio, which unpacks whatever a few bytes claim to hold."""
+    """Replaces zlib in meshio, which unpacks without a limit of size."""
 
     def __init__(self, largest: int) -> None:
         self._largest = self._left = largest
 
     def decompress(self, data: bytes) -> bytes:
-        """Return the unpacked bytes, as long as all of them together are not too many."""
+        """Return the unpacked bytes; raise an error if all of them together exceed the limit."""
         found = zlib.decompressobj().decompress(data, self._left)
         self._left -= len(found)
         if self._left <= 0:
@@ -142,17 +142,17 @@ class _Unpacker:
 
 
 class _Refuser:
-    """Stands for lzma in meshio, which has no way to unpack a part."""
+    """Replaces lzma in meshio, which cannot unpack a limited part."""
 
     @staticmethod
     def decompress(data: bytes) -> bytes:
-        """Refuse."""
+        """Raise an error."""
         raise ValueError("data packed by LZMA are not read; pack them by zlib")
 
 
 @contextlib.contextmanager
 def _bounded(largest: int) -> Iterator[None]:
-    """Let meshio unpack no more than a bounded amount of data inside the block."""
+    """Limit the amount of data that meshio unpacks inside the block."""
     from meshio.vtu import _vtu
 
     kept = _vtu.zlib, _vtu.lzma

@@ -1,1 +1,1 @@
-"""Meshes: what they are, what is proven of them, and how other libraries' come in and out."""
+"""Meshes: the type, its certificate, and the exchange with other libraries."""

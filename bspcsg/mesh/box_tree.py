@@ -1,4 +1,4 @@
-"""A tree of boxes, and the pairs of two trees in the order of their distance."""
+"""A tree of boxes, and the search for near pairs of members of two trees."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ BoxPairs: TypeAlias = IndexArray
 
 @dataclass(frozen=True, eq=False)
 class BoxTree:
-    """Boxes around members that lie close together, around pairs of these, and so on.
+    """A binary tree of boxes: leaves are boxes around members that lie close together.
 
     Members are triangles, boxes or points.
 
@@ -58,11 +58,11 @@ class BoxTree:
 
     @classmethod
     def of_points(cls, points: FloatArray) -> "BoxTree":
-        """Return points, (m, 3), as leaves of their own with nothing above; leaf k is point k."""
+        """Return a tree of one level over points, (m, 3); leaf k is point k."""
         return cls(np.arange(len(points)), [(points, points)])
 
     def near_leaves(self, points: FloatArray) -> IndexArray:
-        """Return for each point a few leaves near it, (m, k), if maybe not the nearest."""
+        """Return a few leaves near each point, (m, k), not necessarily the nearest ones."""
         near, around = np.zeros((len(points), 1), np.int64), points[:, None]
         for low, high in reversed(self.levels[:-1]):
             halves = np.hstack([2 * near, np.minimum(2 * near + 1, len(low) - 1)])
@@ -86,8 +86,8 @@ class Nearness:
     ----------
     first, second : BoxTree
     limit : float or (n,) float64
-        Pairs farther apart than the root of this do not count; the searcher lowers it. Of points
-        in the first tree, each may have its own.
+        The squared distance beyond which pairs are ignored; the caller lowers it during the search.
+        If the first tree is of points, each point may have its own limit.
     """
 
     def __init__(self, first: BoxTree, second: BoxTree, limit: float | FloatArray) -> None:
@@ -95,7 +95,7 @@ class Nearness:
         self.limit = limit
 
     def leaves(self) -> Iterator[BoxPairs]:
-        """Yield pairs of leaves within the limit, near ones first as far as that is known."""
+        """Yield pairs of leaves within the limit, roughly from near to far."""
         top = len(self._trees[0].levels) - 1, len(self._trees[1].levels) - 1
         roots = np.arange(len(self._trees[0].levels[-1][0]))
         waiting = [(top, np.column_stack([roots, np.zeros_like(roots)]))]
@@ -123,7 +123,7 @@ class Nearness:
         return squared_gaps(low[i], high[i], low_b[j], high_b[j])
 
     def _divided(self, level: tuple[int, int], pairs: BoxPairs) -> tuple[tuple[int, int], BoxPairs]:
-        """Return the pairs of halves: of the tree that has more levels left, or of both."""
+        """Return pairs with their boxes halved, in the tree with more levels left or in both."""
         deepest = max(level)
         cut = [own == deepest for own in level]
         below = level[0] - cut[0], level[1] - cut[1]

@@ -1,4 +1,4 @@
-"""Boxes around parts of a mesh, and those that lie in others."""
+"""Boxes around parts of a mesh, and the nesting of boxes."""
 
 from collections.abc import Iterator
 
@@ -33,7 +33,7 @@ def boxes_of(corners: FloatArray, owner: IndexArray) -> FloatArray:
 
 
 def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
-    """Yield for each box the numbers of those that hold it, ascending; equal ones hold each other.
+    """Yield for each box the numbers of the boxes that contain it, ascending; equal boxes count.
 
     Parameters
     ----------
@@ -42,7 +42,8 @@ def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
 
     Notes
     -----
-    Linear in the boxes, but for those that hold a corner of one and the logarithm of their number.
+    The time grows with (k + n) log n, and with the number of boxes that contain a corner of
+    another.
     """
     if not len(inner) or not len(outer):
         yield from (np.zeros(0, dtype=np.int64) for _ in inner)
@@ -53,7 +54,7 @@ def boxes_around(inner: FloatArray, outer: FloatArray) -> Iterator[IndexArray]:
 
 
 def _around(inner: FloatArray, outer: FloatArray, tree: BoxTree) -> list[IndexArray]:
-    """Return for each box the numbers of those that hold it; the tree is over these."""
+    """Return for each box the numbers of the boxes that contain it; the tree is over the latter."""
     found = [np.zeros((0, 2), dtype=np.int64)]
     for pairs in Nearness(BoxTree.of_points(inner[:, 0]), tree, 0.0).leaves():
         numbers, rows = tree.members(pairs[:, 1])

@@ -1,6 +1,6 @@
-"""`Certificate`: what an exact look at a mesh in its own precision proves.
+"""`Certificate`: the result of an exact check of a mesh in its own precision.
 
-This layer knows arrays only; all arithmetic behind it is exact.
+This layer knows only arrays; all arithmetic behind it is exact.
 """
 
 from dataclasses import dataclass
@@ -23,14 +23,14 @@ class Certificate:
     Parameters
     ----------
     precision : {"double", "single"}
-        The coarsest numbers that hold all coordinates.
+        The lowest precision that holds all coordinates.
     triangles : int
-        The number looked at.
+        The number of checked triangles.
     open_edges : int
         Directed edges without exactly one opposite, by index.
     crossings : tuple of (int, int)
         Pairs of triangles that cross or overlap. Surfaces may touch. At an edge of more than two
-        triangles they cross if they do however these are paired.
+        triangles, surfaces count as crossing only if they cross for every pairing of the triangles.
     flat : tuple of int
         Triangles without area.
 
@@ -55,7 +55,7 @@ class Certificate:
 
 
 def certify(vertices: FloatArray, faces: IndexArray) -> Certificate:
-    """Return whether a mesh is closed by index, crosses itself, and has triangles without area.
+    """Check whether a mesh is closed by index, crosses itself, or has triangles without area.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Pairs of faces of a mesh that cross, and which of them rounding cannot account for."""
+"""Pairs of faces of a mesh that cross, and the depth of their crossings."""
 
 from dataclasses import dataclass
 
@@ -21,9 +21,9 @@ class Crossings:
     pairs : (k, 2) int64
         Numbers of faces.
     are_deep : bool
-        True if some pierce each other too far for it to be mended.
+        True if some faces pierce each other too deeply to be mended.
     are_all : bool
-        False if there may be more.
+        False if there may be more pairs.
     """
 
     pairs: IndexArray
@@ -32,14 +32,14 @@ class Crossings:
 
 
 def crossings(vertices: FloatArray, faces: IndexArray, deep: float) -> Crossings:
-    """Return the pairs of faces that cross or overlap; some of them if one is deep.
+    """Return the pairs of faces that cross or overlap; only some pairs if one is deep.
 
     Parameters
     ----------
     vertices : (n, 3) float64
     faces : (m, 3) int64
     deep : float
-        How far a vertex must move at least before a deep crossing is none.
+        A crossing is deep if a vertex must move farther than this to remove it.
     """
     for stride in _STRIDES:
         found = certify(vertices, faces[::stride]).crossings
@@ -53,8 +53,9 @@ def crossings(vertices: FloatArray, faces: IndexArray, deep: float) -> Crossings
 def _pierce(pairs: FloatArray, deep: float) -> BoolArray:
     """Say which pairs of triangles, (k, 2, 3, 3), cross unless a vertex moves farther than `deep`.
 
-    An edge crosses a triangle as long as its ends stay off the triangle, and it off the triangle's
-    sides. If no vertex moves farther than half of these distances, so it is.
+    An edge keeps crossing a triangle as long as its ends do not reach the triangle and the edge
+    does not reach the triangle's sides. This holds if no vertex moves farther than half of these
+    distances.
     """
     found = np.zeros(len(pairs), dtype=bool)
     for triangles, others in ((pairs[:, 0], pairs[:, 1]), (pairs[:, 1], pairs[:, 0])):
@@ -65,14 +66,14 @@ def _pierce(pairs: FloatArray, deep: float) -> BoolArray:
 
 
 def _depth(start: FloatArray, end: FloatArray, triangles: FloatArray) -> FloatArray:
-    """Return a bound below the distances of edges (k, 3) from the ends and sides of crossings.
+    """Return a lower bound of the distances of crossings from the ends and sides, for edges (k, 3).
 
     It is negative where an edge does not cross its triangle (k, 3, 3).
     """
     sides = np.roll(triangles, -1, axis=1) - triangles
     along = end - start
     to_start = start - triangles[:, 0]
-    # Products of lengths instead of areas make distances less, and never divide by next to nothing.
+    # Products of lengths instead of areas give smaller distances, and avoid tiny divisors.
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         turns = np.einsum(
             "kij,kij->ki", np.cross(sides, along[:, None]), start[:, None] - triangles

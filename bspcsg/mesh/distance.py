@@ -1,4 +1,4 @@
-"""The distance of points from triangles, also from such that are much longer than wide."""
+"""The distance of points from triangles, accurate for needles too."""
 
 import numpy as np
 
@@ -15,9 +15,9 @@ def distances_to_triangles(points: FloatArray, corners: FloatArray) -> FloatArra
 
     Notes
     -----
-    The distance from the three sides needs no normal. That from the plane counts only where the
-    foot of the perpendicular is inside; a needle's normal is all rounding, and leaving it out
-    errs by less than the needle is wide.
+    The distance from the three sides needs no normal. The distance from the plane counts only if
+    the foot of the perpendicular is inside. The normal of a needle is mostly rounding; ignoring its
+    plane causes an error below the needle's width.
     """
     local = corners - points[:, None]
     starts, ends = local, np.roll(local, -1, axis=1)

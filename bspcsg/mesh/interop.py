@@ -1,6 +1,6 @@
-"""Meshes of other libraries, in and out.
+"""The exchange of meshes with other libraries.
 
-Reading asks an object what it has, never where it comes from, so no library is imported for it.
+Readers look at the attributes of an object, not at its type, so they import no library.
 """
 
 import importlib
@@ -28,7 +28,7 @@ TESSELLATION_TOLERANCE = 0.01
 
 
 def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArrays:
-    """Return vertices and faces of whatever holds a mesh.
+    """Return vertices and faces of any object that holds a mesh.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArra
     Raises
     ------
     InvalidMeshError
-        If the object has nothing that looks like a mesh.
+        If no attribute of the object looks like a mesh.
     """
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return mesh[0], mesh[1]
@@ -60,40 +60,40 @@ def arrays_from(mesh: Any, tolerance: float = TESSELLATION_TOLERANCE) -> AnyArra
 
 
 def _advice(mesh: Any) -> str:
-    """Return what else to do with things that people try."""
+    """Return advice on common objects that are no meshes."""
     if hasattr(mesh, "extract_surface"):
         return " A grid of cells has a surface: pass mesh.extract_surface()."
     return ""
 
 
 def are_empty(arrays: AnyArrays) -> bool:
-    """Say whether there are neither vertices nor faces; vertices alone are a cloud of points."""
+    """Say whether there are neither vertices nor faces; vertices alone are a point cloud."""
     try:
         return not any(map(len, arrays))
-    except TypeError:  # no arrays at all, which is said elsewhere
+    except TypeError:  # no arrays at all: another check reports this
         return False
 
 
 def mesh_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
-    """Return vertices (n, 3) float64 and triangles (m, 3) int64: the given ones if they are so.
+    """Return vertices (n, 3) float64 and triangles (m, 3) int64, without a copy if possible.
 
     Raises
     ------
     InvalidMeshError
-        If the shapes are others, or the indices are no whole numbers.
+        If an array has another shape, or the indices are no whole numbers.
     """
     points = points_array(vertices, "Vertices")
     return points, face_array(faces, points)
 
 
 def own_arrays(vertices: Any, faces: Any) -> tuple[FloatArray, IndexArray]:
-    """Return the arrays of `mesh_arrays` such that nobody else can change them."""
+    """Return the arrays of `mesh_arrays`, copied if the caller could change them."""
     points, triangles = mesh_arrays(vertices, faces)
     return _own(points, vertices), _own(triangles, faces)
 
 
 def points_array(points: Any, name: str = "Points") -> FloatArray:
-    """Return (n, 3) float64 in C order; a copy only if it has to be one."""
+    """Return (n, 3) float64 in C order, without a copy if possible."""
     array = doubles_or_none(points)
     if array is None:
         raise InvalidMeshError(f"{name} must be numbers, three for each.", "shape")
@@ -125,12 +125,12 @@ def face_array(faces: Any, vertices: FloatArray) -> IndexArray:
 
 
 def _own(array: _Array, given: Any) -> _Array:
-    """Return the array, copied if it may share memory with what was given."""
+    """Return the array, copied if it may share memory with the given object."""
     return array if array is not given and array.base is None else array.copy()
 
 
 def _whole(array: Any) -> IndexArray:
-    """Return indices as int64; what is not an integer below 2**63 is refused, not wrapped."""
+    """Return indices as int64; raise an error for other numbers instead of wrapping them."""
     if array.dtype.kind not in "iuf":
         raise InvalidMeshError(f"Face indices must be integers, not {array.dtype}.", "shape")
     if array.dtype.kind == "i":
@@ -156,7 +156,7 @@ def _triangles(faces: Iterable[Any], vertices: FloatArray) -> IndexArray:
     return np.concatenate(triangles) if triangles else np.zeros((0, 3), dtype=np.int64)
 
 
-# Readers. Each takes an object that has the attributes named in the table below.
+# Readers. Each takes an object with the attributes named in the table below.
 
 
 def _from_manifold(mesh: Any) -> AnyArrays:
@@ -224,7 +224,7 @@ def _shapes_on(workplane: Any) -> list[Any]:
 
 
 def _joined(parts: list[AnyArrays]) -> AnyArrays:
-    """Return several meshes as one; where they overlap, winding numbers unite them."""
+    """Return several meshes as one; winding numbers unite them where they overlap."""
     points = [points_array(vertices, "Vertices") for vertices, _ in parts]
     starts = np.cumsum([0, *map(len, points)])
     faces = [
@@ -253,7 +253,7 @@ _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], AnyArrays]], ...] = (
     (("vert_properties", "tri_verts"), _from_manifold_mesh),
     (("vertex_matrix", "face_matrix"), lambda mesh: (mesh.vertex_matrix(), mesh.face_matrix())),
     (("points", "faces"), _from_polydata),
-    # Grids have points and cells too, but are no surface: the last name leaves them out.
+    # Grids have points and cells too, but are no surface: the last name excludes them.
     (("points", "cells", "cell_sets"), _from_meshio),
     (("GetPoint", "GetCell", "GetPolys"), _from_vtk),
     (("vertices", "faces"), lambda mesh: (mesh.vertices, mesh.faces)),
@@ -262,7 +262,7 @@ _READERS: tuple[tuple[tuple[str, ...], Callable[[Any], AnyArrays]], ...] = (
 
 
 def optional(name: str, package: str) -> Any:
-    """Return a module that comes with another package, which is what pip is to install.
+    """Import an optional module; the error names the package to install.
 
     Raises
     ------
@@ -280,7 +280,7 @@ def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":
     """Return a `manifold3d.Manifold` of the same vertices and faces, without attributes."""
     import manifold3d
 
-    # The binding takes writable arrays of these very types only.
+    # The binding accepts only writable arrays of exactly these types.
     vertices = np.array(mesh.vertices, dtype=np.float64, order="C")
     faces = np.array(mesh.faces, dtype=np.uint64, order="C")
     return manifold3d.Manifold(manifold3d.Mesh64(vertices, faces))

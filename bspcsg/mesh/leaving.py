@@ -1,6 +1,6 @@
-"""Meshes with their attributes as other libraries have them, and what those have no place for.
+"""Conversion of meshes with attributes to other libraries, with warnings about losses.
 
-`visuals` is the way back: what left here comes in again under its name.
+`visuals` converts back and restores the names.
 """
 
 import io
@@ -43,7 +43,7 @@ def trimesh_of(mesh: Mesh) -> "trimesh.Trimesh":
 
 
 def _said_of(mesh: Mesh, library: str) -> Attributes | None:
-    """Return what is said of a mesh, or None and a warning if that does not go together."""
+    """Return the attributes of a mesh; None, with a warning, if they are inconsistent."""
     if mesh.carried is None:
         return None
     try:
@@ -59,7 +59,7 @@ def _tell(message: str, count: int) -> None:
 
 
 class _TrimeshAttributes:
-    """The attributes of a trimesh: its visual, arrays by names, and the rest in its metadata."""
+    """Sets the attributes of a trimesh: its visual, named arrays, and metadata for the rest."""
 
     def __init__(self, made: "trimesh.Trimesh", said: Attributes) -> None:
         self._made = made
@@ -67,7 +67,7 @@ class _TrimeshAttributes:
         self._is_colored = False
 
     def run(self) -> None:
-        """Give the mesh all that is said."""
+        """Set all attributes."""
         said, made = self._said, self._made
         names = set(said.names)
         if said.materials:
@@ -82,7 +82,7 @@ class _TrimeshAttributes:
         self._corners()
 
     def _color(self) -> None:
-        """Show the colours; of those that faces at a vertex have not in common a mean for each."""
+        """Show the colours; colours of corners become a mean for each face."""
         said, self._is_colored = self._said, True
         kind = said.kind_of(COLOR) or "face"
         values = said.of(kind)[COLOR]
@@ -104,7 +104,7 @@ class _TrimeshAttributes:
         self._made.visual = visual(self._made, **colors)
 
     def _materials(self) -> None:
-        """Show the only material with its picture, or the colours of all."""
+        """Set the only material with its picture, or else the colours of all materials."""
         said = self._said
         if "material" not in said.face or not said.materials:
             return
@@ -127,7 +127,7 @@ class _TrimeshAttributes:
             self._show(face_colors=colors_by_materials(said.face["material"], said.materials))
 
     def _color_as_array(self) -> None:
-        """Keep colours beside a picture, as a trimesh shows one of the two."""
+        """Keep colours as an array beside a picture, since a trimesh shows only one of the two."""
         said = self._said
         if COLOR in said.vertex:
             self._made.vertex_attributes[COLOR] = said.vertex[COLOR].copy()
@@ -160,7 +160,7 @@ def colors_by_materials(names: Values, materials: Mapping[str, Material]) -> Val
 
 
 def _material(name: str, material: Material) -> Any:
-    """Return a material as trimesh has it."""
+    """Return a material of trimesh."""
     kind = optional("trimesh.visual.material", "trimesh").PBRMaterial
     picture = None if material.texture is None else picture_of(material.texture)
     color = as_bytes(np.array(material.color))
@@ -169,13 +169,13 @@ def _material(name: str, material: Material) -> Any:
 
 
 def picture_of(data: bytes) -> Any:
-    """Return a picture as Pillow has it."""
+    """Return a picture of Pillow."""
     return optional("PIL.Image", "pillow").open(io.BytesIO(data))
 
 
 @dataclass(frozen=True)
 class Column:
-    """Some of the numbers of manifold3d's vertices: the attribute that they are.
+    """The columns of manifold3d's vertex properties that hold one attribute.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ class Column:
 
     @property
     def width(self) -> int:
-        """How many numbers they are."""
+        """The number of columns."""
         return int(np.prod(self.shape, dtype=np.int64))
 
     @property
@@ -200,7 +200,7 @@ class Column:
         return self.name == COLOR and self.shape == (4,)
 
     def numbers(self, values: Values) -> Values:
-        """Return values as numbers (k, width); colours from 0 to 1, as Manifold has them."""
+        """Return values as numbers (k, width); colours from 0 to 1, as in Manifold."""
         found = opaque(as_floats(values)) if self._is_color else values.astype(np.float64)
         return found.reshape(-1, self.width)
 
@@ -223,13 +223,13 @@ _MAX_LAYOUTS = 1 << 16
 
 
 def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
-    """Return the columns of what some originals were made into, if all have the same."""
+    """Return the columns of some original meshes, if all have the same."""
     found = {_LAYOUTS.get(int(number)) for number in ids}
     return found.pop() if len(found) == 1 else None
 
 
 def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
-    """Return a `manifold3d.Manifold` whose vertices have the attributes that are numbers."""
+    """Return a `manifold3d.Manifold` with the numeric attributes as vertex properties."""
     said = _said_of(mesh, "manifold3d")
     if said is None:
         return to_manifold(mesh)
@@ -252,7 +252,7 @@ _NONE: IndexArray = np.zeros(0, dtype=np.int64)
 
 
 def _in_order(said: Attributes) -> list[str]:
-    """Return the names, first that of what came from manifold3d, whose columns have numbers."""
+    """Return the names; properties that came from manifold3d come first, so their numbers stay."""
     return sorted(said.names, key=lambda name: name != "properties")
 
 
@@ -272,7 +272,7 @@ def _with_properties(
     corners = mesh.faces.ravel()
     chosen, numbers = _distinct(corners, table)
     vertices = np.hstack([mesh.vertices[corners[chosen]], table[chosen]])
-    # Vertices in one place with different values are one to the topology: the first.
+    # For the topology, vertices at one place with different values count as the first of them.
     same, first = np.unique(corners[chosen], return_index=True)
     target = first[np.searchsorted(same, corners[chosen])]
     source = np.flatnonzero(target != np.arange(len(chosen)))
@@ -292,8 +292,8 @@ def _with_properties(
 
 
 def _distinct(corners: IndexArray, table: Values) -> tuple[IndexArray, IndexArray]:
-    """Return corners of which no two have one vertex and the same values, and which each is."""
-    # Bytes in this order compare as the numbers of vertices do, so that these keep their order.
+    """Return one corner for each vertex and set of values, and the index of each corner there."""
+    # Bytes in this order sort like the numbers of vertices, so vertices keep their order.
     keys = corners.astype(">u8")[:, None].view(np.uint8)
     rows: npt.NDArray[np.uint8] = np.hstack([keys, np.ascontiguousarray(table).view(np.uint8)])
     words = np.ascontiguousarray(rows).view(f"V{rows.shape[1]}").ravel()

@@ -1,6 +1,6 @@
-"""`Mesh`: the triangles a solid leaves as, with the measures that follow from them.
+"""`Mesh`: the triangles of a solid, with their measures.
 
-This layer knows arrays only; it does not know how a mesh was made.
+This layer knows only arrays, not how a mesh was made.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,9 +24,9 @@ from .certificate import Certificate, certify
 class Mesh:
     """A closed triangle mesh, counter-clockwise when seen from outside.
 
-    The arrays of a solid's mesh are read-only, and its attributes cannot be exchanged, because the
-    solid hands out the same ones again; copy them before you change them. Measures are kept once
-    they were asked for, so that a mesh whose arrays changed has to be made anew.
+    The arrays of a solid's mesh are read-only and its attributes cannot be replaced, because the
+    solid returns the same mesh again; copy arrays before you change them. Measures are cached, so
+    make a new mesh if you change the arrays.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Mesh:
     carried: Later | None = field(default=None, repr=False)
 
     def __repr__(self) -> str:
-        """Say how large the mesh is."""
+        """Show the size of the mesh."""
         return f"Mesh({len(self.vertices)} vertices, {len(self.faces)} faces)"
 
     def __iter__(self) -> Iterator[Any]:
@@ -72,15 +72,15 @@ class Mesh:
 
     @property
     def attributes(self) -> Attributes:
-        """Everything that is said of its vertices, corners and faces."""
+        """All attributes of vertices, corners and faces."""
         return Attributes(self.faces) if self.carried is None else self.carried.now()
 
     @property
     def vertex_attributes(self) -> Mapping[str, Values]:
         """Values of vertices, (n, …) arrays by their names.
 
-        What was given of vertices is here as long as all faces at each vertex agree, else in
-        `corner_attributes`: along cuts both sides keep their own values.
+        A vertex attribute stays here as long as all faces at each vertex agree; else it moves to
+        `corner_attributes`, since the two sides of a cut keep their own values.
         """
         return MappingProxyType(self.attributes.vertex)
 
@@ -105,7 +105,7 @@ class Mesh:
 
     @cached_property
     def certificate(self) -> Certificate:
-        """The proof by an exact look at all triangles: closed, no crossings, none without area."""
+        """The result of an exact check for open edges, crossings and triangles without area."""
         return certify(self.vertices, self.faces)
 
     @property
@@ -173,7 +173,7 @@ class Mesh:
         return self.surface_count - self.euler_number // 2
 
     def _middle(self) -> FloatArray:
-        # Measuring from inside the mesh keeps the digits that a far origin would cancel.
+        # An origin inside the mesh avoids cancellation.
         bounds = self.bounds
         return np.zeros(3) if bounds is None else bounds[0] + (bounds[1] - bounds[0]) / 2
 
@@ -196,13 +196,13 @@ class Mesh:
 
     @cached_property
     def _counts(self) -> tuple[int, int, int, int]:
-        """Vertices that are used, edges, open edges and connected surfaces."""
+        """The numbers of used vertices, edges, open edges and connected surfaces."""
         with core_errors():
             return mesh_counts(self.faces, len(self.vertices))
 
 
 def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
-    """Return for each face the number of its connected surface, by their lowest vertices.
+    """Return for each face the number of its connected surface, in the order of lowest vertices.
 
     Parameters
     ----------

@@ -30,8 +30,8 @@ class MeshPieces:
     owner : (m,) int64
         For each face the number of its piece; some numbers are not used.
     thickness : (p,) float64
-        Of each piece, in model units: twice the volume by the area, which is the thickness of a
-        film, and a third of the side of a cube.
+        The thickness of each piece, in model units: twice the volume divided by the area. It is the
+        thickness of a film, and a third of the side of a cube.
     """
 
     mesh: Mesh
@@ -40,7 +40,7 @@ class MeshPieces:
 
     @classmethod
     def of(cls, mesh: Mesh, film: float = 0.0) -> "MeshPieces":
-        """Return the pieces of a mesh with faces; what is thinner than a film may be estimated."""
+        """Return the pieces of a mesh with faces; a thickness below `film` may be an estimate."""
         surfaces = surfaces_of(mesh.faces, len(mesh.vertices))
         volumes, areas = _measures(mesh, surfaces, film)
         outer = _outer_surfaces(mesh, surfaces, volumes)
@@ -54,7 +54,7 @@ class MeshPieces:
         return int(self.thickness.argmax())
 
     def thicker_than(self, bound: float) -> list[int]:
-        """Return the numbers of the pieces beyond a bound, the thickest first."""
+        """Return the numbers of the pieces thicker than a bound, the thickest first."""
         order = np.argsort(-self.thickness, kind="stable")
         return [int(piece) for piece in order if self.thickness[piece] > bound]
 
@@ -66,8 +66,8 @@ class MeshPieces:
     def points_in(self, piece: int) -> list[Point]:
         """Return points that should be inside a piece, the deepest first.
 
-        They lie half-way between a large face and what is below it, computed in doubles: who needs
-        to be sure has to test them.
+        They lie half-way between a large face and what is below it, computed in doubles: test them
+        if you need certainty.
         """
         triangles = self.mesh.vertices[self.mesh.faces[self.owner == piece]]
         origin = triangles[0, 0]
@@ -87,7 +87,7 @@ def _as_point(point: FloatArray) -> Point:
 def _below(
     triangles: FloatArray, normals: FloatArray, face: int
 ) -> tuple[float, FloatArray] | None:
-    """Return the point half-way from the middle of a face to what is behind it, and how deep."""
+    """Return the point half-way from the middle of a face to the face behind it, and its depth."""
     start = triangles[face].mean(axis=0)
     length = np.linalg.norm(normals[face])
     if length == 0:
@@ -111,10 +111,10 @@ def _below(
 
 
 def _measures(mesh: Mesh, surfaces: IndexArray, film: float) -> tuple[FloatArray, FloatArray]:
-    """Return volume and area of each surface, measured from a point of its own.
+    """Return volume and area of each surface, with a point of the surface as origin.
 
-    A needle's volume drowns in the rounding of its length. Where that could pass for a piece
-    thicker than a film, the sum is taken exactly.
+    The volume of a needle is lost in rounding errors due to its length. If these could make it look
+    thicker than a film, the sum is computed exactly.
     """
     _, first = np.unique(surfaces, return_index=True)
     origin = mesh.vertices[mesh.faces[first, 0]][surfaces]
@@ -143,10 +143,10 @@ def _summed(groups: IndexArray, values: FloatArray) -> FloatArray:
 
 
 def _outer_surfaces(mesh: Mesh, surfaces: IndexArray, volumes: FloatArray) -> IndexArray:
-    """Return for each surface itself, or for the wall of a cavity what lies around it.
+    """Return for each wall of a cavity the surface around it, for other surfaces themselves.
 
-    A film that closes on itself is a large surface around a cavity nearly as large; only together
-    do they say how thin it is. The smallest box around decides.
+    A closed film is a large surface around a cavity nearly as large; its thickness follows only
+    from both. The surface with the smallest enclosing box is the one around a cavity.
     """
     count = len(volumes)
     outer = np.arange(count)

@@ -1,7 +1,7 @@
-"""Attributes of other libraries' meshes, in and out.
+"""Attributes of the meshes of other libraries.
 
-As in `interop`, an object is asked what it has. What is no array over its vertices or triangles is
-left, as nobody asked for it.
+As in `interop`, the attributes of an object decide. Data that are no array over its vertices or
+triangles are silently ignored.
 """
 
 import io
@@ -31,7 +31,7 @@ _TYPES = "biufU"
 
 
 def attributes_from(mesh: Any, vertices: Any, faces: Any) -> dict[str, Any]:
-    """Return the attributes of whatever holds a mesh, as `Solid` takes them.
+    """Return the attributes of any object that holds a mesh, as `Solid` takes them.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _arrays_in(held: Any) -> dict[str, Any]:
 
 
 def _one_array(values: Any) -> Any:
-    """Return an array of values, of which meshio has one for each block of cells."""
+    """Return one array of values; meshio has one for each block of cells."""
     is_list = isinstance(values, list) and values
     if is_list and all(isinstance(block, np.ndarray) for block in values):
         return np.concatenate(values)
@@ -85,7 +85,7 @@ def _one_array(values: Any) -> Any:
 def _fitting(
     found: dict[str, dict[str, Any]], vertex_count: int, faces: Any
 ) -> dict[str, dict[str, Any]]:
-    """Return the arrays that have a row for each vertex or triangle, each name once."""
+    """Return the arrays with a row for each vertex or triangle, each name once."""
     triangles = np.asarray(faces) if all(len(face) == 3 for face in faces) else np.zeros((0, 3))
     rows = {"vertex": (vertex_count,), "corner": triangles.shape, "face": triangles.shape[:1]}
     taken: set[str] = set()
@@ -107,7 +107,7 @@ def _fitting(
 
 
 def _take_properties(mesh: Any, found: dict[str, dict[str, Any]]) -> None:
-    """Take what manifold3d interpolates beside coordinates; seams have vertices of their own."""
+    """Take the vertex properties of manifold3d; seams have vertices of their own."""
     properties = np.asarray(mesh.vert_properties)[:, 3:]
     if properties.shape[1] == 0:
         return
@@ -130,7 +130,7 @@ def _take_column(
     has_seams: bool,
     found: dict[str, dict[str, Any]],
 ) -> None:
-    """Take the values of one attribute at vertices, as what it was of if they still allow that."""
+    """Take the values of one attribute, for its original kind of element if they still allow it."""
     corners = values[triangles]
     if column.kind == "face" and np.array_equal(corners, np.repeat(corners[:, :1], 3, axis=1)):
         found["face"][column.name] = corners[:, 0]
@@ -141,7 +141,7 @@ def _take_column(
 
 
 def _take_metadata(told: Mapping[str, Any], faces: Any, found: dict[str, dict[str, Any]]) -> None:
-    """Take what `leaving` put into the metadata of a trimesh, if its faces are still the same."""
+    """Take the data of `leaving` from the metadata of a trimesh, if its faces are unchanged."""
     materials, corners = told.get(MATERIALS), told.get(CORNERS)
     if isinstance(materials, Mapping):
         kept = {name: one for name, one in materials.items() if isinstance(one, Material)}
@@ -163,7 +163,7 @@ def _take_visual(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> N
 
 
 def _take_face_colors(colors: Values, found: dict[str, dict[str, Any]]) -> None:
-    """Take the colours of faces, unless they only show what materials or corners say."""
+    """Take the colours of faces, unless they only repeat materials or colours of corners."""
     names, corners = found["face"].get("material"), found["corner"].get("color")
     if found["materials"] and names is not None and len(names) == len(colors):
         shown = colors_by_materials(names, found["materials"])
@@ -177,7 +177,7 @@ def _take_face_colors(colors: Values, found: dict[str, dict[str, Any]]) -> None:
 
 
 def _take_materials(visual: Any, count: int, found: dict[str, dict[str, Any]]) -> None:
-    """Take the materials of a trimesh: one of all faces, or one for each by its number."""
+    """Take the materials of a trimesh: one for all faces, or one for each face by number."""
     numbers = getattr(visual, "face_materials", None)
     several = list(getattr(visual.material, "materials", None) or ())
     if several and numbers is not None and len(numbers) == count:
@@ -189,7 +189,7 @@ def _take_materials(visual: Any, count: int, found: dict[str, dict[str, Any]]) -
 
 
 def _take_material(material: Any, usual: str, found: dict[str, dict[str, Any]]) -> str:
-    """Take a material, unless it is one that was here before; return its name."""
+    """Take a material, unless it came from this package; return its name."""
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
     name = str(getattr(material, "name", None) or usual)
     color = np.asarray(getattr(material, "main_color", (255, 255, 255, 255)))[:4]
@@ -201,7 +201,7 @@ def _take_material(material: Any, usual: str, found: dict[str, dict[str, Any]]) 
 
 
 def _is_same(known: Material, color: Values, image: Any) -> bool:
-    """Say whether a material looks as one of trimesh does."""
+    """Say whether a material looks like a trimesh material with this colour and image."""
     if as_bytes(np.array(known.color)).tolist() != color.tolist():
         return False
     if known.texture is None or image is None:

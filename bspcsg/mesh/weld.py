@@ -1,4 +1,4 @@
-"""Points with equal coordinates as one point."""
+"""Merging of points with equal coordinates."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from ..errors import core_errors
 
 
 def welded(points: FloatArray) -> tuple[FloatArray, IndexArray]:
-    """Return the different points in the order in which they first occur, and who is which.
+    """Return the distinct points in the order of first occurrence, and the index of each point.
 
-    Points are the same if their coordinates are equal as numbers; 0.0 and -0.0 are.
+    Points are the same if their coordinates are equal as numbers; 0.0 equals -0.0.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def welded(points: FloatArray) -> tuple[FloatArray, IndexArray]:
 
 
 def distinct(points: FloatArray) -> int:
-    """Return how many different points there are, as `welded` tells them apart.
+    """Return the number of distinct points, as `welded` counts them.
 
     Parameters
     ----------

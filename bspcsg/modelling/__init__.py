@@ -1,1 +1,1 @@
-"""Verbs that make solids and regions of others, or of points, curves and functions."""
+"""Functions that make solids and regions of others, or of points, curves and functions."""

@@ -1,4 +1,4 @@
-"""The cards of a report: which cases get one, and how much of each fits on the page."""
+"""The cards of a report: the choice of cases, and the size of each card."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -33,9 +33,9 @@ _MAX_VIEW_SHARES = 2
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture of a card; of several images each is in front of the one before.
+    """A picture of a card; later images are drawn over earlier ones.
 
-    `text` stands where there is no picture; `is_same` if that is because two sets are the same.
+    `text` replaces a missing picture; `is_same` is set if it is missing because two sets are equal.
     """
 
     caption: str
@@ -46,7 +46,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Card:
-    """One case as a page shows it.
+    """One case, as shown on a page.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Card:
     model : dict or None
         The data that the viewer unpacks.
     note : str
-        A note on what was left out, and why.
+        A note on omitted content, and the reason.
     """
 
     address: str
@@ -76,9 +76,9 @@ class PageBudget:
     ----------
     cards : int
     spent : int
-        The characters of all else on the page.
+        The number of characters of the rest of the page.
     page : float, optional
-        The characters that the page may have; by default as is usual for so many cards.
+        The limit of characters of the page; by default it depends on the number of cards.
     """
 
     def __init__(self, cards: int, spent: int, page: float | None = None) -> None:
@@ -87,11 +87,11 @@ class PageBudget:
         self.left = max(page - spent, _MIN_CARD_SHARE * page)
 
     def spend(self, characters: int) -> None:
-        """Take so many out."""
+        """Spend a number of characters."""
         self.left -= characters
 
     def allowance(self) -> float:
-        """Return what the view of the next card may take, when its pictures are paid for."""
+        """Return the characters that the view of the next card may use, after its pictures."""
         cards = max(self._cards, 1)
         self._cards = cards - 1
         free = self.left - self._cards * _PICTURE_CHARACTERS
@@ -99,7 +99,7 @@ class PageBudget:
 
 
 def picked(results: Results, count: int) -> list[CaseRecord]:
-    """Return the cases that get a card: failures first, then those with meshes, by doubt."""
+    """Return the cases that get a card: failures first, then cases with meshes, worst first."""
     return sorted(results.cases.values(), key=_urgency)[:count]
 
 
@@ -112,7 +112,7 @@ def _urgency(case: CaseRecord) -> tuple[bool, bool, int, float, str]:
 
 
 def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) -> Iterable[Card]:
-    """Yield a card for each case; what does not fit is left out and said."""
+    """Yield a card for each case; content that does not fit is omitted with a note."""
     for number, case in enumerate(cases):
         address = f"case-{number + 1}"
         if case["meshes"] is None:
@@ -131,7 +131,7 @@ def cards_of(cases: Iterable[CaseRecord], results: Results, budget: PageBudget) 
 
 
 def _figures(case: CaseRecord, stored: Stored) -> list[Figure]:
-    """Return pictures of the operands, the result and the difference, all from one place."""
+    """Return pictures of the operands, the result and the difference, with one camera."""
     if not stored.layers:
         return []
     camera = camera_for(stored.layers, (4, 3))
@@ -173,7 +173,7 @@ def _no_difference(case: CaseRecord) -> Figure:
 def model_within(
     layers: list[Layer], allowance: float, **told: Any
 ) -> tuple[dict[str, Any] | None, str]:
-    """Return what the viewer unpacks, simpler if need be, and what was done to it.
+    """Return the data for the viewer, simplified if necessary, and a note on the changes.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Charts as SVG, in the colours of the page that they stand in."""
+"""Charts as SVG, in the colours of the page."""
 
 import math
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ _MAX_CURVE_STEPS = 200
 
 
 class Mark(NamedTuple):
-    """A label on an axis, and where it stands in pixels."""
+    """A label on an axis, and its position in pixels."""
 
     place: float
     text: str
@@ -26,7 +26,7 @@ class Curve(NamedTuple):
 
 
 class Chart(NamedTuple):
-    """A chart as the template draws it: curves, labels of the axes, and the frame in pixels."""
+    """The data of a chart for the template: curves, labels of the axes, and the frame in pixels."""
 
     curves: list[Curve]
     across: list[Mark]
@@ -40,13 +40,13 @@ class Chart(NamedTuple):
 
 
 def share_below(series: Sequence[tuple[str, Sequence[float]]]) -> Chart | None:
-    """Return the chart of which share of the values lies below a value, on a logarithmic axis.
+    """Return the chart of the cumulative distribution of values, on a logarithmic axis.
 
     Parameters
     ----------
     series : sequence of (str, sequence of float)
-        Names and values; those not above 0 count as below every other. There is no chart if none
-        is above 0.
+        Names and values; values up to 0 count as smaller than all others. Without a positive value
+        there is no chart.
     """
     positive = [value for _, values in series for value in values if value > 0]
     if not positive:
@@ -62,7 +62,7 @@ def share_below(series: Sequence[tuple[str, Sequence[float]]]) -> Chart | None:
 
 
 def _path(values: Sequence[float], low: int, high: int) -> str:
-    """Return the steps of a curve, each as far up as the share of values up to there."""
+    """Return the step curve of the share of values up to each value."""
     count = len(values)
     picked = sorted(
         {round(k * (count - 1) / _MAX_CURVE_STEPS) for k in range(_MAX_CURVE_STEPS + 1)}

@@ -1,4 +1,4 @@
-"""The test whether values that were read have the form that their type says."""
+"""The check of JSON values against typed dictionaries."""
 
 import math
 from types import NoneType, UnionType
@@ -6,13 +6,13 @@ from typing import Any, Union, get_args, get_origin, get_type_hints, is_typeddic
 
 
 def departure(value: Any, kind: Any, place: str = "") -> str:
-    """Return where a JSON value is not of a type and why, or nothing if it is.
+    """Return where and why a JSON value does not have a type, or nothing if it does.
 
     Parameters
     ----------
     value : object
     kind : type
-        A typed dictionary, or what occurs in one.
+        A typed dictionary, or a type that occurs in one.
     place : str
         The name of the value.
     """

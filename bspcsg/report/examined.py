@@ -1,4 +1,4 @@
-"""Meshes that were checked, as one page: a card for each mesh and for each object of it."""
+"""The page of checked meshes, with a card for each mesh and each of its objects."""
 
 import re
 from collections import Counter
@@ -44,14 +44,14 @@ _MEANINGS = {
 
 @dataclass(frozen=True)
 class Sheet:
-    """One mesh, or one object of a file, as the page shows it.
+    """One mesh, or one object of a file, as shown on the page.
 
     Parameters
     ----------
     address : str
         In the page.
     file, name : str
-        Of the file, and of the object in it; the latter is empty for the whole file.
+        Names of the file and of the object in it; the latter is empty for the whole file.
     verdict, tone : str
     findings : sequence of Finding
     facts : mapping of str to str
@@ -59,7 +59,7 @@ class Sheet:
     model : dict or None
         The data that the viewer unpacks.
     note : str
-        A note on what was left out, and why.
+        A note on omitted content, and the reason.
     """
 
     address: str
@@ -75,7 +75,7 @@ class Sheet:
 
     @property
     def title(self) -> str:
-        """What the card is called."""
+        """The title of the card."""
         return f"{self.file}: {self.name}" if self.name else self.file
 
 
@@ -89,12 +89,12 @@ class Row(NamedTuple):
 
 
 class CheckPage:
-    """A page that grows by a file at a time, so that no mesh is kept longer than it is drawn.
+    """A page that is built file by file, so that each mesh is released once it is drawn.
 
     Parameters
     ----------
     files : int
-        How many there will be.
+        The total number of files.
     thin : float, optional
         Thickness in model units below which walls are marked.
     """
@@ -106,7 +106,7 @@ class CheckPage:
         self._sheets: list[Sheet] = []
 
     def add(self, file: str, whole_file: Examination) -> None:
-        """Show a file, and each of its objects if there are several."""
+        """Add a file, and each of its objects if there are several."""
         allowance = self._budget.allowance() / (1 + len(whole_file.objects))
         if whole_file.objects:
             scene = assembled(whole_file)
@@ -118,7 +118,7 @@ class CheckPage:
             self._show(file, one.name, one.mesh, one.found, scene, allowance)
 
     def add_unreadable(self, file: str, error: str) -> None:
-        """Say why a file could not be looked at."""
+        """Add a card for a file that could not be read, with the reason."""
         found = Finding(UNREADABLE, "error", error, (), 1)
         self._sheets.append(Sheet(self._address, file, "", UNREADABLE, "bad", [found], {}))
 
@@ -205,7 +205,7 @@ def _count(found: Diagnosis, code: str) -> int:
 
 
 def _facts(found: Diagnosis, unit: str) -> dict[str, str]:
-    """Return what there is to know about a mesh, by the name of each fact."""
+    """Return the facts about a mesh, by name."""
     after = f" {unit}" if unit else ""
     size = ""
     if found.bounds is not None:
@@ -250,10 +250,10 @@ def _row(sheet: Sheet) -> Row:
 
 
 def _figures(layers: Sequence[Layer], landmarks: Sequence[Landmark]) -> list[Figure]:
-    """Return pictures from both sides, with rings around what is to be looked at."""
+    """Return pictures from two sides, with rings around the landmarks."""
     if not any(len(layer.faces) for layer in layers):
         return []
-    # What is faint to see through hides nothing that stands in front.
+    # No ring around the thinnest wall, which every closed mesh has.
     places = [place.at.tolist() for place in landmarks if not place.name.startswith("thinnest")]
     front = camera_for(layers, _SIZE)
     sides = (("right, front and above", front), ("left, back and below", _behind(front, layers)))

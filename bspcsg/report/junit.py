@@ -1,4 +1,4 @@
-"""JUnit XML, which every build server shows: of campaigns, and of meshes that were checked."""
+"""JUnit XML for build servers, of campaigns and of checked meshes."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
@@ -65,9 +65,9 @@ def junit_of(
     title : str
     suites : mapping of str to sequence of JUnitCase
     started : str
-        The time at which the run began, if it is to be told.
+        The start time of the run, if it is to be shown.
     properties : sequence of (str, str)
-        What is to be known about the run, told with every suite.
+        Properties of the run, repeated in every suite.
     """
     whole = [case for cases in suites.values() for case in cases]
     root = Xml.Element("testsuites", _counts(whole), name=title)

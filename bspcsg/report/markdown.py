@@ -1,4 +1,4 @@
-"""Campaigns as Markdown, for the summary of a build or a message to somebody."""
+"""Campaigns as Markdown, for build summaries and messages."""
 
 from collections.abc import Sequence
 
@@ -19,7 +19,7 @@ def markdown_text(cases: Sequence[CaseRecord], runs: Sequence[RunRecord] = ()) -
     ----------
     cases : sequence of CaseRecord
     runs : sequence of RunRecord
-        The runs whose commands, versions and machine are told.
+        The runs whose commands, versions and machine are shown.
     """
     failures = [case for case in cases if is_failure(case)]
     blocks = ["# Validation", f"**{conclusion(cases)}**", _counts(cases)]
@@ -68,7 +68,7 @@ def _run(run: RunRecord) -> str:
 
 
 def _row(cells: Sequence[str]) -> str:
-    # A bar would end the cell, a line break the row.
+    # A vertical bar would end the cell, a line break the row.
     safe = (cell.replace("|", "\\|").replace("\n", " ") for cell in cells)
     return f"| {' | '.join(safe)} |"
 

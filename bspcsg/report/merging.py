@@ -1,4 +1,4 @@
-"""Results of several files, such as the shards of one campaign, as one."""
+"""The merging of results files, such as the shards of one campaign."""
 
 import json
 import os
@@ -18,14 +18,14 @@ from .conformity import departure
 
 
 def merged(paths: Sequence[str | os.PathLike[str]]) -> Results:
-    """Read results files as one; the order in which they are named does not matter.
+    """Read and merge results files; their order does not matter.
 
-    Of several lines about one case the last counts; of several files the one that was started last.
+    Of several lines about one case the last one counts; of several files, the one started last.
 
     Raises
     ------
     FormatError
-        If a file cannot be read or is none of results, or there is no case in any.
+        If a file cannot be read or is no results file, or no file has a case.
     """
     everything = Results()
     for results in sorted(map(_read, paths), key=_started):
@@ -51,12 +51,12 @@ def _read(path: str | os.PathLike[str]) -> Results:
 
 
 def _started(results: Results) -> tuple[str, list[str]]:
-    # Keys decide where times do not, so that nothing depends on the order of the files.
+    # Keys break ties of times, so that the result does not depend on the order of the files.
     return max((run["started"] for run in results.runs), default=""), sorted(results.cases)
 
 
 def rank(case: CaseRecord) -> int:
-    """Return the place of a case's verdict among all verdicts, the ones to worry about first."""
+    """Return the rank of a case's verdict among all verdicts, the worst first."""
     verdict = case["verdict"]
     return VERDICTS.index(verdict) if verdict in VERDICTS else len(VERDICTS)
 
@@ -71,12 +71,12 @@ def versions_of(runs: Iterable[RunRecord]) -> dict[str, list[str]]:
 
 
 def ordered(results: Results) -> list[CaseRecord]:
-    """Return all cases, the ones to worry about first, then by name."""
+    """Return all cases, the worst verdicts first, then by name."""
     return sorted(results.cases.values(), key=lambda case: (rank(case), case["case"], case["key"]))
 
 
 def document(results: Results) -> str:
-    """Return everything as one JSON document."""
+    """Return all results as one JSON document."""
     cases = ordered(results)
     found = {**summary_of(cases), "runs": results.runs, "results": cases}
     return json.dumps(found, indent=1, allow_nan=False) + "\n"

@@ -46,7 +46,7 @@ def report_page(
         The number of cases shown with pictures and all their numbers, failures first.
     title : str
     watch : callable
-        Given the cases of the cards, yields them one by one as they are drawn.
+        Wraps the cases of the cards, to show progress while they are drawn.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def report_page(
     cases = ordered(results)
     chosen = picked(results, cards)
     columns, rows = table(cases, {case["key"]: f"case-{k + 1}" for k, case in enumerate(chosen)})
-    # Each cell and row costs its tags besides its text.
+    # Each cell and row adds tags to its text.
     spent = sum(60 + sum(4 + len(cell) for cell in row.cells) for row in rows)
     spent += (
         len(bundle())
@@ -96,7 +96,7 @@ def _lead(results: Results) -> str:
 
 
 def _facts(ours: FactsRecord | None, oracles: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """Return the names of all engines that made a mesh, and rows of what the meshes are like."""
+    """Return the names of all engines that made a mesh, and rows of facts about the meshes."""
     made = [("bspcsg", ours), *((oracle["name"], oracle["facts"]) for oracle in oracles)]
     made = [(name, facts) for name, facts in made if facts is not None]
     rows = [
@@ -108,7 +108,7 @@ def _facts(ours: FactsRecord | None, oracles: Iterable[Mapping[str, Any]]) -> di
 
 
 def _charts(results: Results) -> list[tuple[str, str, Chart]]:
-    """Return title, name of the axis and curves of what can be drawn."""
+    """Return title, axis name and chart of each chart with data."""
     times: dict[str, list[float]] = {"bspcsg": []}
     ratios = []
     for case in results.cases.values():
@@ -120,7 +120,7 @@ def _charts(results: Results) -> list[tuple[str, str, Chart]]:
         found, bounds = case["set_difference"], case["bounds"]
         if found and bounds and bounds["same_set"] > 0:
             ratios.append(found["thickness"] / bounds["same_set"])
-    # Some engines are asked about the hard cases only, so their curves are of few.
+    # Some engines run only in hard cases, so their curves have few values.
     timed = [(f"{name}, {whole(len(found))} cases", found) for name, found in times.items()]
     drawn = (
         ("Time of the operation", "seconds", share_below(timed)),

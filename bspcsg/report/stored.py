@@ -1,4 +1,4 @@
-"""The meshes that a campaign has kept of a case, as layers of a view."""
+"""The meshes that a campaign kept of a case, as layers of a view."""
 
 import os
 import zipfile
@@ -18,9 +18,9 @@ _OPERAND_OPACITY = 0.4
 
 
 class Stored(NamedTuple):
-    """The meshes kept of one case: operands in their order, the result, and what is too much in it.
+    """The kept meshes of one case: the operands in order, the result and the difference.
 
-    `difference` is where the result and the oracle's are not the same; empty if they are.
+    `difference` is the symmetric difference to the oracle's result; empty if both are equal.
     """
 
     operands: list[Layer]
@@ -29,7 +29,7 @@ class Stored(NamedTuple):
 
     @property
     def layers(self) -> list[Layer]:
-        """All layers that have faces; operands are hidden at first, unless nothing came out."""
+        """All layers with faces; operands are hidden at first, unless the result is empty."""
         hidden = len(self.result.faces) > 0
         operands = [
             replace(layer, shown=not hidden, opacity=_OPERAND_OPACITY) for layer in self.operands
@@ -51,10 +51,10 @@ def stored_meshes(folder: Path, name: str) -> Stored:
     Raises
     ------
     FormatError
-        If the file cannot be read, is not in that folder, or holds something else.
+        If the file cannot be read, is not in that folder, or has other content.
     """
     path = folder / name
-    # Links are the user's own; what the results say must not lead elsewhere.
+    # The user's own links are followed, but the path in the results must not leave the folder.
     if os.path.isabs(name) or os.path.normpath(name).startswith(".."):
         raise FormatError(f"{name}: meshes lie in the folder of the results only.", "unreadable")
     try:

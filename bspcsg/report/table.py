@@ -1,4 +1,4 @@
-"""The table of all cases: its columns, and what stands in them."""
+"""The table of all cases: its columns and cells."""
 
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
@@ -17,7 +17,7 @@ class Column(NamedTuple):
     title : str
     kind : {"text", "number"}
     shown : callable
-        From a case to the text of its cell.
+        Returns the text of the cell of a case.
     """
 
     name: str
@@ -97,7 +97,7 @@ COLUMNS = (
 
 
 def table(cases: Sequence[CaseRecord], cards: dict[str, str]) -> tuple[list[Column], list[Row]]:
-    """Return the columns that say anything, and a row for each case.
+    """Return the columns that are not empty, and a row for each case.
 
     Parameters
     ----------

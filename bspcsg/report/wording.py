@@ -1,4 +1,4 @@
-"""Numbers and verdicts as a page shows them."""
+"""Numbers and verdicts as text for a page."""
 
 import math
 from collections.abc import Sequence
@@ -38,17 +38,17 @@ _PLAIN = (-4, 9)
 
 
 def tone(verdict: str) -> str:
-    """Return good, near, warn, mute or bad; an unknown verdict is bad."""
+    """Return the tone of a verdict: good, near, warn, mute or bad; bad if it is unknown."""
     return _TONES.get(verdict, "bad")
 
 
 def meaning(verdict: str) -> str:
-    """Return what a verdict means; nothing for an unknown one."""
+    """Return the meaning of a verdict; nothing for an unknown one."""
     return _MEANINGS.get(verdict, "")
 
 
 def number(value: float | None, digits: int = 6) -> str:
-    """Return a number with so many digits that count, and powers of ten only where they help."""
+    """Return a number with so many significant digits, with powers of ten only where they help."""
     if value is None:
         return NOTHING
     power = math.floor(math.log10(abs(value))) if value and math.isfinite(value) else 0
@@ -60,7 +60,7 @@ def number(value: float | None, digits: int = 6) -> str:
 
 
 def whole(value: int | None) -> str:
-    """Return a whole number with its thousands apart."""
+    """Return a whole number with separated thousands."""
     return NOTHING if value is None else f"{value:,}".replace(",", _THIN)
 
 
@@ -76,5 +76,5 @@ def milliseconds(seconds: float | None) -> str:
 
 
 def vector(values: Sequence[float] | None) -> str:
-    """Return a point."""
+    """Return the coordinates of a point as text."""
     return NOTHING if values is None else ", ".join(f"{value:.6g}" for value in values)

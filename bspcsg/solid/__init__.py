@@ -1,1 +1,1 @@
-"""Solids: the value, the expression it stands for, and what can be measured of it."""
+"""Solids: the value, the expression behind it, and its measures."""

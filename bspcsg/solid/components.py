@@ -1,4 +1,4 @@
-"""The connected parts of a solid, which were a number before."""
+"""The connected parts of a solid, compatible with their former type, a number."""
 
 from typing import TYPE_CHECKING
 
@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
 
 class Components(tuple["Solid", ...]):
-    """The connected parts; compared with a whole number, they warn and count surfaces.
+    """The connected parts; a comparison with an integer warns and uses the number of surfaces.
 
-    Without that, programs that compare with a number would go on and be wrong.
+    Otherwise programs that compare with a number would silently get wrong answers.
     """
 
     _whole: "Solid"

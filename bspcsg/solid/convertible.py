@@ -1,4 +1,4 @@
-"""Files, other libraries, drawings and checks of a solid, as methods."""
+"""Methods of solids for files, other libraries, drawings and checks."""
 
 import os
 from typing import TYPE_CHECKING, Any, cast, overload
@@ -19,31 +19,32 @@ if TYPE_CHECKING:
 
 
 class Convertible(Measured):
-    """A solid that files, other libraries and drawings take."""
+    """A solid that can be converted to files, other libraries' types and drawings."""
 
     __slots__ = ()
 
     def to_trimesh(self) -> "trimesh.Trimesh":
         """Return a `trimesh.Trimesh` with the same vertices and faces, and the attributes.
 
-        ``"color"`` is its visual, so is the only material with texture coordinates ``"uv"`` of
+        The visual has ``"color"``, or a single material with texture coordinates ``"uv"`` of
         vertices; else faces show the colours of their materials. All other arrays of vertices and
-        of faces have their names there, and the metadata have the materials and the values of
-        corners. `Solid.from_mesh` takes all of that back.
+        faces keep their names, and the metadata have the materials and the values of corners.
+        `Solid.from_mesh` reads all of that back.
 
         Warns
         -----
         LossWarning
-            If a trimesh cannot show it: colours of corners, pictures of several materials.
+            If a trimesh cannot show an attribute: colours of corners, pictures of several
+            materials.
         """
         return leaving.trimesh_of(self.normalized().to_mesh())
 
     def to_manifold(self) -> "manifold3d.Manifold":
         """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted.
 
-        Attributes that are numbers are its properties: those called ``"properties"`` first, then
-        the others in their order, colours as four numbers from 0 to 1. `Solid.from_mesh` gives them
-        their names back, also after Manifold's operations, if all that it is made of had the same.
+        Numeric attributes become vertex properties: ``"properties"`` first, then the others in
+        order, colours as four numbers from 0 to 1. `Solid.from_mesh` restores their names, also
+        after Manifold's operations, if all operands had the same attributes.
 
         Warns
         -----
@@ -92,16 +93,16 @@ class Convertible(Measured):
     ) -> "Region | list[Region]":
         """Return the section by a plane as a region of the plane (`bspcsg.Region`).
 
-        The boundary is cut exactly, by the plane that `half_space` has for these numbers: the one
-        asked for if it holds lattice points, else the nearest of its direction that does. Each
-        corner of the section is rounded to the lattice point nearest to it, so that corners with
-        lattice coordinates are exact.
+        The boundary is cut exactly, by the plane that `half_space` uses for these numbers: the
+        given plane if it contains lattice points, else the nearest parallel one that does. Each
+        corner of the section is rounded to the nearest lattice point, so corners with lattice
+        coordinates are exact.
 
         Parameters
         ----------
         offset : float or (n,) float
-            The plane holds the points x with ``normal . x == offset``: by default a height z. Of
-            several planes the sections come as a list.
+            The plane consists of the points x with ``normal . x == offset``: by default a height z.
+            Several offsets give a list of sections.
         normal : "x", "y", "z" or (3,) float
             Need not have unit length. The region is seen from where it points: z gives coordinates
             (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
@@ -118,8 +119,8 @@ class Convertible(Measured):
 
         Notes
         -----
-        A face in the plane lies above it: the section is the limit from the minus side, that of a
-        box standing on z = 0 is empty at 0 and full at its top.
+        A face in the plane counts as above it: the section is the limit from the minus side. For a
+        box standing on z = 0 it is empty at z = 0 and full at the top.
         """
         from ..bsp.sets.slicing import slice_solid
 
@@ -127,9 +128,9 @@ class Convertible(Measured):
 
     @uncounted
     def project(self) -> "Region":
-        """Return the shadow on the plane z = 0 of light along z: all (x, y) below or above a point.
+        """Return the projection along z onto the plane z = 0: all (x, y) of points of the solid.
 
-        Turn the solid first to project it along another direction.
+        To project along another direction, rotate the solid first.
 
         Raises
         ------
@@ -138,7 +139,7 @@ class Convertible(Measured):
 
         Notes
         -----
-        It is the shadow of the mesh: corners that are no lattice points are rounded to them first.
+        The mesh is projected: corners off the lattice are first rounded to it.
 
         Examples
         --------
@@ -158,24 +159,24 @@ class Convertible(Measured):
         return check_result(cast("Solid", self), **options)
 
     def check(self, **options: Any) -> "CheckReport":
-        """Do as `validate` does; deprecated."""
+        """Call `validate`; deprecated."""
         deprecated("Solid.check", "validate")
         return self.validate(**options)
 
     def _repr_html_(self) -> str | None:
-        """Return what a notebook shows: an interactive view, or why there is none."""
+        """Return the HTML for a notebook: an interactive view, or the reason why there is none."""
         from ..report.viewer.notebook import solid_html
 
         return solid_html(cast("Solid", self))
 
     def _repr_svg_(self) -> str | None:
-        """Return a picture, for notebooks that show neither HTML nor pixels."""
+        """Return a picture as SVG, for notebooks that show neither HTML nor PNG."""
         from ..report.viewer.notebook import solid_svg
 
         return solid_svg(cast("Solid", self))
 
     def _repr_png_(self) -> bytes | None:
-        """Return a picture, for notebooks that show pixels only; None without Pillow."""
+        """Return a picture as PNG, for notebooks that show nothing else; None without Pillow."""
         from ..report.viewer.notebook import solid_png
 
         return solid_png(cast("Solid", self))

@@ -1,8 +1,8 @@
-"""The choice of the solids that count in an open block, kept apart from what a solid is.
+"""The record of the solids that count in an open block, separate from the solids themselves.
 
-A function that makes a solid for its caller is `counted`: while it runs nothing else counts, and
-what it returns takes the place of the solids that it was given. A query is `uncounted`: what it
-makes on the way concerns nobody. Outside blocks both cost one look at a context variable.
+A function that makes a solid for its caller is `counted`: solids that it makes internally do not
+count, and its result replaces its operands. A query is `uncounted`: none of the solids that it
+makes count. Outside blocks both cost one lookup of a context variable.
 """
 
 import itertools
@@ -25,33 +25,33 @@ class Ledger:
     Parameters
     ----------
     outer : Ledger or None
-        That of the block around it.
+        The ledger of the enclosing block.
     """
 
     def __init__(self, outer: "Ledger | None") -> None:
         self.outer = outer
         self.is_open = True
-        # By identity: solids are compared as sets, not by where they came from.
+        # Keyed by identity, since ``==`` compares solids as sets of points.
         self._kept: dict[int, tuple[int, Measured]] = {}
         self._ranks = itertools.count()
-        # Tasks and threads started in a block may share it.
+        # Tasks and threads started in a block may share its ledger.
         self._lock = Lock()
 
     @property
     def solids(self) -> tuple[Measured, ...]:
-        """The solids that count, each in the place of the first solid it was made of."""
+        """The solids that count, each at the position of its first operand."""
         with self._lock:
             ranked = sorted(self._kept.values(), key=lambda entry: entry[0])
         return tuple(solid for _, solid in ranked)
 
     def discard(self, solids: Iterable[Measured]) -> int | None:
-        """Let solids no longer count; return the lowest place that got free."""
+        """Remove solids; return the lowest position that became free."""
         with self._lock:
             gone = [self._kept.pop(id(solid), None) for solid in solids]
         return min((entry[0] for entry in gone if entry is not None), default=None)
 
     def put(self, solid: Measured, rank: int | None = None) -> None:
-        """Let a solid count, in a place or after all others; once, if it does already."""
+        """Add a solid once, at a position or at the end."""
         with self._lock:
             place = next(self._ranks) if rank is None else rank
             self._kept.setdefault(id(solid), (place, solid))
@@ -63,21 +63,21 @@ _current: ContextVar[Ledger | None] = ContextVar("bspcsg_block", default=None)
 def current() -> Ledger | None:
     """Return the ledger of the innermost open block of this thread or task."""
     ledger = _current.get()
-    # A task may outlive the block it was started in.
+    # A task may outlive the block in which it was started.
     while ledger is not None and not ledger.is_open:
         ledger = ledger.outer
     return ledger
 
 
 def opened() -> Ledger:
-    """Open a ledger inside the current one, and make it the current one."""
+    """Open a ledger inside the current one, and make it current."""
     ledger = Ledger(current())
     _current.set(ledger)
     return ledger
 
 
 def close(ledger: Ledger) -> None:
-    """Close a ledger; the one around it is the current one again."""
+    """Close a ledger, and make the enclosing one current again."""
     ledger.is_open = False
     _current.set(ledger.outer)
 
@@ -92,7 +92,7 @@ def _apart() -> Iterator[None]:
 
 
 def count(made: Measured, operands: Iterable[Measured] = ()) -> None:
-    """Let a solid count in the current block, instead of those that it was made of."""
+    """Count a solid in the current block, instead of its operands."""
     ledger = current()
     if ledger is None:
         return
@@ -106,7 +106,7 @@ def count(made: Measured, operands: Iterable[Measured] = ()) -> None:
 
 
 def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
-    """Make a function's result, if it is a solid, count instead of the solids it is given."""
+    """Decorate a function so that its result, if a solid, counts instead of its operands."""
 
     @wraps(function)
     def counting(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
@@ -117,7 +117,7 @@ def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
         if not isinstance(result, Measured):
             return result
         given = _solids_in((*args, *kwargs.values()))
-        # Using the operand once more must not use up what this call made of it.
+        # If the operand is used again, the result of this call must still count.
         made = result._alias() if any(result is solid for solid in given) else result
         count(made, given)
         return made
@@ -126,7 +126,7 @@ def counted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
 
 
 def uncounted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _Result]:
-    """Make nothing count that a function makes while it runs."""
+    """Decorate a function so that no solid that it makes counts."""
 
     @wraps(function)
     def silent(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
@@ -139,7 +139,7 @@ def uncounted(function: Callable[_Parameters, _Result]) -> Callable[_Parameters,
 
 
 def _solids_in(arguments: Iterable[Any]) -> list[Measured]:
-    """Return the solids among arguments and in lists among them."""
+    """Return the solids among arguments, also inside lists."""
     found: list[Measured] = []
     for argument in arguments:
         entries = argument if isinstance(argument, (list, tuple)) else (argument,)

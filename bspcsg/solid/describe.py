@@ -1,4 +1,4 @@
-"""The `repr` of a solid: it says only what is known already."""
+"""The `repr` of a solid, which shows only known facts and evaluates nothing."""
 
 from typing import Any
 
@@ -13,7 +13,7 @@ from .leaf import ConstantLeaf, MeshLeaf, PlaneLeaf
 
 
 def describe(node: ExpressionNode, factors: FactorChain, mesh: Mesh | None) -> str:
-    """Return a few words on an expression under a transform, without evaluating it."""
+    """Return a short description of a transformed expression, without evaluating it."""
     content = node.content
     moved = ", transformed" if factors else ""
     if mesh is not None:
@@ -32,7 +32,7 @@ def describe(node: ExpressionNode, factors: FactorChain, mesh: Mesh | None) -> s
         return "half-space" + moved
     if isinstance(content, ConstantLeaf):
         return "all of space" if content.full else "empty"
-    # Its bounds are not known before a mesh is made.
+    # The bounds are unknown until a mesh is made.
     return ("empty" if content.result.is_empty else "evaluated, without a mesh") + moved
 
 

@@ -1,4 +1,4 @@
-"""The edges of a solid, what replaces them, and the holes in its faces, as methods."""
+"""Methods of solids for edges, chamfers, fillets and holes."""
 
 from typing import TYPE_CHECKING, Any, cast
 
@@ -19,22 +19,22 @@ class Edged:
 
     @uncounted
     def edges(self, *, all: bool = False, angle: Scalar = 30.0) -> "EdgeSelection":  # noqa: A002
-        """Return the edges at which faces bend, to choose some of them (see `EdgeSelection`).
+        """Return the sharp edges of the solid as a selection (see `EdgeSelection`).
 
-        The lines between the facets of a round surface are none. The rim of a bore is one: it comes
-        as the edges of its facets.
+        Lines between the facets of a round surface do not count. The rim of a bore does; it
+        consists of one edge for each facet.
 
         Parameters
         ----------
         all : bool
-            True for the edges between all plane faces, facets among them.
+            True for all edges between plane faces, also between facets.
         angle : float
-            Degrees; faces bend by more than this at an edge.
+            Degrees; the normals of the faces at an edge differ by more than this.
 
         Raises
         ------
         InvalidParameterError
-            If the angle is not from 0 to below 180.
+            If the angle is not in the range from 0 to below 180.
         UnboundedError
             If the solid reaches to infinity.
 
@@ -51,26 +51,25 @@ class Edged:
 
     @counted
     def chamfer(self, edges: "EdgeSelection", size: Scalar) -> "Solid":
-        """Return the solid with flat surfaces instead of edges.
+        """Return the solid with chamfered edges.
 
-        Material is taken off along convex edges and filled in along concave ones. At corners the
-        new surfaces run into each other. Where a concave edge ends between two convex ones, or the
-        other way around, it comes first, and the two run on along the end of its new surface. Where
-        all edges of a face are chosen whose walls are square to it, such as those of a text, short
-        ones may vanish.
+        Material is removed along convex edges and added along concave ones. At corners the new
+        surfaces meet. If a concave edge ends between two convex ones, or the other way around, it
+        is chamfered first, and the two continue along the end of its new surface. If all edges of a
+        face with perpendicular walls are selected, as of an extruded text, short edges may vanish.
 
         Parameters
         ----------
         edges : EdgeSelection
             Some of the solid's own.
         size : float
-            From the edge to where the new surface begins, on both faces, in model units.
+            Distance from the edge to the new surface, on both faces, in model units.
 
         Raises
         ------
         InvalidParameterError
-            If the faces leave no room, or convex and concave edges meet otherwise, or a corner is
-            not convex and of more than three faces; the message names the place.
+            If the faces have no room, if convex and concave edges meet in another way, or if a
+            corner of more than three faces is not convex; the message names the place.
         LimitError
             If more than 10 000 edges are chosen.
 
@@ -87,12 +86,12 @@ class Edged:
 
     @counted
     def fillet(self, edges: "EdgeSelection", radius: Scalar, segments: int = SEGMENTS) -> "Solid":
-        """Return the solid with round surfaces instead of edges.
+        """Return the solid with rounded edges.
 
-        Material is taken off along convex edges and filled in along concave ones, to a cylinder
-        that touches both faces. Where three such edges meet and all are chosen, the corner is part
-        of a ball. Convex and concave edges that meet are taken in turn, and short edges of a face
-        may vanish, as by `chamfer`.
+        Material is removed along convex edges and added along concave ones, up to a cylinder that
+        touches both faces. Where three selected edges of one kind meet, the corner is part of a
+        ball. Convex and concave edges that meet are rounded one after the other, and short edges of
+        a face may vanish, as in `chamfer`.
 
         Parameters
         ----------
@@ -101,14 +100,14 @@ class Edged:
         radius : float
             In model units.
         segments : int
-            Sides of a full circle, at least 4; all edges have as many sides as the sharpest needs.
+            Sides of a full circle, at least 4; all edges get as many sides as the sharpest needs.
 
         Raises
         ------
         InvalidParameterError
-            As for `chamfer`; or if more than three round edges would meet. Of edges of both kinds,
-            those taken last run along the facets of the others, which leave no room where they are
-            narrower than the radius; the message has the place.
+            As for `chamfer`, or if more than three rounded edges meet. If edges of both kinds meet,
+            the later ones run along the facets of the earlier fillets, which have no room if they
+            are narrower than the radius; the message names the place.
         LimitError
             If more than 10 000 edges are chosen, or the solid would have too many corners.
 
@@ -134,18 +133,18 @@ class Edged:
         depth: Scalar | None = None,
         segments: int = SEGMENTS,
     ) -> "Solid":
-        """Return the solid with round holes, square to a face.
+        """Return the solid with round holes, perpendicular to a face.
 
         Parameters
         ----------
         face : FaceSelection
-            One flat face. It may be that of the solid before it got other holes.
+            One flat face. It may come from the solid before other holes were made.
         at : (3,) or (n, 3) float, optional
-            Where the holes begin: a point on the face, or several. By default its middle.
+            The centres of the holes: one or more points on the face. By default its middle.
         d, r : float
             Diameter, or radius instead.
         depth : float, optional
-            By default they go through the whole solid.
+            Depth of the holes. By default they go through the whole solid.
         segments : int
             Sides around, at least 3.
 
@@ -153,7 +152,7 @@ class Edged:
         ------
         InvalidParameterError
             If the selection is not one flat face, the solid has no such face at a point, or a
-            number is out of its range; the message says which.
+            number is out of range.
 
         Examples
         --------
@@ -201,7 +200,7 @@ class Edged:
         Raises
         ------
         InvalidParameterError
-            As for `hole`, or if the wide part is not wider, or not less deep.
+            As for `hole`, or if the wide part is not wider or not less deep than the hole.
 
         Examples
         --------

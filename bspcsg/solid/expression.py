@@ -1,9 +1,9 @@
-"""Lazy set expressions: a graph of operations over leaves, and its evaluation.
+"""Lazy set expressions: the graph of operations over leaves, and its evaluation.
 
-Building an expression costs nothing. Evaluating a node flattens everything below it into one
-program for the core, which descends once for all of it; then the node becomes a leaf and the graph
-below it is let go. A node that appears under a transform is evaluated by itself first, because a
-transform acts on its result as a whole. There is no recursion: expressions may be any depth.
+Building an expression costs nothing. Evaluating a node flattens the graph below it into one program
+for the core, which executes it in a single descent; then the node becomes a leaf and the graph
+below is released. A node under a transform is evaluated separately first, because the transform
+acts on its whole result. The code is not recursive, so expressions may have any depth.
 """
 
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ class Placed(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Pending:
-    """An operation that has not been carried out."""
+    """An operation that has not been evaluated."""
 
     operator: Operator
     operands: tuple[Placed, ...]
@@ -39,7 +39,7 @@ class ExpressionNode:
     """A vertex of the graph; only its identity counts.
 
     `content` changes once, from `Pending` to the leaf that it evaluates to. It is one attribute,
-    so that another thread sees either all of the operation or all of the result.
+    so other threads see either the whole operation or the whole result.
     """
 
     __slots__ = ("__weakref__", "_moved", "content")
@@ -49,9 +49,9 @@ class ExpressionNode:
         self._moved: Once[WeakKeyDictionary[FactorChain, ExpressionLeaf]] = Once()
 
     def placed(self, factors: FactorChain) -> ExpressionLeaf:
-        """Return the evaluated leaf under a transform, the same one while anybody has that one.
+        """Return the evaluated leaf under a transform; return the same object while it is in use.
 
-        So a moved solid is one mesh to all operations that it is part of.
+        So all operations on a moved solid share one mesh.
         """
         leaf = _evaluated(self.content)
         if not factors:
@@ -62,12 +62,12 @@ class ExpressionNode:
 
 
 def complement(placed: Placed) -> Placed:
-    """Return the complement; that of a complement is the original."""
+    """Return the complement; the complement of a complement is the original."""
     content = placed.node.content
     if isinstance(content, Pending) and content.operator == "not":
         inner = content.operands[0]
         return Placed(inner.node, placed.factors.around(inner.factors))
-    # The transform moves outside: M(not X) and not M(X) are the same set.
+    # Move the transform outwards: M(not X) and not M(X) are the same set.
     return Placed(ExpressionNode(Pending("not", (Placed(placed.node, UNMOVED),))), placed.factors)
 
 
@@ -77,7 +77,7 @@ def operation(operator: Operator, operands: Sequence[Placed]) -> ExpressionNode:
 
 
 def _settled(placed: Placed) -> Placed:
-    """Move a transform below a complement, so that it meets a bounded solid."""
+    """Move a transform inside a complement, so that it acts on a bounded solid."""
     content = placed.node.content
     if not placed.factors or not isinstance(content, Pending) or content.operator != "not":
         return placed
@@ -87,12 +87,12 @@ def _settled(placed: Placed) -> Placed:
 
 
 def evaluate(root: ExpressionNode) -> ExpressionLeaf:
-    """Return the leaf that a node stands for, evaluating what is needed.
+    """Return the leaf of a node, and evaluate the graph below it as needed.
 
     Raises
     ------
     BspcsgError
-        Whatever the core or the placing of a leaf raises; the expression then stays as it was.
+        Any error of the core or of placing a leaf; the expression then stays unchanged.
     """
     waiting: list[tuple[ExpressionNode, Plan | None]] = [(root, None)]
     while waiting:
@@ -117,13 +117,13 @@ class Plan:
     operands: list[Placed] = field(default_factory=list)
 
     def execute(self) -> ExpressionLeaf:
-        """Carry the program out; the operands must have been evaluated."""
+        """Execute the program; the operands must be evaluated."""
         leaves = [_operand_leaf(operand) for operand in self.operands]
         return run(Record(self.program, tuple(leaves)))
 
 
 def make_plan(root: ExpressionNode) -> Plan:
-    """Flatten the expression below a node into a program, operands in reading order."""
+    """Flatten the expression below a node into a program, with operands in reading order."""
     uses = _count_uses(root)
     plan = Plan()
     lines: dict[Placed, int] = {}
@@ -155,20 +155,20 @@ def _evaluated(content: Pending | ExpressionLeaf) -> ExpressionLeaf:
 
 def _operand_leaf(placed: Placed) -> ExpressionLeaf:
     leaf = placed.node.placed(placed.factors)
-    # What remembers its operands must not be remembered in turn, or a chain would keep all of it.
+    # Operands must not keep their own records, or a chain would keep all of its history.
     return leaf.forgetful() if isinstance(leaf, TreeLeaf) else leaf
 
 
 def _open_operation(placed: Placed) -> Pending | None:
-    """Return the operation that a program can contain in place, or None if this is an operand."""
+    """Return the operation that the program can include, or None if the node is an operand."""
     content = placed.node.content
     return content if isinstance(content, Pending) and not placed.factors else None
 
 
 def _arguments(pending: Pending, uses: dict[ExpressionNode, int]) -> list[Placed]:
-    """Return the operands, with nested uses of the same associative operator spread out.
+    """Return the operands, with nested operations of the same associative operator flattened.
 
-    Only what nothing else uses is spread: a shared node keeps a line of its own.
+    Shared nodes are not flattened: they keep a line of their own.
     """
     arguments: list[Placed] = []
     waiting = list(reversed(pending.operands))

@@ -1,4 +1,4 @@
-"""The extent of solids and of what is made of them, without asking the core."""
+"""The boundedness of solids and of results of operations, found without the core."""
 
 from collections.abc import Sequence
 from typing import TypeAlias
@@ -10,7 +10,7 @@ Extent: TypeAlias = bool | None
 
 
 def _either(operands: Sequence[Extent]) -> Extent:
-    # One operand of bounded complement is enough; bounded ones must be all.
+    # One operand with a bounded complement suffices; otherwise all operands must be bounded.
     return False if False in operands else all(operands) or None
 
 

@@ -1,8 +1,8 @@
-"""Leaves of expressions: what is already known as a partition tree, or can become one directly.
+"""Leaves of expressions: operands that are partition trees, or can become one directly.
 
-A leaf answers with its tree at a pitch, and can be placed by a transform. Placing follows one rule
-(`_place`): the outermost factors that are a lattice motion move the tree exactly; whatever remains
-acts on the leaf's coordinates in one rounding, before they are snapped to the lattice again.
+A leaf returns its tree at a pitch, and can be placed by a transform. Placing follows one rule
+(`_place`): the outermost factors that are lattice motions move the tree exactly; the other factors
+act on the leaf's coordinates with one rounding, before they are snapped to the lattice again.
 """
 
 from collections.abc import Callable, Generator, Mapping, Sequence
@@ -44,7 +44,7 @@ def _crosses_there(tree: Tree, motion: transform.LatticeMotion) -> bool:
 
 
 class Pitches(Last[int, Tree]):
-    """A tree as it was last put on a finer lattice: so it is one mesh to all that want it there."""
+    """A cache of a tree on the last finer lattice, so that all users there share one mesh."""
 
     __slots__ = ()
 
@@ -65,21 +65,22 @@ _MIN_STEPS_ACROSS = 10**6
 
 
 class MeshLeaf:
-    """A mesh as it was given.
+    """A leaf of a given mesh.
 
     Parameters
     ----------
     vertices : (n, 3) float64, in model units
     faces : (m, 3) int64, indices of `vertices`
-        Both may belong to somebody else until `let_go` is called.
+        Both may belong to the caller until `let_go` is called.
     pitch : int or None
-        Exponent of the lattice step; None lets the core choose it from the size.
+        Exponent of the lattice step; by default the core chooses it from the size.
     trusted : bool
-        The caller's word that the mesh is closed and its faces meet in edges and vertices only.
+        True if the caller guarantees that the mesh is closed and its faces meet only in edges and
+        vertices.
     winding : str
         The winding numbers that are inside.
     attributes : Attributes, optional
-        The values on the mesh.
+        The attributes of the mesh.
     """
 
     def __init__(
@@ -120,12 +121,12 @@ class MeshLeaf:
         return () if said is None else (said,)
 
     def arrays(self) -> tuple[FloatArray, IndexArray]:
-        """Return vertices and faces as they were given, or moved."""
+        """Return vertices and faces as given or as moved."""
         arrays = self._settled().arrays
         return self.grown().given_arrays() if arrays is None else arrays
 
     def let_go(self) -> None:
-        """Let go of the given arrays: the tree holds them, or else they are copied."""
+        """Release the given arrays: the tree holds their data, or they are copied."""
         vertices, faces = self.arrays()
         held = self.grown().holds_given
         arrays = None if held else (vertices.copy(), faces.copy())
@@ -146,7 +147,7 @@ class MeshLeaf:
     def coarsened(self, pitch: int) -> "MeshLeaf | None":
         """Return the leaf on a coarser lattice, with a note if that moves its corners.
 
-        None if they would move, and the mesh is small there.
+        Return None if they would move, and the mesh has few steps there.
         """
         vertices, faces = self.arrays()
         is_exact = np.array_equal(np.round(vertices, -pitch), vertices)
@@ -162,17 +163,17 @@ class MeshLeaf:
         return leaf
 
     def transformed(self, factors: FactorChain) -> "MeshLeaf":
-        """Return the leaf of the mesh whose vertices the factors have moved."""
-        # Rounding moves vertices, so the word given for the original no longer counts.
+        """Return the leaf of the mesh with vertices moved by the factors."""
+        # Rounding moves vertices, so the caller's guarantee no longer holds.
         said = AttributedMesh(*self.arrays(), self._settled().attributes)
         found = None if self._trusted else sewn(said, self.grown())
         mesh = said if found is None else found.mesh
         return MeshLeaf.moved(mesh, factors, self.given_pitch, self._winding)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
-        """Return whether rounding has made it cross itself, or would once put on the lattice.
+        """Return whether rounding made the mesh cross itself, or would after this motion.
 
-        Then its coordinates have to be moved and mended, not its tree.
+        If so, its coordinates must be moved and mended instead of its tree.
         """
         return self._settled().is_mended or _crosses_there(self.grown(), motion)
 
@@ -184,9 +185,9 @@ class MeshLeaf:
         pitch: int | None = None,
         winding: WindingRule = "positive",
     ) -> "MeshLeaf":
-        """Return the leaf of a moved mesh; what that makes cross is mended before its first use.
+        """Return the leaf of a moved mesh; crossings from moving are mended before its first use.
 
-        It is on the lattice of the given pitch, unless it reaches beyond that.
+        The leaf is on the lattice of the given pitch, unless the mesh reaches beyond that.
         """
         moved = mesh.moved(factors)
         held = moved.held_pitch(pitch)
@@ -203,7 +204,7 @@ class MeshLeaf:
         return patched(self.grown(), self.source_attributes)
 
     def _settled(self) -> "_Settled":
-        """Return the content; what moving the vertices has made cross is mended on first use."""
+        """Return the content; crossings from moving the vertices are mended on first use."""
         content = self._content
         if isinstance(content, _Moved):
             content = self._content = content.mended()
@@ -213,7 +214,7 @@ class MeshLeaf:
         try:
             return self._imported()
         except InvalidMeshError as error:
-            # Rounding may leave nothing of what a transform has made too thin.
+            # A transform may make a mesh so thin that rounding leaves nothing.
             if not self._is_moved or error.code != "empty_mesh":
                 raise
             pitch = DEFAULT_PITCH if self._chosen_pitch is None else self._chosen_pitch
@@ -222,7 +223,7 @@ class MeshLeaf:
     def _imported(self) -> Tree:
         with core_errors():
             tree = Tree.from_mesh(*self.arrays(), self._chosen_pitch, self._trusted, self._rounded)
-            # What crossed in doubles touches itself, and may cross on the lattice.
+            # A mended mesh touches itself, and may cross on the lattice.
             if self._settled().is_mended or self._winding != "positive":
                 tree = tree.normalized(self._winding)
         return tree
@@ -230,7 +231,7 @@ class MeshLeaf:
 
 @dataclass(frozen=True, eq=False)
 class _Settled:
-    """The content of a leaf of which nothing is to be mended any more.
+    """The content of a leaf that needs no more mending.
 
     Parameters
     ----------
@@ -238,7 +239,7 @@ class _Settled:
         None if the tree holds them.
     attributes : Attributes or None
     is_mended : bool
-        True if moving the vertices had made it cross itself.
+        True if moving the vertices made the mesh cross itself.
     """
 
     arrays: tuple[FloatArray, IndexArray] | None
@@ -248,7 +249,7 @@ class _Settled:
 
 @dataclass(frozen=True, eq=False)
 class _Moved:
-    """A mesh that was moved, and is to be mended where that made it cross itself.
+    """A moved mesh, whose crossings are mended on demand.
 
     Parameters
     ----------
@@ -275,7 +276,7 @@ class _Moved:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """The making of a tree: a program and the leaves it names, one operation deep."""
+    """The evaluation of a tree: a program and its leaves, which have no records themselves."""
 
     program: list[ProgramLine]
     leaves: tuple["ExpressionLeaf", ...]
@@ -283,20 +284,20 @@ class Record:
 
 @dataclass(frozen=True, eq=False)
 class TreeLeaf:
-    """A tree that has been evaluated, loaded or moved.
+    """A leaf of a tree that was evaluated, loaded or moved.
 
     Parameters
     ----------
     result : Tree
     record : Record or None
-        The record of its evaluation, as long as that is remembered.
+        The record of its evaluation, if it is kept.
     extent : Extent
     source_attributes : tuple of Attributes or None
-        The values on each source of the tree; empty if there are none.
+        The attributes of each source of the tree; empty if there are none.
     given_pitch : int or None
         As for `MeshLeaf`.
     tags : mapping of str to object
-        The attributes that `tagged` gave to all faces, for when the record is run again.
+        The attributes that `tagged` set on all faces, in case the record is run again.
     """
 
     result: Tree
@@ -324,18 +325,18 @@ class TreeLeaf:
         return self if self.is_constant else _place(self, factors)
 
     def transformed(self, factors: FactorChain) -> "ExpressionLeaf | None":
-        """Return the leaf of the output mesh, moved as a whole: shared vertices stay shared.
+        """Return the leaf of the moved output mesh; shared vertices stay shared.
 
         None if neither the solid nor its complement has an output mesh.
         """
         return self._made_anew(lambda leaf: _moved_output(leaf, factors))
 
     def coarsened(self, pitch: int) -> "ExpressionLeaf | None":
-        """Return the leaf of the output mesh on a coarser lattice, or None as above."""
+        """Return the leaf of the output mesh on a coarser lattice; None as for `transformed`."""
         return self._made_anew(lambda leaf: _moved_output(leaf, FactorChain()).coarsened(pitch))
 
     def _made_anew(self, make: "Callable[[TreeLeaf], MeshLeaf | None]") -> "ExpressionLeaf | None":
-        """Return what is made of the solid's mesh, or else the complement of that of its own."""
+        """Apply a function to the solid's mesh, or to its complement's mesh and complement that."""
         if self._is_bounded():
             return make(self)
         outside = run(Record(COMPLEMENT, (self,)))
@@ -346,14 +347,14 @@ class TreeLeaf:
         return replace(made, record=None, extent=False)
 
     def touches_itself(self, motion: transform.LatticeMotion) -> bool:
-        """Return whether a mesh in the tree would cross itself once put on the lattice."""
+        """Return whether a mesh of the tree would cross itself after this motion."""
         return _crosses_there(self.result, motion)
 
     def forgetful(self) -> "TreeLeaf":
-        """Return the leaf without its history, unless a later transform would need that.
+        """Return the leaf without its record, unless a later transform would need the record.
 
-        Only a solid that is unbounded and has an unbounded complement has no mesh to transform.
-        Expressions with half-spaces may be of that kind.
+        A solid that is unbounded with an unbounded complement has no mesh to transform. Expressions
+        with half-spaces may give such solids.
         """
         if self.extent is None:
             return self
@@ -375,7 +376,7 @@ class TreeLeaf:
 
 @dataclass(frozen=True, eq=False)
 class PlaneLeaf:
-    """The half-space on the minus side of a plane; it takes the pitch of what it meets.
+    """The half-space on the minus side of a plane; it takes the pitch of the other operands.
 
     Parameters
     ----------
@@ -402,7 +403,7 @@ class PlaneLeaf:
             return self._trees.keep(pitch, Tree.half_space(plane.row, pitch, plane.note))
 
     def beyond(self, pitch: int) -> "ConstantLeaf | None":
-        """Return what the half-space is to a lattice if its plane lies beyond that."""
+        """Return the empty set or all of space if the plane lies beyond the lattice, else None."""
         above = self.plane.is_above_lattice(pitch)
         return None if above is None else ConstantLeaf(above)
 
@@ -412,7 +413,7 @@ class PlaneLeaf:
 
 
 def _moved_plane(plane: Hyperplane, factor: transform.Factor) -> Hyperplane:
-    """Return the image of a plane; cofactors map its normal, so that no matrix is inverted."""
+    """Return the image of a plane; cofactors map its normal without inverting the matrix."""
     cofactors, determinant, shift = _exact_parts(factor)
     old = [entry if determinant > 0 else -entry for entry in map(Fraction, plane.normal)]
     normal = [transform.exact_dot(row, old) for row in cofactors]
@@ -431,7 +432,7 @@ def _exact_parts(
 
 
 def _linear_part(factor: transform.Factor) -> list[list[Fraction]]:
-    """Return the rows as the decimals they were written as, if these keep or turn space alike."""
+    """Return the rows as their decimals, if these have the same orientation as the doubles."""
     rows = [[exact_number(entry) for entry in row] for row in factor.matrix[:3, :3].tolist()]
     sign = transform.determinant_sign(factor.matrix)
     return rows if sign * transform.determinant(rows) > 0 else transform.exact_linear(factor.matrix)
@@ -448,7 +449,7 @@ class ConstantLeaf:
 
     @property
     def extent(self) -> Extent:
-        """Nothing is bounded; the complement of everything is."""
+        """The empty set is bounded; all of space has a bounded complement."""
         return not self.full
 
     def tree(self, pitch: int) -> Tree:
@@ -466,21 +467,21 @@ ExpressionLeaf: TypeAlias = MeshLeaf | TreeLeaf | PlaneLeaf | ConstantLeaf
 
 
 def tree_of(leaf: ExpressionLeaf) -> Tree:
-    """Return the leaf's tree on its own lattice, or on the default one if any will do."""
+    """Return the leaf's tree on its own lattice, or on the default one if it has none."""
     return leaf.tree(_common_pitch([leaf]))
 
 
 def shown_tree(leaf: ExpressionLeaf) -> Tree:
-    """Return the tree that the leaf's mesh is made of: faces that differ in it stay apart."""
+    """Return the tree for the leaf's mesh: faces with different attributes are not joined."""
     if leaf.source_attributes and isinstance(leaf, (MeshLeaf, TreeLeaf)):
         return leaf.shown
     return tree_of(leaf)
 
 
 def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf:
-    """Return a leaf of which every face says so; half-spaces have none.
+    """Return a leaf with attribute values on every face; half-spaces have no faces.
 
-    Its sources have identities of their own, as others of the same leaf may say something else.
+    Its sources get new identities, since other copies of the leaf may have other values.
     """
     if COLOR in values:
         values = {**values, COLOR: one_color(values[COLOR])}
@@ -495,7 +496,7 @@ def tagged(leaf: ExpressionLeaf, values: Mapping[str, object]) -> ExpressionLeaf
 
 
 def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
-    """Return the finest of the leaves' pitches; planes choose only where nothing else does."""
+    """Return the finest of the leaves' pitches; planes count only if there are no other leaves."""
     own = [leaf.pitch for leaf in leaves if leaf.pitch is not None]
     if own:
         return min(own)
@@ -504,7 +505,7 @@ def _common_pitch(leaves: Sequence[ExpressionLeaf]) -> int:
 
 
 def _given_pitch_of(leaves: Sequence[ExpressionLeaf], result: Tree) -> int | None:
-    """Return the pitch of what was made of leaves if it was given for all that have it."""
+    """Return the pitch of a result if it was given for all leaves of that pitch."""
     given = {leaf.given_pitch for leaf in leaves if leaf.pitch == result.pitch}
     return result.pitch if given == {result.pitch} else None
 
@@ -522,20 +523,21 @@ def run(record: Record) -> TreeLeaf:
 
 
 def bounded_on_one_lattice(leaves: Sequence[ExpressionLeaf]) -> list[Tree]:
-    """Return the trees of bounded solids on the finest of their lattices, or as above."""
+    """Return the trees of bounded solids on a common lattice (see `_on_one_lattice`)."""
     return _on_one_lattice(leaves, True)[1]
 
 
 def _on_one_lattice(
     leaves: Sequence[ExpressionLeaf], extent: Extent
 ) -> tuple[Sequence[ExpressionLeaf], list[Tree]]:
-    """Return leaves and their trees on the finest of their lattices, or the finest that holds all.
+    """Return leaves and their trees on the finest of their lattices that holds all of them.
 
     Parameters
     ----------
     leaves : sequence of leaves
     extent : Extent
-        That of what becomes of them. If it is known, planes beyond the lattice have no part in it.
+        The extent of the result. If it is known, planes beyond the lattice do not affect the
+        result.
     """
     pitch = _common_pitch(leaves)
     try:
@@ -550,7 +552,7 @@ def _on_one_lattice(
 
 
 def _finest_for_all(leaves: Sequence[ExpressionLeaf], extent: Extent) -> int:
-    """Return the finest pitch at which every leaf of a coarser one stays on the lattice."""
+    """Return the finest pitch whose lattice holds every leaf of a coarser pitch."""
     finest = _common_pitch(leaves)
     coarser = range(finest, MAX_PITCH)
     fitting = (
@@ -572,7 +574,7 @@ def _fits_lattice(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> bool:
 
 
 def _fitted(leaf: ExpressionLeaf, pitch: int, extent: Extent) -> ExpressionLeaf | None:
-    """Return what stands for a leaf on a lattice that may be coarser than its own, if anything."""
+    """Return a leaf for a lattice that may be coarser than its own, or None if it has none."""
     if isinstance(leaf, PlaneLeaf):
         return leaf if extent is None else leaf.beyond(pitch) or leaf
     if isinstance(leaf, ConstantLeaf) or leaf.pitch is None or leaf.pitch >= pitch:
@@ -593,7 +595,7 @@ _Moving: TypeAlias = Generator[tuple["ExpressionLeaf", FactorChain], "Expression
 
 
 def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
-    """Move a leaf, and operands of operands in its stead, however deep these lie."""
+    """Move a leaf, or its operands instead, without recursion."""
     waiting = [_placing(leaf, factors)]
     answer: Any = None
     while waiting:
@@ -613,7 +615,7 @@ def _place(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> ExpressionLeaf:
 
 
 def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
-    """Move a leaf: exactly by the outer factors that allow it, by coordinates for the rest."""
+    """Move a leaf exactly by the outer factors that allow it, and by coordinates for the rest."""
     inner = factors.inner
     if len(inner) == len(factors):
         return (yield from _transforming(leaf, factors)) if factors else leaf
@@ -629,13 +631,13 @@ def _placing(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
         source_attributes = after_motion(motion, base.source_attributes)
         return TreeLeaf(moved, None, base.extent, source_attributes, base.given_pitch)
     except (LimitError, UnboundedError):
-        # Too far out for this lattice, where coordinates let the core choose a coarser one; or cut
-        # off by the border of the universe, which does not move with it.
+        # The leaf leaves this lattice; its coordinates let the core choose a coarser one. Or it is
+        # cut off by the border of the lattice, which does not move with it.
         return (yield from _transforming(leaf, factors))
 
 
 def _base(leaf: MeshLeaf | TreeLeaf, factors: FactorChain) -> _Moving:
-    """Move the mesh of a leaf, once for all its placements by motions of the lattice."""
+    """Move the mesh of a leaf, once for all placements that differ by lattice motions."""
     known = leaf.last_moved.get(factors)
     if known is not None:
         return known

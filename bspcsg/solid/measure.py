@@ -1,4 +1,4 @@
-"""The measures of a solid: the queries, apart from the value that answers them."""
+"""The measures of a solid, separate from the class `Solid`."""
 
 import math
 from abc import ABC, abstractmethod
@@ -35,7 +35,7 @@ _MAX_PLACES_NAMED = 8
 
 
 class Measured(ABC):
-    """A solid as the measures see it."""
+    """A solid with measures."""
 
     __slots__ = ()
 
@@ -50,7 +50,7 @@ class Measured(ABC):
 
     @abstractmethod
     def _alias(self) -> Self:
-        """Return the same value as another object, with all that is known about it."""
+        """Return a copy as another object, with all cached results."""
 
     @abstractmethod
     def normalized(self) -> "Measured":
@@ -58,7 +58,7 @@ class Measured(ABC):
 
     @abstractmethod
     def _divided_mesh(self) -> Mesh:
-        """Return the reduced boundary, its faces divided where edges lie in the middle of them."""
+        """Return the reduced boundary, with faces divided where edges lie inside them."""
 
     @abstractmethod
     def _outside(self) -> "Measured":
@@ -73,10 +73,10 @@ class Measured(ABC):
     def faces(self) -> Triangles:
         """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only.
 
-        Called, they give the faces that they make up, to choose some of them: flat ones, and round
-        ones such as the wall of a bore (see `FaceSelection`). Facets of one round surface are those
-        that bend by 30 degrees at most, or another ``angle``, and of which neither is more than
-        twice as wide as the other; ``all=True`` gives them one by one.
+        Call it, as ``solid.faces()``, to select faces: flat ones, and round ones such as the wall
+        of a bore (see `FaceSelection`). Neighbouring facets belong to one round face if they bend
+        by at most 30 degrees, or another ``angle``, and neither is more than twice as wide as the
+        other; ``all=True`` returns the facets one by one.
 
         Examples
         --------
@@ -91,18 +91,18 @@ class Measured(ABC):
 
     @property
     def sources(self) -> tuple[int, ...]:
-        """Identities of the input meshes, in the order in which `Mesh.source` counts them."""
+        """Identities of the input meshes, in the order of their numbers in `Mesh.source`."""
         return tuple(self.tree.sources)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """The notes about the inputs and about making the mesh, which is looked at for this.
+        """The findings about the inputs and the mesh, which is made and checked for this.
 
-        Where it is not the boundary of the solid, "self_overlap" says so, and names triangles of
-        the mesh that cross or overlap others; `normalized` returns the solid with that boundary.
-        Where an input crosses itself by less than a step of the lattice, "crossing" says so, and
-        "flat" names triangles that have area on the lattice, but none in the doubles of the mesh.
-        Nothing else is in the mesh's `certificate`.
+        "self_overlap" means that the mesh is not the boundary of the solid, and names triangles
+        that cross or overlap others; `normalized` returns the solid with its boundary as mesh.
+        "crossing" means that an input crosses itself by less than a step of the lattice. "flat"
+        names triangles with area on the lattice, but none in the doubles of the mesh. The mesh's
+        `certificate` has no other faults.
         """
         found = self.tree.findings
         if self.is_bounded:
@@ -118,7 +118,7 @@ class Measured(ABC):
 
     @property
     def is_empty(self) -> bool:
-        """True if no volume is inside."""
+        """True if the solid has no volume."""
         return self.normalized().tree.is_empty
 
     @property
@@ -142,20 +142,20 @@ class Measured(ABC):
     def exact_volume(self, most_digits: int = LONGEST_VOLUME) -> Fraction:
         """Return the volume of the set in cubic model units, exactly.
 
-        Its denominator grows by about one constructed corner's for each corner. Lowest terms cost
-        the square of the length, and cannot be interrupted.
+        The denominator grows by that of about one constructed corner for each corner. Reducing the
+        fraction takes time quadratic in the number of digits, and cannot be interrupted.
 
         Parameters
         ----------
         most_digits : int
-            The number of decimal digits that the numerator and the denominator may have.
+            The largest allowed number of decimal digits of numerator and denominator.
 
         Raises
         ------
         UnboundedError
             If the solid reaches to infinity.
         LimitError
-            If they might have more; the message says how many.
+            If they might have more digits; the message has the number.
         """
         digits = min(at_least(1, most_digits, "most_digits"), _MAX_DIGITS)
         bits = math.ceil(digits * math.log2(10))
@@ -182,7 +182,7 @@ class Measured(ABC):
 
     @property
     def area(self) -> float:
-        """Surface area in square model units, which is that of the complement, too.
+        """Surface area in square model units, the same as that of the complement.
 
         Raises
         ------
@@ -219,9 +219,9 @@ class Measured(ABC):
     def surface_count(self) -> int:
         """Number of connected surfaces; the wall of a closed cavity is one of its own.
 
-        Before, this number was `components`, which has the parts now, each with its cavities.
-        Surfaces that touch in a point or an edge only are apart, even where the edge lies in the
-        middle of a face that goes on from one to the other, which the mesh does not divide there.
+        This number was formerly `components`, which now has the parts, each with its cavities.
+        Surfaces that touch only in a point or an edge count separately, even if the edge lies
+        inside a face that belongs to both and that the mesh does not divide there.
         """
         return self._divided_mesh().surface_count
 
@@ -231,12 +231,12 @@ class Measured(ABC):
         return self._divided_mesh().genus
 
     def classify(self, points: Any) -> SideArray:
-        """Say of each point whether it is inside, exactly.
+        """Classify points as inside, outside or on the boundary, exactly.
 
         Parameters
         ----------
         points : (k, 3) array_like of float
-            In model units; snapped to the lattice. What is bounded may be asked about any point.
+            In model units; snapped to the lattice. For a bounded solid, points may lie anywhere.
 
         Returns
         -------
@@ -258,9 +258,8 @@ def volume_near(solid: Measured) -> Fraction:
 def volume_residues(solid: Measured) -> tuple[int, int] | None:
     """Return six times the exact volume in cubic lattice steps, modulo 2**61 - 1 and 2**61 - 31.
 
-    Sums of exact volumes of solids of one pitch agree if these do, but for a chance of 2**-122;
-    comparing them costs one pass. None in the rare case of a denominator that is a multiple of a
-    prime.
+    If these agree, sums of exact volumes of solids of one pitch agree, up to a probability of
+    2**-122; comparing takes one pass. None in the rare case that a prime divides the denominator.
     """
     with core_errors():
         return solid.normalized().tree.volume_residues()
@@ -269,8 +268,8 @@ def volume_residues(solid: Measured) -> tuple[int, int] | None:
 def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
     """Return six times the exact volume in cubic units, modulo two primes.
 
-    Unlike `volume_residues` they follow from the set alone, not from its lattice or its
-    triangles; None where the reduced denominator is a multiple of the prime.
+    Unlike `volume_residues` they depend only on the set, not on its lattice or triangles; None if
+    the prime divides the reduced denominator.
     """
     steps = volume_residues(solid)
     if steps is not None:
@@ -287,9 +286,9 @@ def residues_of_volume(solid: Measured) -> tuple[int | None, ...]:
 
 
 def overlaps_of(solid: Measured) -> tuple[Finding, ...]:
-    """Return what is to be said of a solid whose mesh is not its boundary.
+    """Return the findings about a solid whose mesh is not its boundary.
 
-    Inputs that nobody has vouched for are united with themselves for this, once.
+    For this, inputs that are not trusted are united with themselves, once.
     """
     reduced = solid.normalized()
     if solid.tree.simple is not False:
@@ -313,9 +312,9 @@ def overlaps_of(solid: Measured) -> tuple[Finding, ...]:
 
 
 def _turned_shells(mesh: Mesh, reduced: Measured) -> tuple[Finding, ...]:
-    """Return what is to be said of bodies that face inwards and so are left out of the solid.
+    """Return the findings about inside-out shells, which the solid therefore excludes.
 
-    The walls of cavities face inwards, too, but lie on the boundary of the solid.
+    The walls of cavities are inside out, too, but lie on the boundary of the solid.
     """
     owner = surfaces_of(mesh.faces, len(mesh.vertices))
     corners = mesh.vertices[mesh.faces]
@@ -340,10 +339,10 @@ def _turned_shells(mesh: Mesh, reduced: Measured) -> tuple[Finding, ...]:
 
 
 def _faults_of(solid: Measured, told: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Return what else is to be said of the faults in the certificate of a solid's mesh."""
+    """Return the other findings about faults in the certificate of a solid's mesh."""
     codes = {one.code for one in told}
     more: tuple[Finding, ...] = ()
-    # Inside out, the set may be empty, and comparing the mesh with its boundary says nothing.
+    # An inside-out mesh may give the empty set; comparing it with the boundary is then useless.
     if not {"inside_out", "self_overlap"} & codes:
         more = overlaps_of(solid)
     if not more and not {"crossing", "self_overlap"} & codes:
@@ -355,7 +354,7 @@ def _faults_of(solid: Measured, told: tuple[Finding, ...]) -> tuple[Finding, ...
 
 
 def _crossings_of(solid: Measured, *, is_on_lattice: bool) -> tuple[Finding, ...]:
-    """Return what is to be said of a mesh that crosses itself, on the lattice or only beside it."""
+    """Return the finding about a mesh that crosses itself, on the lattice or only off it."""
     mesh = solid.to_mesh()
     crossing = _crossing_faces(mesh)
     if not crossing:
@@ -368,7 +367,7 @@ def _crossings_of(solid: Measured, *, is_on_lattice: bool) -> tuple[Finding, ...
 
 
 def _flat(mesh: Mesh, faces: list[int]) -> Finding:
-    """Return what is to be said of triangles whose given coordinates leave them no area."""
+    """Return the finding about triangles without area in the given coordinates."""
     message = (
         "these triangles of inputs have no area in doubles, though their corners have on the"
         f" lattice; the first near {_near(mesh, faces)}"

@@ -1,4 +1,4 @@
-"""The methods that make things of a solid with the floors above, apart from the value."""
+"""Methods of solids that are implemented in `bspcsg.modelling`."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, cast, overload
@@ -14,27 +14,27 @@ if TYPE_CHECKING:
 
 
 class Modelled:
-    """A solid as modelling sees it."""
+    """A solid with modelling methods."""
 
     __slots__ = ()
 
     def split(self, normal: "str | Vector | Solid", offset: Scalar = 0.0) -> "tuple[Solid, Solid]":
-        """Return the solid in two: what lies on either side of a plane, or of another's surface.
+        """Split the solid by a plane or by another solid.
 
-        Both have the cut as a face; together they are the solid again, exactly.
+        Both parts have the cut as a face; their union is exactly the solid.
 
         Parameters
         ----------
         normal : "x", "y", "z", (3,) float, or Solid
-            Of the plane; need not have unit length. Or the solid to cut with.
+            The normal of the plane, of any length; or the solid to cut with.
         offset : float
             The plane holds the points x with ``normal . x == offset``.
 
         Returns
         -------
         Solid, Solid
-            The part with ``normal . x <= offset``, and the rest. Of a cut by a solid: what is
-            inside that, and the rest. Either may be empty.
+            The part with ``normal . x <= offset`` and the rest; for a cut by a solid, the part
+            inside that solid and the rest. Either may be empty.
 
         Raises
         ------
@@ -43,8 +43,8 @@ class Modelled:
 
         Notes
         -----
-        The plane is that of `bspcsg.half_space`: the one asked for if it holds lattice points, else
-        the nearest of its direction that does. In a block (see `bspcsg.block`) neither counts.
+        The plane is that of `bspcsg.half_space`: the given one if it contains lattice points, else
+        the nearest parallel one that does. In a block (see `bspcsg.block`) neither part counts.
 
         Examples
         --------
@@ -61,7 +61,7 @@ class Modelled:
         return split(cast("Solid", self), normal, offset)
 
     def trim(self, normal: str | Vector, offset: Scalar = 0.0) -> "Solid":
-        """Return what lies on the side of a plane where its normal points: the second of `split`.
+        """Return the part on the side to which a plane's normal points: the second part of `split`.
 
         Parameters
         ----------
@@ -88,8 +88,8 @@ class Modelled:
     def decompose(self) -> "list[Solid]":
         """Return the connected parts, the largest volume first; none for the empty set.
 
-        The wall of a cavity stays with the part around it. Parts that touch in a point or an edge
-        only are apart.
+        The wall of a cavity belongs to the part around it. Parts that touch only in a point or an
+        edge are separate.
 
         Raises
         ------
@@ -98,9 +98,9 @@ class Modelled:
 
         Notes
         -----
-        Of several parts each is the solid of its mesh: corners that are no lattice points are
-        rounded to them, or to those of a finer lattice where nothing would be left. A part that is
-        too thin for doubles is left out. In a block (see `bspcsg.block`) none of them counts.
+        If there are several parts, each is the solid of its mesh: corners off the lattice are
+        rounded to it, or to a finer lattice if nothing would be left. A part that is too thin for
+        doubles is left out. In a block (see `bspcsg.block`) no part counts.
 
         Examples
         --------
@@ -117,8 +117,8 @@ class Modelled:
     def components(self) -> "tuple[Solid, ...]":
         """The connected parts, each with its cavities, the largest volume first (see `decompose`).
 
-        Before, this was the number of connected surfaces: that is `surface_count`, and the number
-        of parts is ``len(solid.components)``. Compared with a number, the parts answer as that did,
+        Formerly this was the number of connected surfaces, now `surface_count`. The number of parts
+        is ``len(solid.components)``. A comparison with a number still uses the number of surfaces,
         with a `DeprecationWarning`.
 
         Examples
@@ -131,9 +131,9 @@ class Modelled:
         return Components.of(cast("Solid", self))
 
     def min_gap(self, other: "Solid") -> float:
-        """Return the least distance of a point of one solid from one of the other.
+        """Return the least distance between points of the two solids, in model units.
 
-        It is 0 where they touch or overlap, and infinite if one is empty.
+        It is 0 if they touch or overlap, and infinite if one is empty.
 
         Raises
         ------
@@ -142,8 +142,8 @@ class Modelled:
 
         Notes
         -----
-        Whether they overlap is decided exactly. Else boxes around triangles rule out what is far,
-        and the nearest triangles are compared in fractions; the answer is rounded.
+        Overlap is decided exactly. Otherwise boxes around triangles exclude distant pairs, and the
+        nearest triangles are compared in fractions; the answer is rounded.
 
         Examples
         --------
@@ -158,8 +158,8 @@ class Modelled:
     def closest_points(self, other: "Solid") -> tuple[FloatArray, FloatArray]:
         """Return a point of this solid and one of the other that are nearest, (3,) float64 each.
 
-        Of several such pairs it is always the same one. Where the solids overlap, both are one
-        point of both.
+        If there are several such pairs, the choice is reproducible. If the solids overlap, both
+        points are one common point.
 
         Raises
         ------
@@ -180,9 +180,9 @@ class Modelled:
         return closest_points(cast("Solid", self), other)
 
     def intersects(self, other: "Solid") -> bool:
-        """Say whether the solids have a point in common; a common point of their surfaces will do.
+        """Say whether the solids have a point in common; touching surfaces suffice.
 
-        Whether they have volume in common is the opposite of `isdisjoint`.
+        To test for common volume, negate `isdisjoint`.
 
         Raises
         ------
@@ -201,22 +201,22 @@ class Modelled:
         return intersects(cast("Solid", self), other)
 
     def refine(self, n: int | None = None, *, edge_length: Scalar | None = None) -> "Solid":
-        """Return the solid with smaller triangles, for `warp` and for what works corner by corner.
+        """Return the solid with smaller triangles, for `warp` and other functions of corners.
 
-        Corners stay, and new ones lie on the edges and in the faces, rounded to the lattice; where
-        nothing had to be rounded, it is the same set.
+        Corners stay, and new ones lie on the edges and in the faces, rounded to the lattice. If no
+        corner had to be rounded, the set is the same.
 
         Parameters
         ----------
         n : int
-            Each edge falls into n equal parts, each triangle into n².
+            Each edge is divided into n equal parts, each triangle into n².
         edge_length : float
-            Or: edges are halved until none is longer, in model units.
+            Alternatively, halve edges until none is longer, in model units.
 
         Raises
         ------
         InvalidParameterError
-            If not just one of the two is given, or it is out of range.
+            If not exactly one of the two is given, or it is out of range.
         LimitError
             If there would be more than ten million triangles.
         UnboundedError
@@ -241,11 +241,11 @@ class Modelled:
         Parameters
         ----------
         f : callable
-            Takes all corners at once, (n, 3) float64 in model units, and returns where they go, an
-            array of the same shape. It may turn the solid inside out.
+            Takes all corners at once, (n, 3) float64 in model units, and returns their new
+            positions, an array of the same shape. It may turn the solid inside out.
         winding : {"positive", "nonzero", "even-odd"}, optional
-            The winding numbers inside a result that crosses itself. By default such a result is
-            refused, but where only rounding makes surfaces cross that touched: that is mended.
+            The winding rule for a result that crosses itself. By default such a result is refused;
+            but crossings of touching surfaces that come only from rounding are mended.
 
         Raises
         ------
@@ -273,7 +273,7 @@ class Modelled:
         Parameters
         ----------
         n : int
-            Into how many parts each edge falls.
+            The number of parts of each edge.
         sharp_angle : float
             Edges that bend more than this stay sharp, in degrees from 0 to 180.
 
@@ -289,7 +289,8 @@ class Modelled:
         Notes
         -----
         Cubic patches over the triangles, after Vlachos, Peters, Boyd, Mitchell 2001, "Curved PN
-        triangles". Their borders follow from the normals at both ends of an edge, on both sides.
+        triangles". The border of a patch follows from the normals at both ends of an edge, on both
+        sides.
 
         Examples
         --------
@@ -305,10 +306,10 @@ class Modelled:
     def offset(self, r: Scalar, *, segments: int = SEGMENTS) -> "Solid":
         """Return the solid thickened by a ball, or made thinner if `r` is negative.
 
-        All points of the ball about any point of the solid are in the result; for a negative `r`
-        those points are whose ball lies in the solid. The ball is a polyhedron (see
-        `bspcsg.sphere`) with its corners at the distance `r`, some of them on the axes: faces
-        across these move by `r`, others up to 1 - cos² of 180° by `segments` less.
+        The result is the union of balls about all points of the solid; for a negative `r`, the set
+        of points whose ball lies in the solid. The ball is a polyhedron (see `bspcsg.sphere`) with
+        its corners at the distance `r`, some of them on the axes. Faces perpendicular to an axis
+        move by `r`, others by up to 1 - cos²(180° / `segments`) less.
 
         Parameters
         ----------
@@ -339,16 +340,16 @@ class Modelled:
         return offset(cast("Solid", self), r, segments)
 
     def rounded(self, r: Scalar, *, segments: int = SEGMENTS, inside: bool = False) -> "Solid":
-        """Return the solid with its edges rounded: what a ball that stays inside can reach.
+        """Return the solid with its edges rounded: the points that a ball inside it can cover.
 
         Parameters
         ----------
         r : float
-            Of the ball, in model units; what is thinner than it vanishes.
+            Radius of the ball, in model units; parts thinner than the ball vanish.
         segments : int
             As for `offset`, as are the errors.
         inside : bool
-            True to fill the edges that go inwards instead, where a ball outside cannot reach.
+            True to fill concave edges instead, where a ball outside cannot reach.
 
         Examples
         --------
@@ -374,8 +375,8 @@ class Modelled:
         Parameters
         ----------
         x, y, z : {"min", "center", "max"} or a pair of these, optional
-            The place of this solid's box and that of the other's where it goes, along each axis;
-            one name stands for both. Without it the solid does not move along the axis.
+            For each axis, the place of this solid's box and the place of the other box to which it
+            moves; one name stands for both. Without it the solid does not move along the axis.
         to : (3,) float or Solid
 
         Raises
@@ -430,9 +431,9 @@ class Modelled:
     def curvature(self) -> tuple[FloatArray, FloatArray]:
         """Return the Gaussian and the mean curvature at each vertex, (n,) float64 each.
 
-        Of the polyhedron, spread over a third of the triangles around the vertex: the angle that
-        lacks to a full turn, and half of the bend of the edges there; in units of one by model
-        units squared, and one by model units. Positive where the solid is convex.
+        The curvatures of the polyhedron, divided by a third of the area of the triangles around the
+        vertex: the angle defect, in 1 / unit², and half of the bend of the edges, in 1 / unit. Both
+        are positive where the solid is convex.
 
         Raises
         ------
@@ -465,7 +466,7 @@ class Modelled:
         Returns
         -------
         Hits or HitLists
-            Of one ray its hits (see `bspcsg.bsp.Hits`); of arrays a list of these.
+            The hits of one ray (see `bspcsg.bsp.Hits`), or for arrays a list of them.
 
         Raises
         ------
@@ -476,7 +477,7 @@ class Modelled:
 
         Notes
         -----
-        It is exact (see `bspcsg.bsp.RayCaster`, which for many calls is made only once).
+        The hits are exact. For many calls, make one `bspcsg.bsp.RayCaster` and reuse it.
 
         Examples
         --------

@@ -1,4 +1,4 @@
-"""The transforms of solids and of what is made of them, as methods."""
+"""Transforms as methods, for solids and objects that contain solids."""
 
 from abc import ABC, abstractmethod
 from typing import Any, Self
@@ -13,13 +13,13 @@ from ..parameters import number
 
 
 class Movable(ABC):
-    """What transforms move in space."""
+    """An object that transforms can move in space."""
 
     __slots__ = ()
 
     @abstractmethod
     def _moved(self, factors: Factors) -> Self:
-        """Return it moved by the factors, outermost first."""
+        """Return the object moved by the factors, outermost first."""
 
     def translate(
         self,
@@ -28,9 +28,9 @@ class Movable(ABC):
         y: Scalar | None = None,
         z: Scalar | None = None,
     ) -> Self:
-        """Return it moved by three numbers, one vector, or along the axes that are named.
+        """Return the object translated by three numbers, one vector, or along named axes.
 
-        Exact if the numbers are whole lattice steps, as short decimals are.
+        This is exact if the numbers are whole lattice steps, as short decimals are.
 
         Parameters
         ----------
@@ -57,7 +57,7 @@ class Movable(ABC):
         z: Scalar = 0,
         about: Vector = (0, 0, 0),
     ) -> Self:
-        """Return it rotated about an axis.
+        """Return the object rotated about an axis.
 
         Quarter turns about a coordinate axis are exact.
 
@@ -95,7 +95,7 @@ class Movable(ABC):
         z: Scalar | None = None,
         about: Vector = (0, 0, 0),
     ) -> Self:
-        """Return it scaled by one factor, by three, or along the axes that are named.
+        """Return the object scaled by one factor, by three, or along named axes.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class Movable(ABC):
     def transform(self, matrix: Any) -> Self:
         """Return the image under an affine map, a (4, 4) or (3, 4) matrix for column vectors.
 
-        Solids that were moved by bitwise equal matrices are combined first and moved afterwards.
+        Solids moved by bitwise equal matrices are combined first and moved afterwards.
 
         Raises
         ------

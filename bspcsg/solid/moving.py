@@ -1,4 +1,4 @@
-"""Meshes moved by a transform: each coordinate is rounded once, and surfaces still do not cross."""
+"""Meshes moved by a transform, with one rounding per coordinate and with crossings mended."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ class AttributedMesh:
     attributes: Attributes | None = None
 
     def moved(self, factors: FactorChain) -> "AttributedMesh":
-        """Return the mesh moved by the product of the factors, its outside still outside."""
+        """Return the mesh moved by the product of the factors; its orientation is kept."""
         said = self.attributes and self.attributes.turned(factors.product[:3, :3])
         faces = self.faces
         if factors.mirrors:
@@ -37,18 +37,18 @@ class AttributedMesh:
         return AttributedMesh(transform.apply(factors.product, self.vertices), faces, said)
 
     def mended(self, before: FloatArray, pitch: int) -> "Mended | None":
-        """Return the mesh without the crossings that moving its vertices has made, if it has any.
+        """Return the mesh without the crossings that moving its vertices made, or None.
 
-        Rounding moves each vertex by itself, so that surfaces that touched may cross. This is
-        mended by changes of the width of the rounding, where the mesh is closed, by index or once
-        its vertices are welded as import does, and did not cross itself there before.
+        Rounding moves each vertex separately, so surfaces that touched may cross. Such crossings
+        are mended by changes as small as the rounding. The mesh must be closed by index, or after
+        its vertices are welded as in import, and must not have crossed itself there before.
 
         Parameters
         ----------
         before : (n, 3) float64
             The vertices before they were moved.
         pitch : int
-            Exponent of the lattice step: corners go to the lattice where else crossings are left.
+            Exponent of the lattice step: corners move to the lattice where crossings would remain.
         """
         with core_errors():
             found = mesh_moved(before, self.vertices, self.faces, pitch)
@@ -67,7 +67,7 @@ class AttributedMesh:
         return given if largest < (transform.LATTICE_REACH - 1) * 10.0**given else None
 
     def suited_pitch(self) -> int | None:
-        """Return the pitch that its size suits; None if it has none, which its import tells."""
+        """Return the pitch that suits the size; None if there is none."""
         if len(self.vertices) == 0 or not np.isfinite(self.vertices).all():
             return None
         largest = float(np.abs(self.vertices).max())
@@ -77,15 +77,15 @@ class AttributedMesh:
 
 @dataclass(frozen=True, eq=False)
 class Mended:
-    """A moved mesh of which crossings were mended.
+    """A moved mesh with mended crossings.
 
     Parameters
     ----------
     mesh : AttributedMesh
     kept : (m,) int64
-        The triangle of the mesh as it was moved that each of these stands for.
+        For each triangle, the triangle of the moved mesh that it comes from.
     left : (k,) int64
-        The triangles that cross others still.
+        The triangles that still cross others.
     """
 
     mesh: AttributedMesh

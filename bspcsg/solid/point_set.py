@@ -1,8 +1,8 @@
-"""`PointSet`: how sets of points compare, whatever they are made of.
+"""`PointSet`: the comparison of sets of points of any kind.
 
-The operators are those of Python's own sets, for the sets of points that the objects stand for:
-``==`` and ``!=``, ``<=``, ``<``, ``>=``, ``>``, and ``in`` for a point. Nothing is compared that
-does not belong to the set, such as its tree, its lattice or how it was made. All of it is exact.
+The operators are those of Python's own sets, applied to the sets of points: ``==`` and ``!=``,
+``<=``, ``<``, ``>=``, ``>``, and ``in`` for a point. Only the points count, not the tree, the
+lattice or the history. All comparisons are exact.
 """
 
 from abc import ABC, abstractmethod
@@ -17,18 +17,18 @@ from .counting import uncounted
 
 
 class PointSet(ABC):
-    """A regularised set of points: the closure of its inside."""
+    """A regularised set of points: the closure of its interior."""
 
     __slots__ = ()
 
     @abstractmethod
     def classify(self, points: Any) -> SideArray:
-        """Say of each point whether it is inside (+1), on the boundary (0), or outside (-1)."""
+        """Classify points as inside (+1), on the boundary (0), or outside (-1)."""
 
     @property
     @abstractmethod
     def is_empty(self) -> bool:
-        """True if nothing is inside."""
+        """True if the set has no interior."""
 
     @abstractmethod
     def equals(self, other: Any) -> bool:
@@ -36,11 +36,11 @@ class PointSet(ABC):
 
     @abstractmethod
     def _is_alike(self, other: object) -> bool:
-        """Say whether the other is a set of the same space."""
+        """Say whether the other is a set in the same space."""
 
     @abstractmethod
     def _size_key(self) -> object:
-        """Return what equal sets have in common, such as their exact size."""
+        """Return a key that equal sets share, such as their exact size."""
 
     @abstractmethod
     def __sub__(self, other: Any) -> Self:
@@ -49,29 +49,29 @@ class PointSet(ABC):
     if not TYPE_CHECKING:
 
         def __getattr__(self, name: str) -> Any:
-            """Say which name is meant; checkers of types know all names as it is."""
+            """Raise an error that suggests the intended name; hidden from type checkers."""
             raise no_attribute(self, name, f"{type(self).__name__!r} object")
 
     def union(self, *others: Self | Iterable[Self]) -> Self:
-        """Return what is inside this set or one of the others; ``|`` does it with one."""
+        """Return the union of this set and all others; ``|`` takes one other set."""
         from ..operations.setops import union
 
         return union(self, *others)
 
     def intersection(self, *others: Self | Iterable[Self]) -> Self:
-        """Return what is inside this set and all others; ``&`` does it with one."""
+        """Return the intersection of this set and all others; ``&`` takes one other set."""
         from ..operations.setops import intersection
 
         return intersection(self, *others)
 
     def difference(self, *others: Self | Iterable[Self]) -> Self:
-        """Return what is inside this set and none of the others; ``-`` does it with one."""
+        """Return the difference of this set and all others; ``-`` takes one other set."""
         from ..operations.setops import difference
 
         return difference(self, *others)
 
     def symmetric_difference(self, *others: Self | Iterable[Self]) -> Self:
-        """Return what is inside an odd number of the sets; ``^`` does it with one."""
+        """Return the points in an odd number of the sets; ``^`` takes one other set."""
         from ..operations.setops import xor
 
         return xor(self, *others)
@@ -83,10 +83,10 @@ class PointSet(ABC):
         return self.equals(other) if self._is_alike(other) else NotImplemented
 
     def __hash__(self) -> int:
-        """Return a number that equal sets share, from their exact size; this evaluates them.
+        """Return a hash of the exact size; this evaluates the set.
 
-        Solids that were turned together are equal if they were so before; the size is that after
-        rounding, and may differ if their boundaries were divided otherwise.
+        Equal solids stay equal under a common rotation. The hash is of the size after rounding,
+        which may differ if their boundaries are triangulated differently.
         """
         return hash(self._size_key())
 
@@ -116,7 +116,7 @@ class PointSet(ABC):
     def __contains__(self, point: object) -> bool:
         """Say whether a point is inside or on the boundary; it is snapped to the lattice.
 
-        For many points `classify` is faster, and tells the boundary apart.
+        For many points `classify` is faster, and it distinguishes the boundary.
         """
         if isinstance(point, PointSet):
             raise invalid_parameter("Only points are in a set; for parts of it use <=.")

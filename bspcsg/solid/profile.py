@@ -1,4 +1,4 @@
-"""What the evaluation of a solid took, stage by stage."""
+"""The profile of the evaluation of a solid, stage by stage."""
 
 from dataclasses import dataclass
 
@@ -17,12 +17,12 @@ COUNTED = {
 
 @dataclass(frozen=True)
 class Stage:
-    """A stage of an evaluation.
+    """One stage of an evaluation.
 
     Parameters
     ----------
     name : str
-        A key of `COUNTED`, which says what the stage counts.
+        A key of `COUNTED`, which has the meaning of `count`.
     seconds : float
     count : int
         The number of things that the stage found, made or visited.
@@ -35,13 +35,13 @@ class Stage:
 
 @dataclass(frozen=True)
 class Profile:
-    """The stages of an evaluation, in their order.
+    """The stages of an evaluation, in order.
 
     Parameters
     ----------
     stages : tuple of Stage
     handed_on : str or None
-        The reason for which the fastest way left the work to the descent, if it did.
+        The reason why the fast path handed the work to the descent, if it did.
     """
 
     stages: tuple[Stage, ...] = ()
@@ -54,7 +54,7 @@ class Profile:
         return cls(tuple(Stage(*stage) for stage in stages), handed_on)
 
     def lines(self) -> list[str]:
-        """Return a line for each stage, and one for the reason."""
+        """Return a line for each stage, and one for the reason if there is one."""
         lines = [f"{s.name}: {s.seconds:.4f} s, {s.count} {COUNTED[s.name]}" for s in self.stages]
         if self.handed_on is None:
             return lines

@@ -1,8 +1,8 @@
-"""Programs: expressions written out, and what they come to in any algebra.
+"""Programs: serialized expressions, and their evaluation in any algebra.
 
 A program is a list of lines, each ``("leaf", [k])`` for operand k, or an operator over earlier
-lines; the last line is the result. The core carries it out on trees; here it is carried out on
-whatever has the four operations: truth values, other engines' solids, what is bounded.
+lines; the last line is the result. The core executes it on trees; this module executes it on any
+values with the four operations: truth values, solids of other engines, boundedness.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,7 +32,7 @@ class Algebra(Generic[_Value]):
     complement: Callable[[_Value], _Value]
 
     def evaluate(self, program: Sequence[ProgramLine], operands: Sequence[_Value]) -> _Value:
-        """Return what a program comes to, given what its operands are."""
+        """Evaluate a program, given the values of its operands."""
         values: list[_Value] = []
         for operator, arguments in program:
             if operator == "leaf":
@@ -58,7 +58,7 @@ TRUTH: Algebra[bool] = Algebra(
 
 
 def program_of(op: str, count: int) -> list[ProgramLine]:
-    """Return the program of a set operation, by its name, on so many operands.
+    """Return the program of a named set operation on `count` operands.
 
     Raises
     ------
@@ -103,7 +103,7 @@ _NAMED: dict[str, Callable[[int], list[ProgramLine]]] = {
 
 
 def name_of(program: Sequence[ProgramLine]) -> str:
-    """Return what to call a program."""
+    """Return a name for a program."""
     operators = [operator for operator, _ in program if operator != "leaf"]
     names = {"or": "union", "and": "intersection", "xor": "xor", "not": "complement"}
     if len(operators) == 1:

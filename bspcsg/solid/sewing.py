@@ -1,8 +1,8 @@
-"""Meshes that close on the lattice only, closed by index before they are moved.
+"""Closing by index of meshes that are closed only on the lattice, before they are moved.
 
-At a T-junction a corner of one triangle lies inside an edge of another; corners that differ by less
-than a step are one; triangles without area are none. Moving a mesh rounds each corner by itself,
-which opens it there, and gives such triangles an area.
+On the lattice, a T-junction has a corner of one triangle inside an edge of another, corners that
+differ by less than a step coincide, and triangles without area vanish. Moving a mesh rounds each
+corner separately, which opens it at such places, and gives such triangles an area.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class Sewn:
     ----------
     mesh : AttributedMesh
     kept : (m,) int64
-        The triangle of the mesh before that each of these is a part of, ascending.
+        For each triangle, the triangle of the original mesh that contains it, ascending.
     """
 
     mesh: AttributedMesh
@@ -32,15 +32,15 @@ class Sewn:
 
 
 def sewn(mesh: AttributedMesh, tree: Tree) -> Sewn | None:
-    """Return a mesh closed by index: with triangles divided at T-junctions, and corners welded.
+    """Return a mesh closed by index, with T-junctions split and corners welded.
 
-    None if it closes wherever its corners are moved to.
+    Return None if the mesh stays closed wherever its corners move.
 
     Parameters
     ----------
     mesh : AttributedMesh
     tree : Tree
-        The one that was made from it.
+        The tree of the mesh.
     """
     if tree.closes_when_moved:
         return None

@@ -1,4 +1,4 @@
-"""The sides of points that may lie beyond the lattice."""
+"""Classification of points that may lie beyond the lattice."""
 
 from typing import Protocol
 
@@ -10,7 +10,7 @@ from ..geometry.transform import LATTICE_REACH
 
 
 class Classifying(Protocol):
-    """A tree of the core that tells where points lie."""
+    """A tree of the core that classifies points."""
 
     @property
     def pitch(self) -> int:
@@ -18,14 +18,14 @@ class Classifying(Protocol):
 
     @property
     def is_bounded(self) -> bool:
-        """True if the set fits into some box."""
+        """True if the set is bounded."""
 
     def classify(self, points: FloatArray, /) -> SideArray:
-        """Say of each point of the lattice whether it is inside."""
+        """Classify points of the lattice."""
 
 
 def sides_of(points: FloatArray, tree: Classifying) -> SideArray:
-    """Say of each point whether it is inside; beyond the lattice nothing that is bounded is."""
+    """Classify points; a point beyond the lattice is outside a bounded set."""
     largest = np.abs(points).max(axis=1, initial=0.0)
     is_far = np.isfinite(largest) & (largest >= LATTICE_REACH * 10.0**tree.pitch)
     with core_errors():

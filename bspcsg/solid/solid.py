@@ -1,9 +1,9 @@
 """`Solid`: a set of points with a polyhedral boundary, as an immutable value.
 
-A solid is a lazy expression under a transform. The first query evaluates it, once; the answer is
-kept and the expression let go. Two things are promised, and two kinds of query ask for them:
+A solid is a lazy expression under a transform. The first query evaluates it once; the result is
+kept and the expression released. There are two guarantees, used by two kinds of queries:
 
-* the set is right, always: `to_mesh`, `vertices`, `faces` pay for this much and no more;
+* the set is always right: `to_mesh`, `vertices` and `faces` need no more than this;
 * the mesh is the reduced boundary, every wall between inside and outside exactly once: `volume`,
   `equals`, `save` and the like take `normalized`, which checks inputs that nobody has vouched for.
 """
@@ -65,12 +65,12 @@ _MAX_FACES_FOR_REPR = 20_000
 class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
-    Inside is where the winding number of the faces satisfies the rule; faces may cross, overlap,
-    touch or repeat. Coordinates are snapped to a decimal lattice, by default of step 1e-9.
+    A point is inside if the winding number of the faces satisfies the rule; faces may cross,
+    overlap, touch or repeat. Coordinates are snapped to a decimal lattice, by default of step 1e-9.
 
-    ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: solids
-    are equal if they are the same set, however they were made. They are exact, and evaluate the
-    solids, as `hash` does; whether two names mean one object says ``is``.
+    ``==``, ``<=``, ``<``, ``in`` and the like compare solids as Python compares sets: solids are
+    equal if they are the same set of points, however they were made. Comparisons are exact, and
+    evaluate the solids, as `hash` does; use ``is`` to compare objects.
 
     Parameters
     ----------
@@ -79,12 +79,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     faces : (m, 3) array_like of int, or sequence of index sequences
         Indices of `vertices`, counter-clockwise seen from outside. Polygons are triangulated.
     pitch : int, optional
-        The lattice step is ``10**pitch`` units. By default -9, or what the size asks for.
-        Transforms keep a given one, as far as its lattice reaches.
+        The lattice step is ``10**pitch`` units. By default -9, or another if the size requires it.
+        Transforms keep a given pitch, as far as its lattice reaches.
     trusted : bool
-        Your word that faces meet in common edges and vertices only, which saves a check.
+        True if you guarantee that faces meet only in common edges and vertices, which saves a
+        check.
     winding : {"positive", "nonzero", "even-odd"}
-        The winding numbers that are inside.
+        The rule for the winding numbers that are inside.
     vertex_attributes : dict of str to (n, …) array_like, optional
         Colours, texture coordinates, weights: one value for each of `vertices`, by names.
     corner_attributes : dict of str to (m, 3, …) array_like, optional
@@ -105,16 +106,16 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
     Notes
     -----
-    Attributes follow the faces through all operations and transforms; the result's mesh has them
-    (`Mesh.vertex_attributes`, `corner_attributes`, `face_attributes`). Values of faces are copied;
-    values of vertices and corners are copied where the corner is one of the source, and
-    interpolated in the source's triangle everywhere else: whole numbers are rounded, truth values
-    and text are those of the nearest corner. ``"color"`` takes what says a colour (texts, whole
-    numbers from 0 to 255, floats from 0 to 1), one for each or one for all. Faces of one plane with
-    different values are not joined. An operand that lacks a name has NaN there, or 0, False or no
-    text; a ``"color"`` in whole numbers is opaque white there, and one that is NaN is shown so.
-    Attributes called ``"normal"`` or ``"normals"``, three floats, turn with the solid, keep their
-    length, and point the other way where the solid was subtracted. `simplify` lets attributes go.
+    Attributes follow the faces through all operations and transforms to the result's mesh
+    (`Mesh.vertex_attributes`, `corner_attributes`, `face_attributes`). Values of faces are copied.
+    Values of vertices and corners are copied at corners of the source, and interpolated in the
+    source's triangle elsewhere: integers are rounded; truth values and text come from the nearest
+    corner. ``"color"`` takes any form of colour (texts, integers from 0 to 255, floats from 0 to
+    1), one for each element or one for all. Coplanar faces with different values are not joined. If
+    an operand lacks a name, its values are NaN, 0, False or empty text; a ``"color"`` of integers
+    is opaque white there, and a colour that is NaN is shown as white. Attributes called
+    ``"normal"`` or ``"normals"``, of three floats, turn with the solid, keep their length, and are
+    reversed where the solid was subtracted. `simplify` drops attributes.
 
     Examples
     --------
@@ -154,7 +155,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             winding=rule,
             attributes=said,
         )
-        # Errors in a mesh belong to the line that gave it, not to the first query.
+        # Raise errors in a mesh here, on the user's line, not in the first query.
         leaf.grown()
         leaf.let_go()
         self._set(ExpressionNode(leaf), UNMOVED)
@@ -183,7 +184,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         tolerance: float = interop.TESSELLATION_TOLERANCE,
         **options: Any,
     ) -> "Solid":
-        """Return the solid of whatever holds a mesh.
+        """Return the solid of any object that holds a mesh.
 
         Parameters
         ----------
@@ -194,9 +195,9 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
             `Solid` is returned as it is and takes no options, nor does an `Assembly`. A mesh
             without vertices and faces is the empty set.
         format : str, optional
-            Of bytes and open files: a suffix, such as ``"stl"``.
+            The suffix of the format, such as ``"stl"``, for bytes and open files.
         tolerance : float
-            The most that triangles may be off the true surface of a CAD shape, in model units.
+            The largest deviation of triangles from the true surface of a CAD shape, in model units.
         **options
             As for `Solid`.
 
@@ -205,19 +206,19 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         InvalidMeshError
             If the object holds no mesh, or as for `Solid`.
         InvalidParameterError
-            If options are given with what is a solid already.
+            If options are given with a solid.
         FormatError
-            If a file cannot be read as what it should be.
+            If a file cannot be read in its format.
 
         Notes
         -----
         Coordinates are taken as they are: those of pyvista and of files in binary STL have single
         precision, unless a pyvista mesh was made of float64 points.
 
-        Attributes come along: those of a `Mesh` of this package, of a trimesh (its colours as
-        ``"color"``, its texture coordinates as ``"uv"``, its materials), manifold3d's as
-        ``"properties"``, or by their names if `to_manifold` gave them, data of points and cells of
-        pyvista and meshio.
+        Attributes are kept: those of a `Mesh` of this package, of a trimesh (colours as
+        ``"color"``, texture coordinates as ``"uv"``, materials), of manifold3d as ``"properties"``,
+        or under their names if they came from `to_manifold`, and point and cell data of pyvista and
+        meshio.
         """
         if isinstance(mesh, (str, os.PathLike)):
             return cls.load(mesh, **options)
@@ -298,7 +299,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         if self.normalized().is_bounded:
             return residues_of_volume(self)
         outside = self._outside()
-        # Where both are unbounded, nothing that is cheap tells solids apart.
+        # If both are unbounded, no cheap test can distinguish solids.
         bounded = outside.is_bounded
         return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
 
@@ -315,7 +316,7 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return shown_tree(self._leaf())
 
     def _leaf(self) -> ExpressionLeaf:
-        """Return what the solid is evaluated to, in its place."""
+        """Return the evaluated leaf of the solid, under its transform."""
         if self._placed is None:
             evaluate(self._node)
             self._placed = self._node.placed(self._factors)
@@ -329,8 +330,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     def to_mesh(self) -> Mesh:
         """Return the boundary as a closed mesh; its arrays are read-only and kept.
 
-        What was not cut comes out as it came in. Walls inside an input that overlaps itself are
-        left where no operation met them; `normalized` removes them.
+        Faces that were not cut are unchanged. If an input overlaps itself, its inner walls remain
+        where no operation met them; `normalized` removes them.
 
         Raises
         ------
@@ -355,8 +356,8 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     def normalized(self) -> "Solid":
         """Return the same set with the reduced boundary as its mesh.
 
-        Inputs that nobody has vouched for are checked, once, and united with themselves if their
-        faces overlap. The queries of measure, comparison, check and file use this form.
+        Inputs that are not trusted are checked once, and united with themselves if their faces
+        overlap. Measures, comparisons, checks and file output use this form.
         """
         tree = self.tree
         if self._reduced is None and not _is_reduced(tree):
@@ -373,19 +374,19 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
     @counted
     def tagged(self, **values: Any) -> "Solid":
-        """Return the solid whose every face says so: attributes of faces, one value for all.
+        """Return the solid with face attributes that have one value on all faces.
 
         Parameters
         ----------
         **values : number, text or array
-            By the names of the attributes; what had such a name before is replaced. ``color`` is
-            one colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
-            255. Half-spaces have no faces that could say anything.
+            Values by attribute name; they replace attributes of the same name. ``color`` is one
+            colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
+            255. Half-spaces have no faces, so they stay without attributes.
 
         Raises
         ------
         InvalidParameterError
-            If the colour is none.
+            If the colour is invalid.
 
         Examples
         --------
@@ -400,29 +401,30 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
     @counted
     def simplify(self, tolerance: float) -> "Solid":
-        """Return the solid without short edges and slivers, on which printers and meshers stumble.
+        """Return the solid without short edges and slivers, which trouble printers and meshers.
 
-        An edge is short if it is no longer than `tolerance`, a triangle is a sliver if its height
-        over its longest edge is no more. Short edges shrink to one of their ends and long edges of
-        slivers are flipped; corners that are left stay where they are, and so do large triangles,
-        also those of one plane.
+        An edge is short if it is not longer than `tolerance`; a triangle is a sliver if its height
+        over its longest edge is not larger. Short edges collapse to one of their ends, and long
+        edges of slivers are flipped. The remaining corners do not move, and large triangles stay,
+        even if they are coplanar.
 
-        Every point of the old surface lies within `tolerance` of the new one, and the other way
-        round. Nothing that changed crosses anything, which is tested exactly; the new surface has
-        as many parts, handles and cavities as the old one.
+        Every point of the old surface lies within `tolerance` of the new one, and vice versa.
+        Changed triangles cross nothing, which is tested exactly. The new surface has as many parts,
+        handles and cavities as the old one.
 
         Parameters
         ----------
         tolerance : float
-            The most that the surface may move, in model units. With 0 the solid itself is returned.
+            The largest distance that the surface may move, in model units. 0 returns the solid
+            itself.
 
         Returns
         -------
         Solid
             The solid of a mesh, no longer of an expression. Its finding ``simplified`` has the
-            triangles before and after and the bound that was reached; ``small_left`` counts the
-            triangles that are small still. The solid itself if nothing can be removed, or if the
-            lattice has no room for what is left.
+            numbers of triangles before and after, and the distance that was reached; ``small_left``
+            counts the remaining small triangles. The solid itself if nothing can be removed, or if
+            the result does not fit on the lattice.
 
         Raises
         ------
@@ -433,9 +435,9 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
 
         Notes
         -----
-        Corners gather at one of them, and none goes farther than `tolerance`. So where a surface
-        is divided much finer than that, edges from some third of it on are left. Walls and bars
-        that are thinner than it stay, and a part that would vanish keeps four triangles at least.
+        Corners merge into one of them, and none moves farther than `tolerance`. So on a surface
+        with much finer triangles, edges longer than about a third of `tolerance` remain. Thinner
+        walls and bars stay, and a part that would vanish keeps at least four triangles.
 
         Examples
         --------
@@ -457,15 +459,15 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     def _outside(self) -> "Solid":
         return (~self).normalized()
 
-    # Where it came from
+    # History
 
     @property
     def last_operation(self) -> "LastOperation | None":
-        """The operation that made this solid, or None for a mesh, a loaded or a copied solid.
+        """The operation that made this solid; None for a mesh, a loaded or a copied solid.
 
-        Exactly one evaluation is remembered: its program, its operands and no further. A chain
-        that asks for each of its results keeps one operation, however long it grows; one that asks
-        at its end only was evaluated as one operation, and that is remembered.
+        Only the last evaluation is kept, with its program and operands. If each result of a chain
+        is queried, one operation is kept, however long the chain. If only the last result is
+        queried, the whole chain was one operation, and that is kept.
         """
         content = evaluate(self._node)
         if not isinstance(content, TreeLeaf) or content.record is None:
@@ -476,10 +478,10 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return LastOperation(program, operands, from_node(self._node))
 
     def profile(self) -> Profile:
-        """Return what the evaluation of the solid took, stage by stage; empty for a mesh.
+        """Return the profile of the solid's evaluation, stage by stage; empty for a mesh.
 
-        Two different meshes as they were given take the fastest way; `Profile.handed_on` says why
-        an evaluation could not.
+        Operations on two different unchanged meshes take the fast path; `Profile.handed_on` has the
+        reason why an evaluation could not.
 
         Examples
         --------
@@ -494,19 +496,19 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
     # As a value
 
     def __repr__(self) -> str:
-        """Say what is known, or takes no time to know; nothing is evaluated."""
+        """Show facts that are known or quickly found; nothing is evaluated."""
         mesh = self._mesh_at_hand()
         if self._placed is None:
             return f"Solid({describe(self._node, self._factors, mesh)})"
         return f"Solid({describe(ExpressionNode(self._placed), UNMOVED, mesh)})"
 
     def _mesh_at_hand(self) -> Mesh | None:
-        """Return the mesh if it is known, or if a small result only has to be written out."""
+        """Return the mesh if it is cached, or if it is small and the solid is evaluated."""
         leaf = self._placed or self._node.content
         if self._mesh is not None or not isinstance(leaf, TreeLeaf) or leaf.result.is_empty:
             return self._mesh
         stats = leaf.result.stats()
-        # What was moved or read back has no record of the kernels.
+        # Moved or loaded trees have no record of the kernels.
         if stats["elements"] + stats.get("kernel_elements", 0) > _MAX_FACES_FOR_REPR:
             return None
         try:
@@ -528,9 +530,10 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         return self
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle the evaluated tree, exactly, with the transform still apart.
+        """Pickle the evaluated tree exactly, with the transform separate.
 
-        What may have no mesh can be moved as long as its operands are known, which are not kept.
+        A solid that may have no mesh is moved first: later moves would need its operands, which are
+        not pickled.
         """
         leaf, factors = evaluate(self._node), self._factors
         if leaf.extent is None:
@@ -552,7 +555,7 @@ class LastOperation:
         last line is the result.
     operands : tuple of Solid
     result : Solid
-        Without the transform that was applied to it afterwards.
+        The result, without transforms applied afterwards.
     """
 
     program: list[ProgramLine]
@@ -566,7 +569,7 @@ def from_node(node: ExpressionNode, factors: FactorChain = UNMOVED) -> Solid:
 
 
 def passing_mesh(solid: Solid) -> Mesh:
-    """Return the mesh of a solid, which keeps it only if it was asked for it before."""
+    """Return the mesh of a solid, without making the solid cache it."""
     return solid._made_mesh() if solid._mesh is None else solid._mesh
 
 
@@ -592,12 +595,12 @@ def solid_with(vertices: Any, faces: Any, attributes: Attributes | None, **optio
 
 
 def given_pitch(solid: Solid) -> int | None:
-    """Return the pitch that transforms of a solid keep, if it was given."""
+    """Return the given pitch of a solid, which transforms keep, or None."""
     return solid._leaf().given_pitch
 
 
 def keeping_pitch(solid: Solid, given: int | None) -> Solid:
-    """Return the solid of a mesh, its pitch kept by transforms only if it is the one given."""
+    """Return the solid of a mesh; transforms keep its pitch only if it equals the given one."""
     leaf = solid._node.content
     if isinstance(leaf, MeshLeaf):
         leaf.given_pitch = given if leaf.pitch == given else None
@@ -625,7 +628,7 @@ def surfaces_meet(first: Solid, second: Solid) -> bool:
 def with_record(last: LastOperation, factors: FactorChain) -> Solid:
     """Return the solid of an operation under a transform.
 
-    It knows the operation, which pickling it leaves out.
+    The solid knows the operation; pickling drops it.
     """
     leaves = tuple(evaluate(operand._node) for operand in last.operands)
     record = Record(last.program, leaves)
@@ -638,7 +641,7 @@ def with_record(last: LastOperation, factors: FactorChain) -> Solid:
 
 
 def combine(operator: Operator, solids: Sequence[Solid]) -> Solid:
-    """Return the lazy combination of solids; the transform they share goes to the result."""
+    """Return the lazy combination of solids; a common transform is applied to the result."""
     prefix = common_prefix([solid._factors for solid in solids])
     operands = [Placed(solid._node, solid._factors.without(len(prefix))) for solid in solids]
     return from_node(operation(operator, operands), prefix)
@@ -655,7 +658,7 @@ def _is_reduced(tree: Tree) -> bool:
 
 
 def _kept(tree: Tree, source_attributes: SourceAttributes) -> SourceAttributes:
-    """Return what is said of the sources whose faces may bound a solid, if anything is."""
+    """Return the attributes of the sources whose faces may bound a solid, if there are any."""
     if not source_attributes:
         return ()
     kept = zip(tree.named, source_attributes, strict=True)
@@ -670,7 +673,7 @@ def _restored(
 ) -> Solid:
     with core_errors():
         tree = Tree.load(data)
-        # Nothing and all of space are stored without sources.
+        # The empty set and all of space are stored without sources.
         leaf = TreeLeaf(
             tree, source_attributes=source_attributes if tree.sources else (), given_pitch=given
         )

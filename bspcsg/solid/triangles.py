@@ -1,4 +1,4 @@
-"""The triangles of a solid, as an array that can be asked for the solid's faces."""
+"""The triangles of a solid, as an array that can be called to select faces."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -16,28 +16,28 @@ else:
 
 
 class Triangles(_Array):
-    """Triangles of a solid's mesh, (m, 3) int64; called, the faces that they make up.
+    """Triangles of a solid's mesh, (m, 3) int64; call it to get a selection of faces.
 
-    What is computed of them is an array like any other.
+    Results of array operations are ordinary arrays.
     """
 
     _solid: Any
 
     def __array_finalize__(self, whole: object) -> None:
-        """Forget the solid in arrays that are made of this one."""
+        """Drop the solid in arrays derived from this one."""
         self._solid = None
 
     def __call__(self, *, all: bool = False, angle: Scalar = 30.0) -> "FaceSelection":  # noqa: A002
-        """Return the faces, to choose some of them (see `FaceSelection`).
+        """Return the faces as a selection (see `FaceSelection`).
 
-        Facets of one round surface are one face: those that bend by `angle` at most, and of which
-        neither is more than twice as wide as the other. So a plane face stays apart from the round
-        edge beside it, unless that is nearly as wide.
+        The facets of a round surface are one face: neighbours that bend by at most `angle`, with
+        neither more than twice as wide as the other. So a plane face is separate from a round edge
+        beside it, unless their facets are nearly as wide.
 
         Parameters
         ----------
         all : bool
-            True for all plane faces, facets among them.
+            True for all plane faces, also facets.
         angle : float
             Degrees.
 

@@ -562,7 +562,7 @@ def test_blends_leave_something_of_each_part_of_a_face() -> None:
         (lambda: BOX.chamfer(BOX.edges().parallel("x"), 1.01), "no room"),
         (lambda: BOX.fillet(BOX.edges(), 1.01), "no room"),
         (lambda: BOX.fillet(BOX.edges().parallel("x"), 1.01), "no room"),
-        (lambda: STAR.chamfer(STAR.edges(), 0.1), "convex and concave edges meet, and more than"),
+        (lambda: STAR.chamfer(STAR.edges(), 0.1), "more than three convex and concave"),
         (lambda: FLUSH.fillet(FLUSH.edges(), 0.25), r"no room at \(1\.82222, 2\.01192, 4\)"),
         (lambda: BOX.chamfer(STEP.edges(), 0.1), "another solid"),
         (lambda: BOX.chamfer(cast("Any", [0]), 0.1), "selection"),

@@ -82,9 +82,9 @@ BORE = PLATE.hole(TOP, d=4).faces().filter(lambda f: ~f.is_flat)
         (lambda: PLATE.hole(TOP, d=4, r=2), "not both"),
         (lambda: PLATE.hole(TOP, d=-4), "d must not be below 0"),
         (lambda: PLATE.hole(TOP, d=4, depth=0), "depth must be above 0"),
-        (lambda: PLATE.hole(PLATE.faces(), d=4), "One face is needed, and 6 are selected"),
+        (lambda: PLATE.hole(PLATE.faces(), d=4), "Select one face; these are 6"),
         (lambda: PLATE.hole(BORE, d=4), "The face is round"),
-        (lambda: PLATE.hole(PLATE.edges(), d=4), "A face is a selection of one"),  # type: ignore[arg-type]
+        (lambda: PLATE.hole(PLATE.edges(), d=4), "face must be a selection"),  # type: ignore[arg-type]
         (lambda: b.cube(5).hole(TOP, d=4), "no such face at the point"),
         (lambda: PLATE.hole(TOP, (5, 5, 4), d=4), r"no such face at the point \(5, 5, 4\)"),
         (lambda: PLATE.hole(TOP, (31, 5, 5), d=4), r"point \(31, 5, 5\)"),

@@ -156,7 +156,7 @@ def test_sums_of_regions() -> None:
     assert b.minkowski(RING, Region.rectangle(6, 6)) == Region.rectangle(16, 16)
     assert b.minkowski(RING, Region.rectangle(2, 2)).area == 144 - 16
     assert b.minkowski(SQUARE, Region.empty()).is_empty
-    with pytest.raises(b.InvalidParameterError, match="two solids, or of two regions"):
+    with pytest.raises(b.InvalidParameterError, match="two solids or two regions"):
         b.minkowski(SQUARE, b.cube(1))  # type: ignore[call-overload]
     with pytest.raises(b.UnboundedError):
         b.minkowski(SQUARE, Region.full())

@@ -1,4 +1,4 @@
-"""Regions as DXF drawings: closed outlines in, polylines out."""
+"""Regions as DXF drawings: reads closed outlines, writes polylines."""
 
 import io
 import os
@@ -32,9 +32,9 @@ def load_dxf(
 ) -> Region:
     """Read the closed outlines in the model space of a DXF file as one region.
 
-    Lines, arcs, circles, ellipses, splines and polylines count, those of inserted blocks, too;
-    pieces are joined where their ends lie within a millionth of the drawing's size. Of a drawing
-    with nothing in its model space, the paper space is read.
+    Lines, arcs, circles, ellipses, splines and polylines are read, also those of inserted blocks.
+    Pieces are joined if their ends lie within a millionth of the drawing's size. If the model space
+    is empty, the paper space is read.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def load_dxf(
     tolerance : float
         Largest distance between a curve and the chords that replace it, in drawing units.
     layers : iterable of str, optional
-        The layers to read, in capitals or not; all by default.
+        The layers to read, regardless of case; all by default.
     winding : {"even-odd", "nonzero", "positive"}
-        By default an outline inside another is a hole, whichever way they run.
+        By default an outline inside another is a hole, for any orientation.
     pitch : int, optional
 
     Raises
@@ -57,8 +57,7 @@ def load_dxf(
     Warns
     -----
     DrawingWarning
-        Names the kinds of what is left out, such as hatches and text, and says that the region is
-        empty.
+        Names the kinds of skipped entities, such as hatches and text, and reports an empty region.
     """
     chord = positive(tolerance, "tolerance")
     names = None if layers is None else _names(layers)
@@ -87,9 +86,9 @@ def _names(layers: Any) -> set[str]:
 
 
 def _wanted(names: set[str], document: Any, file: str) -> set[str]:
-    """Return names of layers without regard to case, as DXF has them; `FormatError` if one lacks.
+    """Return layer names in lower case, as DXF ignores case; raise `FormatError` for missing ones.
 
-    A layer need not be declared: what lies on it is enough.
+    A layer need not be declared: an entity on it suffices.
     """
     declared = [layer.dxf.name for layer in document.layers]
     entities = document.chain_layouts_and_blocks()
@@ -110,7 +109,7 @@ def _is_among(wanted: set[str] | None, layer: str) -> bool:
 def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
     """Write the outlines of a bounded region as closed polylines on layer 0.
 
-    Coordinates are written so that reading them gives the same doubles again.
+    Coordinates read back as the same doubles.
 
     Raises
     ------
@@ -123,7 +122,7 @@ def save_dxf(region: Region, path: str | os.PathLike[str]) -> None:
 
 
 def dxf_data(region: Region) -> bytes:
-    """Return what `save_dxf` writes."""
+    """Return the content that `save_dxf` writes."""
     ezdxf = module_of_ezdxf()
     outlines = of_kind(Region, region, "region").to_polygons()
     text = io.StringIO()
@@ -131,7 +130,7 @@ def dxf_data(region: Region) -> bytes:
         document = ezdxf.new("R2010")
         for points in outlines:
             document.modelspace().add_lwpolyline(points.tolist(), close=True)
-        # ezdxf names them in the order of a set, which differs from process to process.
+        # ezdxf orders them as a set does, which differs between processes.
         for name in sorted(document.entitydb.dxf_types_in_use()):
             document.classes.add_class(name)
         document.write(text)
@@ -145,7 +144,7 @@ _ONE_AT_A_TIME = threading.Lock()
 
 @contextmanager
 def _without_time(options: Any) -> Iterator[None]:
-    """Have ezdxf write no time and no random number: the same region gives the same bytes."""
+    """Make ezdxf write no time and no random number, so that output is reproducible."""
     with _ONE_AT_A_TIME:
         before = options.write_fixed_meta_data_for_testing
         options.write_fixed_meta_data_for_testing = True
@@ -165,7 +164,7 @@ _TEXT_OF_BINARY = (
 
 
 def read_document(path: str | os.PathLike[str]) -> Any:
-    """Return the ezdxf document of a file; `FormatError` if it is none."""
+    """Return the ezdxf document of a file; raise `FormatError` for other files."""
     ezdxf = module_of_ezdxf()
     name = file_path(path)
     data = limited_content(name)
@@ -174,23 +173,23 @@ def read_document(path: str | os.PathLike[str]) -> Any:
     try:
         text = _decoded(data.replace(b"\r\n", b"\n"))
         return ezdxf.document.Drawing.load(with_markers(io.StringIO(text)))
-    except Exception as error:  # what ezdxf raises on damaged files is of any kind
+    except Exception as error:  # ezdxf raises errors of any type on damaged files
         raise FormatError(f"{name}: this is no valid DXF: {words_of(error)}.", "syntax") from error
 
 
 def _decoded(data: bytes) -> str:
-    """Return the text of a file in the code page that it names, by default in UTF-8."""
+    """Decode a file by the code page that it names, by default as UTF-8."""
     text = data.decode("utf-8", errors="surrogateescape")
     if "$DWGCODEPAGE" not in text:
         return text
     management = module_of_ezdxf("ezdxf.filemanagement")
-    # From R2007 on files are UTF-8 whatever page they name, which this knows.
+    # From R2007 on files are UTF-8 for any code page; ezdxf's function handles this.
     encoding = management.dxf_stream_info(io.StringIO(text)).encoding
     return data.decode(encoding, errors="surrogateescape")
 
 
 def _closed(chains: list[FloatArray], name: str) -> list[FloatArray]:
-    """Return closed loops; open chains are joined at their ends."""
+    """Return closed loops, after open chains are joined at their ends."""
     loops = [chain[:-1] for chain in chains if (chain[0] == chain[-1]).all()]
     rest = [chain for chain in chains if (chain[0] != chain[-1]).any()]
     if rest:
@@ -205,11 +204,11 @@ _JOINED = 1e-6
 
 
 def _places(ends: FloatArray, size: float) -> Any:
-    """Return the number of the place of each of (n, 2, 2) ends in a drawing of some size."""
+    """Return the number of the place of each end, (n, 2, 2), in a drawing of the given size."""
     flat = ends.reshape(-1, 2) + 0.0
     _, places = np.unique(flat, axis=0, return_inverse=True)
     places = places.ravel()
-    # Only ends that fit no other are compared: pieces may be shorter than a step.
+    # Only ends without an equal one are compared: pieces may be shorter than a step.
     loose = np.flatnonzero(np.bincount(places)[places] == 1)
     step = max(size * _JOINED, np.finfo(np.float64).tiny)
     places[loose] = len(flat) + _near(flat[loose], step)
@@ -217,9 +216,9 @@ def _places(ends: FloatArray, size: float) -> Any:
 
 
 def _near(points: FloatArray, step: float) -> Any:
-    """Return numbers of points: those that are a step apart at most have the same."""
+    """Return numbers of points, equal for points at most a step apart."""
     numbers = np.arange(len(points))
-    # Two such points are in one cell of one of these four grids, at least.
+    # Two such points share a cell in at least one of these four grids.
     for shift in ((0, 0), (0, 1), (1, 0), (1, 1)):
         cells = np.floor((points / step + shift) / 2)
         _, cell = np.unique(cells, axis=0, return_inverse=True)
@@ -228,7 +227,7 @@ def _near(points: FloatArray, step: float) -> Any:
 
 
 def _merged(first: Any, second: Any) -> Any:
-    """Return numbers that are equal wherever those of the first or of the second are."""
+    """Return numbers that are equal wherever those of the first or second list are equal."""
     numbers = first
     while True:
         before = numbers
@@ -259,7 +258,7 @@ def _joined(chains: list[FloatArray], places: Any, name: str) -> list[FloatArray
 def _walk(
     chains: list[FloatArray], places: Any, at: dict[int, list[int]], left: set[int]
 ) -> FloatArray:
-    """Follow the chains from the first one left until it is reached again."""
+    """Follow the chains from the first remaining one until it is reached again."""
     chain = min(left)
     start = place = int(places[chain][0])
     parts = []

@@ -43,13 +43,13 @@ def chains_of(
     Parameters
     ----------
     layout : ezdxf layout
-        Insertions of blocks stand for what these hold.
+        Insertions of blocks are replaced by the blocks' entities.
     is_wanted : callable
         Says whether a layer counts.
     chord : float
         Largest distance between a curve and its chords.
     lost : LeftOut
-        Gets what is no outline.
+        Collects entities that are no outlines.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def chains_of(
 def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
     """Yield the entities of a layout and of the blocks in it, but not those that insert blocks.
 
-    Each comes with its layer, and false if it could not be moved to its place.
+    Each comes with its layer, and with False if it could not be transformed.
     """
     waiting: list[tuple[Iterator[tuple[Any, bool]], str]] = [
         (((entity, True) for entity in layout), ANY_LAYER)
@@ -98,7 +98,7 @@ def _entities(layout: Any) -> Iterator[tuple[Any, str, bool]]:
 def inserted(insert: Any, *, rows: bool = True) -> Iterator[tuple[Any, bool]]:
     """Yield what one insertion of a block puts into the drawing, row by row.
 
-    Beside each stands whether it is moved to its place: ezdxf cannot move all.
+    Each comes with a flag whether it was transformed: ezdxf cannot transform all.
     """
     if insert.block() is None:
         raise ValueError(f"there is no block called “{insert.dxf.name}”")
@@ -143,7 +143,7 @@ def _is_full(ellipse: Any) -> bool:
 
 
 def _from_its_axis(ellipse: Any) -> Any:
-    """Return a full ellipse that begins at its axis; ezdxf takes others for points."""
+    """Return a full ellipse that starts on its axis; ezdxf treats others as points."""
     full = ellipse.copy()
     full.dxf.start_param, full.dxf.end_param = 0.0, math.tau
     return full
@@ -165,7 +165,7 @@ def _arc(entity: Any, chord: float) -> FloatArray:
 
 
 def _chords(radius: float, turn: float, chord: float) -> int:
-    """Return how many chords of an arc stay within a distance, each of a quarter turn at most."""
+    """Return the number of chords that stay within a distance of an arc, four or more a circle."""
     half = 2 * math.asin(math.sqrt(min(chord / (2 * radius), 1.0))) if radius else math.pi
     count = math.ceil(abs(turn) / min(2 * half, math.pi / 2))
     if count > _MAX_ARC_CHORDS:
@@ -188,10 +188,10 @@ def _polyline(entity: Any, rows: FloatArray, is_closed: bool, chord: float) -> F
 
 
 def _bulged(start: complex, end: complex, bulge: float, chord: float) -> Any:
-    """Return the corners of an arc without its end; the bulge is the tangent of a quarter turn.
+    """Return the corners of an arc without its end; the bulge is the tangent of angle / 4.
 
-    A point of the arc is seen from the start by half of its angle: nothing cancels where the arc is
-    nearly straight.
+    A point of the arc is given by half of its angle as seen from the start; this avoids
+    cancellation in nearly straight arcs.
     """
     turn = 4 * math.atan(bulge)
     if turn == 0 or start == end:
@@ -219,7 +219,7 @@ def _old_polyline(entity: Any, chord: float) -> FloatArray:
 
 
 def _on_plane(entity: Any, points: FloatArray, elevation: float) -> FloatArray:
-    """Return points of an entity's own plane as the drawing shows them, from above."""
+    """Return points of an entity's plane in drawing coordinates, seen from above."""
     system = entity.ocs()
     if not system.transform:
         return points

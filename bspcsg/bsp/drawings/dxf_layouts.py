@@ -1,4 +1,4 @@
-"""Which of the spaces of a DXF drawing is read."""
+"""The choice of the space of a DXF drawing that is read."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,12 +13,12 @@ WINDOW = "VIEWPORT"
 
 
 def drawn_layout(document: Any, is_wanted: Callable[[str], bool], lost: LeftOut) -> Any:
-    """Return the model space of a drawing or, if that is empty, the first paper space that is not.
+    """Return the model space of a drawing or, if it is empty, the first nonempty paper space.
 
-    What the others hold on layers that are wanted is left out.
+    Entities of other spaces on wanted layers count as left out.
     """
     papers = [layout for layout in document.layouts if layout.is_any_paperspace]
-    # What is in use comes first.
+    # The active layout comes first.
     papers.sort(key=lambda layout: not layout.is_active_paperspace)
     model = document.modelspace()
     drawn = [layout for layout in (model, *papers) if any(map(_counts, layout))]

@@ -1,6 +1,6 @@
-"""DXF entities without subclass markers, as simple programs write them, with these put in.
+"""Insertion of missing subclass markers into DXF entities, which simple programs omit.
 
-ezdxf refuses some kinds of entities without them, and with these the whole file.
+Without them, ezdxf refuses some kinds of entities, and with these the whole file.
 
 # Source
 DXF reference, "Subclass Markers": group 100 before the values of each class of an entity.
@@ -32,7 +32,7 @@ _FIRST_OF_OTHERS = 1000
 
 
 def module_of_ezdxf(name: str = "ezdxf") -> Any:
-    """Return a module of ezdxf, which comes with an extra of this package."""
+    """Import a module of ezdxf, an optional dependency."""
     return optional(name, '"bspcsg[dxf]"')
 
 
@@ -58,7 +58,7 @@ def with_markers(stream: TextIO) -> Iterator[Any]:
 
 
 def _marked(entity: list[Any], tag: Any, version: str) -> list[Any]:
-    """Return the tags of an entity, the first of which names it, with both markers."""
+    """Return the tags of an entity with both markers; the first tag names the entity."""
     has_markers = any(one.code == _MARKER for one in entity)
     if not entity or (has_markers and version != _PLAIN):
         return entity
@@ -67,7 +67,7 @@ def _marked(entity: list[Any], tag: Any, version: str) -> list[Any]:
     common = [one for one in entity[1:] if one.code in _COMMON]
     markers = tag(_MARKER, "AcDbEntity"), tag(_MARKER, f"AcDb{entity[0].value.title()}")
     if version == _PLAIN:
-        # There ezdxf looks for points behind the markers, and for all else before them.
+        # There ezdxf expects points after the markers, and all other tags before them.
         common += [one for one in own if one.code < _FIRST_OF_OTHERS]
         return [entity[0], *first, *common, *markers, *own]
     return [entity[0], *first, markers[0], *common, markers[1], *own]

@@ -1,4 +1,4 @@
-"""What a drawing holds that its region does not: collected on the way, and told once at the end."""
+"""The record of drawing content that a region lacks, reported once at the end."""
 
 import os
 import warnings
@@ -15,17 +15,17 @@ _MAX_KINDS_NAMED, _MAX_KIND_CHARACTERS = 12, 40
 
 
 class DrawingWarning(UserWarning):
-    """Something in a drawing is not in its region, or that region is empty."""
+    """Part of a drawing is not in its region, or the region is empty."""
 
 
 @dataclass
 class LeftOut:
-    """What of one drawing is left out.
+    """The content of one drawing that is left out.
 
     Parameters
     ----------
     counts : Counter
-        How often each kind was, by the names that the file has for them.
+        The number of things of each kind, by their names in the file.
     outlines : int
         The number of outlines that were read.
     """
@@ -34,19 +34,19 @@ class LeftOut:
     outlines: int = 0
 
     def add(self, kind: str, count: int = 1) -> None:
-        """Count things that are left out."""
+        """Count omitted things."""
         if count:
             self.counts[kind] += count
 
     def surrounding(self, loops: list[FloatArray]) -> list[FloatArray]:
-        """Return the outlines that have three corners; the others are left out."""
+        """Return the outlines with at least three corners; count the others as left out."""
         found = [loop for loop in loops if len(np.unique(loop, axis=0)) >= 3]
         self.add("line that surrounds nothing", len(loops) - len(found))
         self.outlines += len(found)
         return found
 
     def words(self, region: Region) -> str:
-        """Return sentences on what the region of the drawing lacks; none if it has everything."""
+        """Return sentences on missing content of the region; empty if nothing is missing."""
         kinds = self._kinds()
         lacking = f"left out: {kinds}. " if kinds else ""
         if not region.is_empty:
@@ -59,14 +59,14 @@ class LeftOut:
         return f"{lacking}{'The' if kinds else 'the'} region is empty{reason}."
 
     def _kinds(self) -> str:
-        """Return the kinds with their counts; files may call theirs anything."""
+        """Return the kinds with their counts, shortened, since files may contain any names."""
         names = sorted(self.counts)
         kinds = [f"{_harmless(name)} ({self.counts[name]})" for name in names[:_MAX_KINDS_NAMED]]
         more = sum(self.counts[name] for name in names[_MAX_KINDS_NAMED:])
         return ", ".join([*kinds, *([f"others ({more})"] if more else [])])
 
     def tell(self, path: str | os.PathLike[str], region: Region) -> None:
-        """Warn the caller of a function that has read a file, if there is something to tell."""
+        """Issue the warning for a file that was read, if anything is missing."""
         words = self.words(region)
         if words:
             warnings.warn(f"{os.fspath(path)}: {words}", DrawingWarning, stacklevel=3)

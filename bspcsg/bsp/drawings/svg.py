@@ -1,4 +1,4 @@
-"""Regions as SVG drawings: filled shapes in, one path out."""
+"""Regions as SVG drawings: reads filled shapes, writes one path."""
 
 import io
 import math
@@ -40,17 +40,17 @@ def load_svg(
     tolerance : float
         Largest distance between a curve and the chords that replace it, in user units.
     winding : {"positive", "nonzero", "even-odd"}, optional
-        By default what each shape's ``fill-rule`` says.
+        By default the ``fill-rule`` of each shape.
     pitch : int, optional
 
     Returns
     -------
     Region
-        In the user units of the outermost element (its size on paper and its view box do not
-        matter), y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images
-        and what is not filled are left out; of a ``switch`` the first child that fits is drawn, in
-        English if there is a choice; an open subpath counts as closed, as when it is filled.
-        Clip paths and masks do not count; of style sheets only rules for a tag, a class or an id.
+        In the user units of the outermost element (its size on paper and view box are ignored),
+        with y upwards: the point (x, y) of the drawing becomes (x, -y). Strokes, text, images and
+        unfilled shapes are left out. Of a ``switch`` the first child that fits is drawn, in English
+        if there is a choice. Open subpaths are closed. Clip paths and masks are ignored; in style
+        sheets only rules for a tag, a class or an id are applied.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def load_svg(
     Warns
     -----
     DrawingWarning
-        Names the kinds of what is left out, and says that the region is empty.
+        Names the kinds of skipped content, and reports an empty region.
     """
     lost = LeftOut()
     chord = positive(tolerance, "tolerance")
@@ -92,9 +92,10 @@ class Shape(NamedTuple):
     Parameters
     ----------
     element : object
-        That of svgelements, with a transform to user units: svgelements skews arcs in a wrong way.
+        The svgelements shape, with its transform to user units not applied: svgelements skews arcs
+        wrongly.
     path : Segments or None
-        What a path's data say, if these are without a fault; svgelements then has not seen them.
+        The segments of a path's data if these are valid; then svgelements has not read them.
     """
 
     element: Any
@@ -104,15 +105,15 @@ class Shape(NamedTuple):
 def shown_shapes(
     path: str | os.PathLike[str], prepare: Callable[[ElementTree.Element], None], lost: LeftOut
 ) -> list[Shape]:
-    """Return the shapes of a file, but for those that are not shown.
+    """Return the visible shapes of a file.
 
     Parameters
     ----------
     path : path
     prepare : callable
-        Changes the outermost element before it is looked at; takes off its view box.
+        Changes the outermost element before it is read, such as to remove its view box.
     lost : LeftOut
-        Gets what is shown, but is no shape.
+        Collects visible content that is no shape.
 
     Raises
     ------
@@ -129,10 +130,10 @@ def shown_shapes(
         paths = _set_aside(root)
         plain = io.BytesIO(ElementTree.tostring(root))
         drawing = elements.SVG.parse(plain, reify=False, ppi=96.0)
-        # svgelements makes nothing of a drawing that is not displayed.
+        # svgelements returns nothing for a drawing that is not displayed.
         found = [] if drawing is None else [one for one in drawing.elements() if _is_shown(one)]
         shapes = [
-            # Others have the data of a path that they stand in.
+            # Other elements inherit the data of an enclosing path.
             Shape(
                 shape,
                 paths.get(shape.values.get("d")) if isinstance(shape, elements.Path) else None,
@@ -142,14 +143,14 @@ def shown_shapes(
         ]
         for element in found:
             lost.add(*_no_shape(element))
-    except Exception as error:  # what svgelements raises is of any kind
+    except Exception as error:  # svgelements raises errors of any type
         message = f"{os.fspath(path)}: this is no valid SVG: {words_of(error)}."
         raise FormatError(message, "syntax") from error
     return shapes
 
 
 def _set_aside(root: ElementTree.Element) -> dict[str, Segments]:
-    """Return the paths of a drawing by the data that stand for them in it from now on.
+    """Replace the path data of a drawing by keys, and return the segments by key.
 
     svgelements takes ten times as long to read path data.
     """
@@ -163,7 +164,7 @@ def _set_aside(root: ElementTree.Element) -> dict[str, Segments]:
 
 
 def _no_shape(element: Any) -> tuple[str, int]:
-    """Return what an element without a shape is called, and 1 if it shows something."""
+    """Return the name of an element without a shape, and 1 if it is visible."""
     name = str(element.values.get("tag"))
     if name == "use":
         return "use of what is not there", int(not len(element))
@@ -198,7 +199,7 @@ def save_svg(
 
 
 def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) -> bytes:
-    """Return what `save_svg` writes."""
+    """Return the content that `save_svg` writes."""
     bounds = of_kind(Region, region, "region").bounds
     low, high = (np.zeros(2), np.ones(2)) if bounds is None else bounds
     space = float((high - low).max()) * not_negative(margin, "margin")
@@ -206,7 +207,7 @@ def svg_data(region: Region, *, fill: str = "#9db8d9", margin: Scalar = 0.05) ->
         raise invalid_parameter(f"fill must be a colour, not {shown(fill)}.")
     width, height = (high - low + 2 * space).tolist()
     if not math.isfinite(max(width, height)):
-        message = f"With a margin of {shown(margin)} the page is beyond all doubles; give less."
+        message = f"The margin {shown(margin)} is too large for doubles; choose a smaller one."
         raise invalid_parameter(message)
     x, y = float(low[0]) - space, -float(high[1]) - space
     outlines = " ".join(_path_of(points) for points in region.to_polygons())
@@ -224,7 +225,7 @@ def _path_of(points: FloatArray) -> str:
 
 
 def _checked(path: str | os.PathLike[str]) -> bytes:
-    """Return the file's bytes if they are XML without entities; a document type is not read."""
+    """Return the bytes of a file, checked to be XML without entities; ignore a document type."""
     name = file_path(path)
     data = limited_content(name)
     parser = expat.ParserCreate()
@@ -256,7 +257,7 @@ def _is_shown(shape: Any) -> bool:
 def _is_filled(shape: Any) -> bool:
     if _keyword(shape, "fill") == "none":
         return False
-    # What says nothing of its fill is black.
+    # A shape without a fill property is black.
     return shape.values.get("fill") is None or shape.fill.value is not None
 
 
@@ -265,7 +266,7 @@ def _rule(shape: Any) -> WindingRule:
 
 
 def _keyword(shape: Any, name: str) -> str:
-    """Return a property as CSS takes it: without blanks, case and importance."""
+    """Return a normalized CSS property, without blanks, case and "!important"."""
     return str(shape.values.get(name) or "").partition("!")[0].strip().lower()
 
 
@@ -289,7 +290,7 @@ def _matrices(shapes: Sequence[Shape]) -> FloatArray:
 
 
 def _own_lengths(shapes: Sequence[Shape], length: float) -> FloatArray:
-    """Return what a length in user units is at least in the coordinates of each shape."""
+    """Return the least length, in the coordinates of each shape, of a length in user units."""
     a, b, c, d = _matrices(shapes)[:, :4].T
     # Half the axes of the ellipse that the matrix makes of the unit circle, as sum and difference.
     with np.errstate(all="ignore"):

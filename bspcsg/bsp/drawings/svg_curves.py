@@ -1,4 +1,4 @@
-"""The corners of SVG's shapes: all curves of a drawing at once.
+"""The corners of SVG shapes, computed for all curves of a drawing at once.
 
 # Source
 SVG 1.1, F.6 (elliptical arcs).

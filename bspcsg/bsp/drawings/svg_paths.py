@@ -79,12 +79,12 @@ class Segments:
         self.ends.append(d)
 
     def quadratic(self, a: complex, b: complex, c: complex) -> None:
-        """Follow a quadratic curve, which is a cubic one, too."""
+        """Follow a quadratic curve, converted to a cubic one."""
         self.cubic(a, a + (b - a) * (2 / 3), c + (b - c) * (2 / 3), c)
 
 
 def path_segments(data: str) -> Segments | None:
-    """Return what path data say; None for anything but data without a fault."""
+    """Return the segments of path data; None if the data are invalid."""
     if _WORD.sub("", data).strip(_BLANKS):
         return None
     before, *parts = _COMMAND.split(data)
@@ -100,7 +100,7 @@ def path_segments(data: str) -> Segments | None:
 
 
 def _numbers(command: str, text: str) -> list[float] | None:
-    """Return a command's numbers, if it has as many as it takes, and all are finite."""
+    """Return the numbers of a command, if their count is right and all are finite."""
     if command == "Z":
         return None if text.strip(_BLANKS) else []
     if command == "A":
@@ -220,7 +220,7 @@ def shape_segments(shape: Any) -> Segments:
 
 
 def _round_segments(shape: Any) -> Segments:
-    """Return four quarters of a circle or an ellipse; svgelements takes long to cut them."""
+    """Return four quarters of a circle or an ellipse; svgelements is slow at this."""
     found = Segments()
     center, wide, high = complex(shape.cx, shape.cy), complex(shape.rx), complex(0, shape.ry)
     if wide and high:
@@ -234,7 +234,7 @@ def _round_segments(shape: Any) -> Segments:
 
 
 def _turn(found: Segments, arc: Any) -> None:
-    """Add an arc of svgelements; one without a width or a height is straight."""
+    """Add an arc of svgelements; an arc without width or height is a line."""
     start, center, across, along = _points(arc.start, arc.center, arc.prx, arc.pry)
     wide, height = across - center, abs(along - center)
     if wide and height:

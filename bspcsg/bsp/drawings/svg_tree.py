@@ -1,7 +1,7 @@
-"""The elements of an SVG that are shown, with nothing but groups around them.
+"""Reduction of an SVG drawing to visible elements inside plain groups.
 
-Views inside the drawing and symbols become groups with a transform, for svgelements does not fit
-them into their places and draws symbols, masks and markers where they are declared.
+Nested views and symbols become groups with a transform, because svgelements does not fit them into
+their places, and draws symbols, masks and markers where they are declared.
 
 # Source
 SVG 2, sections 5 (structure), 7.11 (the initial view box) and 8.2 (fitting a view box).
@@ -52,7 +52,7 @@ def name_of(element: Element) -> str:
 
 
 def make_plain(root: Element) -> None:
-    """Leave groups, shapes, texts and their uses in a drawing, in the user units of the outermost.
+    """Reduce a drawing to groups, shapes, texts and uses, in user units of the outermost element.
 
     Raises
     ------
@@ -69,13 +69,13 @@ def make_plain(root: Element) -> None:
     for name in ("x", "y", "preserveAspectRatio", "viewBox", "width", "height"):
         root.attrib.pop(name, None)
     if size is not None:
-        # Percentages are parts of these.
+        # Percentages refer to these.
         width, height = (repr(value) for value in size)
         root.attrib |= {"width": width, "height": height, "viewBox": f"0 0 {width} {height}"}
 
 
 def _drop(root: Element) -> None:
-    """Drop what is no drawing, and shapes that show nothing because they say too little."""
+    """Remove elements that draw nothing, and shapes that lack necessary attributes."""
     for parent in list(root.iter()):
         foreign = name_of(parent) == "foreignObject"
         parent[:] = [child for child in parent if not foreign and _is_drawn(child)]
@@ -92,7 +92,7 @@ def _is_drawn(element: Element) -> bool:
 
 
 def _switch(element: Element) -> None:
-    """Make a group of a switch with the first child that fits, if one does."""
+    """Replace a switch by a group with the first child that fits, if there is one."""
     shown = [child for child in element if name_of(child) not in _SILENT]
     first = next(filter(_fits, shown), None)
     element[:] = [child for child in element if child is first or child not in shown]
@@ -101,7 +101,7 @@ def _switch(element: Element) -> None:
 
 
 def _fits(element: Element) -> bool:
-    """Say whether nothing keeps a child of a switch from being drawn here."""
+    """Say whether a child of a switch can be drawn here."""
     if name_of(element) == "foreignObject" or element.get("requiredExtensions"):
         return False
     languages = element.get("systemLanguage")
@@ -135,13 +135,13 @@ def _check_uses(root: Element) -> None:
 
 
 def _target(use: Element) -> str:
-    """Return the id of what is used; nothing if it lies elsewhere."""
+    """Return the id of the used element; nothing if it is in another file."""
     reference = next((use.get(key, "") for key in HREF if use.get(key)), "")
     return reference[1:] if reference[:1] == "#" else ""
 
 
 def _flatten(root: Element, size: _Size) -> None:
-    """Make groups of views, of symbols, and of the uses of these."""
+    """Replace views, symbols and their uses by groups."""
     symbols = {
         element.get("id"): dict(element.attrib)
         for element in root.iter()
@@ -163,7 +163,7 @@ def _flatten(root: Element, size: _Size) -> None:
 
 
 def _declaration(element: Element) -> Element:
-    """Return definitions that hold an element, which becomes a group."""
+    """Return definitions that contain an element, which becomes a group."""
     around = Element(_tag(element, "defs"))
     element.tag = _tag(element, "g")
     for name in ("viewBox", "preserveAspectRatio"):
@@ -173,7 +173,7 @@ def _declaration(element: Element) -> Element:
 
 
 def _of_symbol(use: Element, symbol: dict[str, str], outer: _Size) -> Element:
-    """Return a group that shows a symbol as a use does."""
+    """Return a group that draws a symbol as a use does."""
     around = Element(_tag(use, "g"), dict(use.attrib))
     view = symbol | {key: use.attrib[key] for key in ("width", "height") if key in use.attrib}
     _group(around, view | {key: use.get(key, "0") for key in ("x", "y")}, outer)
@@ -215,7 +215,7 @@ def _group(element: Element, view: dict[str, str], outer: _Size) -> _Size:
 def _fitted(
     rule: str, scales: tuple[float, float], size: tuple[float, float]
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the space before a box, and its scales, by a rule such as ``xMidYMid meet``."""
+    """Return offset and scales of a box for a rule such as ``xMidYMid meet``."""
     words = rule.split() or ["xMidYMid"]
     if words[0] == "none":
         return (0.0, 0.0), scales
@@ -236,7 +236,7 @@ def _size_of_root(root: Element) -> _Size:
 
 
 def _view_box(view: dict[str, str]) -> tuple[float, float, float, float] | None:
-    """Return the left, upper, width and height of a view box that has a size."""
+    """Return left, top, width and height of a view box with a positive size."""
     words = [word for word in re.split(r"[\s,]+", view.get("viewBox", "")) if word]
     try:
         left, top, width, height = map(float, words)
@@ -249,7 +249,7 @@ def _view_box(view: dict[str, str]) -> tuple[float, float, float, float] | None:
 
 
 def _length(text: str, whole: float | None) -> float | None:
-    """Return a length in user units; None for no length, or one relative to something unknown."""
+    """Return a length in user units; None for no length, or one relative to an unknown size."""
     if not text or ("%" in text and whole is None):
         return None
     elements = optional("svgelements", "svgelements")

@@ -1,4 +1,4 @@
-"""`Camera`: from where a scene is looked at, and how its points come into the picture."""
+"""`Camera`: the view of a scene, and the projection of points to the picture."""
 
 from dataclasses import dataclass, replace
 from itertools import product
@@ -45,7 +45,7 @@ class Camera:
     axes : (3, 3) float64
         The unit vectors to the right, up, and away from the viewer, as rows.
     origin : (3,) float64
-        The eye of a perspective; the point in the middle of a parallel picture.
+        The eye of a perspective projection, or the centre of a parallel picture.
     half_height : float
         Half of the picture's height: for a perspective at distance 1, so the tangent of half the
         field of view; for a parallel projection in model units.
@@ -58,7 +58,7 @@ class Camera:
     is_perspective: bool
 
     def __post_init__(self) -> None:
-        """Keep copies that nobody writes into."""
+        """Store read-only copies."""
         for name in ("axes", "origin"):
             own = np.array(getattr(self, name), dtype=np.float64)
             own.flags.writeable = False
@@ -73,7 +73,7 @@ class Camera:
         Parameters
         ----------
         eye, target : (3,) array_like
-            The place of the viewer, and the point in the middle of the picture, in model units.
+            The position of the viewer, and the point in the middle of the picture, in model units.
         up : (3,) array_like, optional
             The direction that is upwards in the picture; by default z, or y for looking along z.
         field_of_view : float
@@ -169,7 +169,7 @@ class Camera:
     def _receded(self, middle: FloatArray, reach: FloatArray, depth: FloatArray) -> "Camera":
         """Return this camera so far from the middle that no point reaches beyond the picture."""
         distance = float((reach.max(axis=1) / self.half_height - depth).max())
-        # Points on the axis of view, and a single one, would be at the eye or on its plane.
+        # Keep points on the view axis, or a single point, away from the eye and its plane.
         nearest = float(depth.min())
         distance = max(distance, _CLEARANCE * float(np.ptp(depth)) - nearest)
         distance = distance if distance > -nearest else 1.0
@@ -192,7 +192,7 @@ class Camera:
         return placed
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return where points come to be in the picture.
+        """Return the positions of points in the picture.
 
         Parameters
         ----------
@@ -233,7 +233,7 @@ class Camera:
         if not self.is_perspective:
             return -normals @ self.direction
         arms = self.origin - corners
-        # The squares of very long ones would not be doubles; powers of two change no cosine.
+        # The squares of very long vectors would overflow; scaling by powers of two keeps cosines.
         arms = np.ldexp(arms, -np.frexp(np.abs(arms).max(initial=0))[1])
         lengths = np.linalg.norm(arms, axis=1)
         cosines: FloatArray = np.einsum("ij,ij->i", arms, normals) / np.where(
@@ -242,7 +242,7 @@ class Camera:
         return cosines
 
     def __repr__(self) -> str:
-        """Say from where the camera looks."""
+        """Show the position of the camera."""
         kind = "perspective" if self.is_perspective else "orthographic"
         origin, direction = (", ".join(f"{x:.4g}" for x in v) for v in (self.origin, self.axes[2]))
         return f"Camera({kind}, origin=({origin}), direction=({direction}))"
@@ -271,13 +271,13 @@ def _axes(direction: FloatArray, up: Any) -> FloatArray:
         message = "The up vector must not be parallel to the direction of view; leave it out."
         raise invalid_parameter(message)
     right = _unit(right)
-    # Adding 0 makes negative zeros positive, which would show when printed.
+    # Adding 0 makes negative zeros positive, for printing.
     axes: FloatArray = np.stack([right, np.cross(right, away), away]) + 0.0
     return axes
 
 
 def _unit(given: FloatArray) -> FloatArray:
-    # The squares of very large or small numbers would not be doubles.
+    # The squares of very large or small numbers would overflow or underflow.
     scaled = given / np.abs(given).max()
     unit: FloatArray = scaled / np.linalg.norm(scaled)
     return unit
@@ -291,7 +291,7 @@ def _tangent(field_of_view: float) -> float:
 
 
 def _spread(points: Any) -> FloatArray:
-    """Return points, the corners of a box, or those of the unit cube if there is nothing."""
+    """Return points; the corners of a box for two points, and of the unit cube for none."""
     wanted = doubles(points, invalid_parameter("The points to fit must be an (n, 3) array."))
     if not wanted.size:
         wanted = np.array([[-0.5] * 3, [0.5] * 3])

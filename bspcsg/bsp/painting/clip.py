@@ -18,7 +18,7 @@ class Polygons:
     offsets : (k + 1,) int64
         Polygon i owns ``corners[offsets[i]:offsets[i + 1]]``.
     marked : (n,) bool
-        Marks of the edges from each corner to the next; the edges that clipping adds have none.
+        Marks of the edges from each corner to the next; edges added by clipping are unmarked.
     """
 
     corners: FloatArray
@@ -47,9 +47,10 @@ def owners(offsets: IndexArray) -> IndexArray:
 
 
 def clip(polygons: Polygons, normal: FloatArray, least: float) -> tuple[Polygons, IndexArray]:
-    """Return the parts of polygons where normal·x is at least `least`, and whose parts they are.
+    """Return the parts of polygons where normal·x is at least `least`, and their polygons.
 
-    All polygons at once, each cut as by Sutherland and Hodgman 1974, "Reentrant polygon clipping".
+    Clips all polygons at once by the method of Sutherland and Hodgman 1974, "Reentrant polygon
+    clipping".
     """
     distance = polygons.corners @ normal - least
     inside = distance >= 0
@@ -66,7 +67,7 @@ def clip(polygons: Polygons, normal: FloatArray, least: float) -> tuple[Polygons
 
     places = (firsts + inside)[crossing]
     corners[places] = _crossings(polygons.corners, distance, np.flatnonzero(crossing), after)
-    # Where the boundary comes back in, the rest of the old edge follows.
+    # Where the boundary re-enters, the rest of the old edge follows.
     marked[places] = (polygons.marked & ~inside)[crossing]
 
     offsets = np.concatenate([[0], np.cumsum(counts)])[polygons.offsets]

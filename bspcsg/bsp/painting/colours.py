@@ -1,4 +1,4 @@
-"""Colours as numbers, and how light changes them."""
+"""Colours as numbers, and their shading."""
 
 from typing import Any
 
@@ -22,12 +22,12 @@ _AMBIENT = 0.35
 
 
 def colour(value: Any, name: str = "colour") -> ColourArray:
-    """Return (3,) uint8 of whatever says an opaque colour (see `attributes.colours`)."""
+    """Return (3,) uint8 of any form of an opaque colour (see `attributes.colours`)."""
     return _opaque(one_color(value, name), name)
 
 
 def colours(values: Any, count: int, name: str = "colours") -> ColourArray:
-    """Return (count, 3) uint8 of one colour for all, or of one for each."""
+    """Return (count, 3) uint8 of one colour for all or one for each."""
     given = _opaque(colors_of(values, name), name)
     if given.ndim == 1:
         return np.tile(given, (count, 1))
@@ -53,7 +53,7 @@ def lit(base: ColourArray, normals: FloatArray, axes: FloatArray) -> ColourArray
     normals : (k, 3) float64
         Unit normals towards the viewer.
     axes : (3, 3) float64
-        Of the camera.
+        The axes of the camera.
     """
     cosine = np.clip(normals @ (_LIGHT @ axes), 0, 1)
     strength = _AMBIENT + (1 - _AMBIENT) * cosine

@@ -1,4 +1,4 @@
-"""Neighbours of facets, and which of their edges a picture draws."""
+"""Neighbours of facets, and the choice of edges for a picture."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,7 +47,7 @@ class Facets:
         if not len(self):
             return np.zeros((0, 3))
         after, owner = following(self.offsets), owners(self.offsets)
-        # Seen from a corner of its own, no facet is far away.
+        # Coordinates relative to a corner keep precision far from the origin.
         arms = self.corners - self.firsts[owner]
         areas = np.add.reduceat(np.cross(arms, arms[after]), self.offsets[:-1])
         lengths = np.linalg.norm(areas, axis=1, keepdims=True)
@@ -64,7 +64,7 @@ class Facets:
 
     @cached_property
     def neighbours(self) -> IndexArray:
-        """For the edge from each corner, the facet at its other side, (n,); -1 if it is not one."""
+        """For the edge from each corner, the facet on its other side, (n,); -1 if not just one."""
         forth, back = self._keys
         order = np.argsort(forth, kind="stable")
         ordered = forth[order]
@@ -77,7 +77,7 @@ class Facets:
 
     @cached_property
     def is_closed(self) -> bool:
-        """True if the facets bound a volume above zero: every edge has as many opposites."""
+        """True if the facets enclose a positive volume: every edge has equally many opposites."""
         forth, back = self._keys
         if not len(forth) or not np.array_equal(np.sort(forth), np.sort(back)):
             return False
@@ -90,7 +90,7 @@ class Facets:
         return float(np.einsum("ij,ij->", arms[self.offsets[:-1]][owner], cones))
 
     def features(self, facing: BoolArray, crease: float) -> BoolArray:
-        """Return which edges show the shape, (n,).
+        """Return the feature edges, (n,) bool.
 
         Those without exactly one neighbour, those where the angle between the normals is above
         `crease` degrees, and the contour, where a facet that faces the viewer meets one that does
@@ -100,7 +100,7 @@ class Facets:
         cosines = np.einsum("ij,ij->i", self.normals[owner], self.normals[other])
         bent = cosines < np.cos(np.radians(crease))
         contour = facing[owner] != facing[other]
-        # Facets without area have no direction that could differ.
+        # Facets without area have no direction to compare.
         wide: BoolArray = (self.normals != 0).any(axis=1)
         drawn: BoolArray = (other < 0) | ((bent | contour) & wide[owner] & wide[other])
         return drawn
@@ -151,7 +151,7 @@ def _distances(points: FloatArray, starts: FloatArray, ends: FloatArray) -> Floa
 
 
 def _names(corners: FloatArray) -> IndexArray:
-    """Return numbers from 0 on, the same for equal points only."""
+    """Return numbers from 0 on, equal just for equal points."""
     order = np.lexsort(corners.T)
     ordered = corners[order]
     new = np.ones(len(corners), dtype=bool)

@@ -1,4 +1,4 @@
-"""Hidden lines: the parts of edges over which no polygon is painted later."""
+"""Hidden-line removal: the parts of edges that no later polygon covers."""
 
 from typing import TypeAlias
 
@@ -36,7 +36,7 @@ def visible(polygons: Polygons, ends: FloatArray, owner: IndexArray) -> FloatArr
     ends : (m, 2, 2) float64
         Segments.
     owner : (m,) int64
-        The polygon that each belongs to: those painted after it may hide the segment.
+        The polygon of each segment; later polygons may hide the segment.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def _near_pairs(
 
 
 def _squares(low: FloatArray, high: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return numbers of the squares that boxes meet, and the boxes."""
+    """Return pairs of a grid square and a box that overlap."""
     first = np.floor(low / _SQUARE).astype(np.int64)
     sides = np.floor(high / _SQUARE).astype(np.int64) - first + 1
     counts = sides[:, 0] * sides[:, 1]
@@ -121,7 +121,7 @@ def _inside(
     along = polygons.corners[after] - polygons.corners
     turn = np.sign(_areas(polygons))[polygon[pair]]
     tail, head = ends[segment[pair], 0], ends[segment[pair], 1]
-    # Distances to the left of each side, times its length; the inside is above 0.
+    # Distances to the left of each side, times its length; positive inside.
     first = turn * _cross(along[corner], tail - polygons.corners[corner])
     second = turn * _cross(along[corner], head - polygons.corners[corner])
     slope = second - first
@@ -153,7 +153,7 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
 def _united(parts: list[Stretch]) -> list[Stretch]:
     united: list[Stretch] = []
     for start, end in sorted(parts):
-        # Neighbours share a border up to rounding.
+        # Neighbours share a border, up to rounding.
         if united and start <= united[-1][1] + 1e-9:
             united[-1] = (united[-1][0], max(end, united[-1][1]))
         else:
@@ -162,13 +162,13 @@ def _united(parts: list[Stretch]) -> list[Stretch]:
 
 
 def _common(first: list[Stretch], second: list[Stretch]) -> list[Stretch]:
-    """Return where both of two sorted lists of disjoint parts are."""
+    """Return the intersection of two sorted lists of disjoint parts."""
     pairs = ((max(a, c), min(b, d)) for a, b in first for c, d in second)
     return [(start, end) for start, end in pairs if start < end]
 
 
 def _gaps(parts: list[Stretch], shortest: float) -> list[Stretch]:
-    """Return what sorted disjoint parts leave of a segment, without gaps up to `shortest`."""
+    """Return the gaps longer than `shortest` between sorted disjoint parts of a segment."""
     if not parts:
         return [(0.0, 1.0)]
     borders = [0.0, *(border for part in parts for border in part), 1.0]

@@ -1,4 +1,4 @@
-"""Outlines of several polygons together: edges that occur both ways cancel."""
+"""Common outlines of several polygons: opposite edges cancel."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable
@@ -11,12 +11,12 @@ Step = tuple[Spot, Spot]
 
 
 def outlines(polygons: Iterable[list[Spot]]) -> list[list[Spot]]:
-    """Return closed outlines with the winding numbers of the polygons together.
+    """Return closed outlines with the total winding numbers of the polygons.
 
     Parameters
     ----------
     polygons : iterable of list of (int, int)
-        All turning the same way.
+        All with the same orientation.
     """
     return _chained(_uncancelled(polygons))
 
@@ -35,7 +35,7 @@ def _uncancelled(polygons: Iterable[list[Spot]]) -> "Counter[Step]":
 
 
 def _chained(counts: "Counter[Step]") -> list[list[Spot]]:
-    """Return loops over all edges; which loops makes no difference to the winding numbers."""
+    """Return loops over all edges; any choice of loops gives the same winding numbers."""
     onwards: defaultdict[Spot, list[Spot]] = defaultdict(list)
     for start, end in counts.elements():
         onwards[start].append(end)
@@ -55,7 +55,7 @@ def _loop(onwards: "defaultdict[Spot, list[Spot]]", start: Spot) -> list[Spot]:
 
 
 def straightened(loop: list[Spot]) -> list[Spot]:
-    """Return a loop without the corners that lie on the way from one to the next."""
+    """Return a loop without corners that lie straight between their neighbours."""
     corners = []
     before = loop[-1]
     for spot, after in zip(loop, loop[1:] + loop[:1], strict=True):
@@ -67,13 +67,13 @@ def straightened(loop: list[Spot]) -> list[Spot]:
 
 
 def polylines(steps: Iterable[Step]) -> list[list[Spot]]:
-    """Return lines, open or closed, that cover each step once whichever way it goes."""
+    """Return open or closed lines that cover each step once, in either direction."""
     links: defaultdict[Spot, set[Spot]] = defaultdict(set)
     for start, end in steps:
         if start != end:
             links[start].add(end)
             links[end].add(start)
-    # Lines that start at ends and forks first; what remains are closed ones.
+    # First the lines from ends and forks; the remaining ones are closed.
     forks = [spot for spot, ways in links.items() if len(ways) != 2]
     lines = []
     for start in forks + list(links):

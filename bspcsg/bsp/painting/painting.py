@@ -41,11 +41,11 @@ class Painting:
     polygons : Polygons
         (n, 2) corners; marked edges are drawn with their polygon, cut lines never are.
     lines : (m, 2, 2) float64
-        Edges that are drawn when all polygons are painted: their visible parts.
+        The visible parts of edges that are drawn after all polygons.
     fills : (k, 3) uint8, or None
         Their colours; None for edges alone.
     source : (k,) int64
-        The facet that each is a part of.
+        The facet of which each polygon is a part.
     group : (k,) int64
         Equal for coplanar polygons that follow each other.
     """
@@ -60,7 +60,7 @@ class Painting:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Facets, and how they are to look.
+    """Facets with their appearance.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ class Scene:
 
 
 def facing(facets: Facets, camera: Camera) -> BoolArray:
-    """Return which facets turn their plus side to the viewer, (k,); none that are seen edge-on."""
+    """Return which facets turn their plus side to the viewer, (k,); not those seen edge-on."""
     return camera.facing(facets.firsts, facets.normals) > EDGE_ON
 
 
@@ -113,7 +113,7 @@ def painted(
 
 
 def _lined(polygons: Polygons, style: Style) -> tuple[Polygons, FloatArray]:
-    """Return polygons without marks and the edges to draw, or with marks if there are too many."""
+    """Return polygons without marks and the edges to draw; with too many edges, marked polygons."""
     marked = np.flatnonzero(polygons.marked)
     ends = polygons.corners[np.stack([marked, following(polygons.offsets)[marked]], axis=1)]
     lines = ends if style == "edges" else visible(polygons, ends, owners(polygons.offsets)[marked])
@@ -139,7 +139,7 @@ def _in_pixels(
 def _framed(
     polygons: Polygons, camera: Camera, size: tuple[int, int]
 ) -> tuple[Polygons, IndexArray]:
-    """Return the parts in front of the eye and in the picture, and whose parts they are."""
+    """Return the parts in front of the eye and in the picture, and the polygon of each."""
     kept = np.arange(len(polygons.offsets) - 1)
     for normal, least in _frame(polygons.corners, camera, size):
         polygons, left = clip(polygons, normal, least)
@@ -150,7 +150,7 @@ def _framed(
 def _frame(
     placed: FloatArray, camera: Camera, size: tuple[int, int]
 ) -> list[tuple[FloatArray, float]]:
-    """Return the half-spaces, in the camera's coordinates, that are seen."""
+    """Return the half-spaces of the visible region, in camera coordinates."""
     width, height = size
     reaches = (np.array([width, height]) + 2 * _BLEED) / height * camera.half_height
     sides = [(axis, sign, reaches[axis]) for axis in (0, 1) for sign in (1.0, -1.0)]
@@ -170,7 +170,7 @@ def _fills(scene: Scene, camera: Camera, style: Style) -> ColourArray:
 
 
 def _runs(node: IndexArray, fills: ColourArray | None) -> IndexArray:
-    """Return numbers that change where the node or the colour does."""
+    """Return numbers that change with the node or the colour."""
     keys = node[:, None] if fills is None else np.column_stack([node, fills])
     changes = (keys[1:] != keys[:-1]).any(axis=1)
     return np.concatenate([[0], np.cumsum(changes)])[: len(node)]

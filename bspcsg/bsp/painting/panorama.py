@@ -1,4 +1,4 @@
-"""`panorama`: the painter's picture of segments in the plane, with the map it is painted from."""
+"""`panorama`: the painter's picture of segments in the plane, below a map of them."""
 
 from typing import Any
 
@@ -39,13 +39,13 @@ def panorama(
 ) -> Picture:
     """Return a map of segments, and under it what a viewer in the plane sees.
 
-    The strip is painted over from the farthest to the nearest fragment: for an eye all around, with
-    +y in the middle and clockwise to the right; for a direction across it.
+    The strip is painted from the farthest to the nearest fragment. For an eye it shows the full
+    circle, with +y in the middle and clockwise to the right; for a direction it is a parallel view.
 
     Parameters
     ----------
     scene : PartitionTree or (n, 2, 2) array_like
-        A tree of segments, or segments for which a tree is made.
+        A tree of segments, or segments, from which a tree is built.
     eye : (2,) array_like, optional
         The viewpoint; a dot on the map.
     direction : (2,) array_like, optional
@@ -62,7 +62,7 @@ def panorama(
     Returns
     -------
     Picture
-        Segments whose line goes through the eye have no extent in the strip.
+        Segments on a line through the eye have no extent in the strip.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def panorama(
 
 
 def _fills(source: IndexArray, count: int, colors: Any) -> ColourArray:
-    """Return colours of polygons; those that belong to no segment are ink."""
+    """Return colours of polygons; polygons of no segment have the colour of ink."""
     if colors is None:
         colors = [_PALETTE[k % len(_PALETTE)] for k in range(count)]
     base = colours(colors, count, "colors") if count else np.zeros((0, 3), dtype=np.uint8)
@@ -134,7 +134,7 @@ def _border(frame: tuple[int, int]) -> FloatArray:
 
 
 def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexArray]:
-    """Return shares of the strip's width that segments cover seen along a direction."""
+    """Return the ranges of the strip's width that segments cover, seen along a direction."""
     scaled = direction / np.abs(direction).max()
     places = ends @ np.array([scaled[1], -scaled[0]])
     low, high = (places.min(), places.max()) if len(places) else (0.0, 1.0)
@@ -143,16 +143,16 @@ def _across(ends: FloatArray, direction: FloatArray) -> tuple[FloatArray, IndexA
 
 
 def _around(ends: FloatArray, eye: FloatArray) -> tuple[FloatArray, IndexArray]:
-    """Return shares of the strip's width that segments cover seen from an eye, and which they are.
+    """Return ranges of the strip that segments cover, seen from an eye, and their segments.
 
-    Segments behind the viewer, who looks along +y, are there twice: at both ends of the strip.
+    Segments behind the viewer, who looks along +y, appear twice, at both ends of the strip.
     """
     arms = ends - eye
     turns = np.arctan2(arms[..., 0], arms[..., 1]) / (2 * np.pi) + 0.5
     cross = arms[:, 0, 0] * arms[:, 1, 1] - arms[:, 0, 1] * arms[:, 1, 0]
     seen = np.flatnonzero(cross != 0)
     first, second = turns[seen].T
-    # The shorter way round.
+    # Take the shorter way round.
     gap = (second - first + 0.5) % 1.0 - 0.5
     spans = np.sort(np.stack([first, first + gap], axis=1), axis=1)
     twice = np.stack([spans - 1, spans, spans + 1], axis=1).reshape(-1, 2)
@@ -168,7 +168,7 @@ def _map(
     low, high = points.min(axis=0), points.max(axis=0)
     width, height = frame[0] - 4 * _SPACE, frame[1] * (1 - _STRIP) - 4 * _SPACE
     extent = high - low
-    # A flat scene is as wide as the picture, a single point as large as you like.
+    # A flat scene fills the width of the picture; a single point may have any scale.
     extent = np.maximum(extent, 1e-9 * float(extent.max())) if extent.any() else np.ones(2)
     scale = float((np.array([width, height]) / extent).min())
     middle = np.array([frame[0] / 2, frame[1] * (1 - _STRIP) / 2])
@@ -200,7 +200,7 @@ def _dot() -> FloatArray:
 def _arrow(direction: FloatArray) -> FloatArray:
     scaled = direction / np.abs(direction).max()
     x, y = scaled / np.hypot(*scaled)
-    # Pixels go downwards.
+    # Pixel coordinates grow downwards.
     along, side = np.array([x, -y]), np.array([y, x])
     tip = np.array([2.5 * _SPACE, 2.5 * _SPACE]) + 14 * along
     back = tip - 28 * along

@@ -1,4 +1,4 @@
-"""`picture`: a scene painted from back to front, or by a z-buffer where it is very large."""
+"""`picture`: a scene painted from back to front, or with a z-buffer if it is very large."""
 
 import os
 from dataclasses import dataclass
@@ -75,14 +75,14 @@ class Picture:
         return png(self.painting, self.background, self.line_width, self.samples)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the picture as what the ending of the path says, ``.svg`` or ``.png``.
+        """Write the picture in the format of the path's suffix, ``.svg`` or ``.png``.
 
         Raises
         ------
         FormatError
-            If the ending is another, or the file cannot be written.
+            If the suffix is another, or the file cannot be written.
         BspcsgError
-            If a PNG is asked for and Pillow is not installed.
+            If the format is PNG and Pillow is not installed.
         """
         ending = Path(file_path(path)).suffix.lower()
         if ending not in (".svg", ".png"):
@@ -90,7 +90,7 @@ class Picture:
             raise FormatError(message, "unknown_format")
         write_file(path, [self.svg.encode() if ending == ".svg" else self.png])
 
-    # Notebooks ask for all forms at once; one is enough.
+    # Notebooks request all forms at once; one is enough.
 
     def _repr_svg_(self) -> str | None:
         return None if self._is_large else self.svg
@@ -113,13 +113,13 @@ class Picture:
         return self.polygons > _MAX_SVG_POLYGONS
 
     def __repr__(self) -> str:
-        """Say how large the picture is."""
+        """Show the size of the picture."""
         width, height = self.size
         return f"Picture({width} x {height}, {self.polygons} polygons)"
 
 
 class _LargePicture(Picture):
-    """A picture of very many triangles: a tree orders them only where SVG is asked for.
+    """A picture of very many triangles, which a tree orders only for SVG.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ class _LargePicture(Picture):
 
 @dataclass(frozen=True)
 class _PictureSettings:
-    """How a scene is to be seen, all of it checked."""
+    """The checked options of a picture."""
 
     camera: Camera
     frame: tuple[int, int]
@@ -177,7 +177,7 @@ class _PictureSettings:
 
     @property
     def ways(self) -> dict[str, Any]:
-        """What says which triangles and edges are seen, by name."""
+        """The options that select visible triangles and edges, by name."""
         return {name: getattr(self, name) for name in ("style", "edges", "crease", "cull")}
 
 
@@ -198,9 +198,9 @@ def picture(
 ) -> Picture:
     """Return a picture of facets in space by the painter's algorithm.
 
-    What is painted later is never behind what it covers, cyclic overlaps and crossing facets
-    included: the tree has cut them. A PNG of a mesh of more than 100 000 triangles is made by a
-    z-buffer instead, which shows in each sample what is nearest there.
+    A later polygon is never behind one that it covers, even with cyclic overlaps and crossing
+    facets, since the tree cuts them. For a PNG of a mesh of more than 100 000 triangles, a z-buffer
+    finds the nearest triangle in each sample instead.
 
     Parameters
     ----------
@@ -208,17 +208,17 @@ def picture(
         A tree of polygons; or a `Solid`, a pair (vertices, faces), or anything else that
         `PartitionTree.from_mesh` takes, for which a tree is made.
     view : str
-        One of `View`; parallel, and so large that the whole scene is in the picture.
+        One of `View`; a parallel projection, scaled so that the whole scene is in the picture.
     camera : Camera, optional
-        Instead of a view.
+        Used instead of a view.
     size : (int, int)
         Width and height in pixels.
     style : {"shaded", "hidden", "edges"}
         Light on coloured facets and dark edges; white facets that hide black edges behind them; or
         edges alone, hidden ones too.
     edges : {"feature", "all", "none"}
-        The edges of facets to draw. "feature": those of one facet only, those bent by more than
-        `crease`, and contours. Lines along which the tree has cut are never drawn.
+        The edges of facets to draw. "feature": edges of a single facet, edges bent by more than
+        `crease`, and contours. Lines along which the tree cuts are never drawn.
     crease : float
         Degrees between the normals of two facets.
     colors : optional
@@ -228,8 +228,8 @@ def picture(
     background : optional
         A colour, or None for transparent.
     cull : bool, optional
-        True to leave out facets that turn their minus side to the viewer. By default those of
-        closed surfaces seen from outside their box, where they are hidden anyway.
+        True to leave out facets that turn their minus side to the viewer. By default only for
+        closed surfaces seen from outside their box, where these facets are hidden anyway.
     line_width : float
         Of drawn edges, in pixels.
     samples : int
@@ -238,9 +238,9 @@ def picture(
     Returns
     -------
     Picture
-        The background alone for a scene without facets. Facets seen edge-on, with the eye in their
-        plane, have no area in the picture and are not seen. A perspective shows only what is in
-        front of the eye.
+        Only the background for a scene without facets. Facets seen edge-on, with the eye in their
+        plane, have no area in the picture and are not visible. A perspective shows only the space
+        in front of the eye.
 
     Raises
     ------
@@ -305,9 +305,9 @@ def _camera(
 
 
 def _shapes_of(scene: Any) -> tuple[Facets, MeshArrays | None]:
-    """Return the scene's facets; of a very large mesh the mesh, too.
+    """Return the facets of a scene; for a very large mesh, the mesh, too.
 
-    Such a mesh has no corners twice, and none that no triangle has.
+    Such a mesh has no duplicate or unused vertices.
     """
     if isinstance(scene, PartitionTree):
         if scene.dimension != 3:
@@ -332,7 +332,7 @@ def _facets(mesh: MeshArrays) -> Facets:
 
 
 def _check_coordinates(triangles: FloatArray) -> None:
-    """Raise an error for coordinates whose products are no doubles, before any are taken."""
+    """Raise an error for coordinates whose products would overflow doubles."""
     finite = np.isfinite(triangles).all(axis=(1, 2))
     if not finite.all():
         where = np.flatnonzero(~finite)[:10].tolist()

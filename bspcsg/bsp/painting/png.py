@@ -59,7 +59,7 @@ def png_of_samples(
     background: ColourArray | None,
     samples: int,
 ) -> bytes:
-    """Return the bytes of a PNG file of what each sample shows (see `raster`)."""
+    """Return the bytes of a PNG file, given the content of each sample (see `raster`)."""
     pillow = _pillow()
     if background is None:
         cover = ((nearest >= 0) | ink).astype(np.uint8) * 255
@@ -75,7 +75,7 @@ def png_of_samples(
 
 
 def canvas_size(size: tuple[int, int], samples: int) -> tuple[int, int]:
-    """Return how many samples a picture has across and down, if they are not too many."""
+    """Return the number of samples across and down, checked against the limit."""
     width, height = size
     if width * height * samples**2 > _MAX_CANVAS_PIXELS:
         message = (
@@ -93,7 +93,7 @@ def line_samples(line: float, samples: int) -> int:
 def _reduced(canvas: "Image.Image", samples: int) -> "Image.Image":
     """Return a picture whose pixels are the means of samples."""
     if canvas.mode == "RGBA":
-        # With cover multiplied in, means are right at the border of what is transparent.
+        # Premultiplied opacity gives correct means at the border of transparent areas.
         return canvas.convert("RGBa").reduce(samples).convert("RGBA")
     return canvas.reduce(samples)
 
@@ -110,7 +110,7 @@ def _pillow() -> Any:
 
 def _paint(draw: "ImageDraw.ImageDraw", painting: Painting, width: int, samples: int) -> None:
     polygons = painting.polygons
-    # Pillow takes whole coordinates only, those of pixels.
+    # Pillow takes only integer coordinates of pixels.
     places = np.floor(polygons.corners * samples)
     starts = polygons.offsets.tolist()
     flat = places.ravel().tolist()
@@ -120,7 +120,7 @@ def _paint(draw: "ImageDraw.ImageDraw", painting: Painting, width: int, samples:
         if fills is not None:
             corners = flat[2 * start : 2 * end]
             draw.polygon(corners, fill=fills[index])
-            # Rounding parts a border from one on its other side that has more corners.
+            # Rounding separates a border from a neighbouring one with more corners.
             draw.line(corners + corners[:2], fill=fills[index])
         for ends in lines.get(index, ()):
             _line(draw, ends, width)

@@ -1,8 +1,8 @@
-"""Pictures of very many triangles by a z-buffer: the nearest triangle in the middle of each sample.
+"""Pictures of very many triangles by a z-buffer: the nearest triangle at the centre of each sample.
 
-A tree that cuts a million triangles takes most of a minute; a sample knows what it shows without
-an order of all. Borders are half-open, and an edge is crossed by the same arithmetic for both of
-its triangles, so that no sample between neighbours is lost or taken twice.
+A tree that cuts a million triangles takes most of a minute; a z-buffer needs no order of triangles.
+Borders are half-open, and both triangles of an edge use the same arithmetic for it, so that no
+sample between neighbours is lost or covered twice.
 
 References
 ----------
@@ -27,7 +27,7 @@ _MAX_SAMPLES_PER_BATCH = 1 << 20
 
 @dataclass(frozen=True, eq=False)
 class Triangles:
-    """Triangles with common vertices, and how they are to look.
+    """Triangles with common vertices, and their appearance.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Triangles:
 
     @cached_property
     def areas(self) -> FloatArray:
-        """Twice the areas along the normals, (m, 3)."""
+        """Normals with length twice the area, (m, 3)."""
         a, b, c = (self.vertices[self.faces[:, k]] for k in range(3))
         (px, py, pz), (qx, qy, qz) = (b - a).T, (c - a).T
         return np.stack([py * qz - pz * qy, pz * qx - px * qz, px * qy - py * qx], axis=1)
@@ -61,9 +61,9 @@ class Triangles:
 
     @cached_property
     def _joints(self) -> tuple[IndexArray, BoolArray]:
-        """The half-edges in an order in which those of an edge follow each other.
+        """The half-edges, sorted so that those of one edge are consecutive.
 
-        And which of them is the first of just two that run in opposite directions.
+        Also returns which half-edges are the first of exactly two opposite ones.
         """
         start, end = self.faces.ravel(), self.faces[:, [1, 2, 0]].ravel()
         keys = np.minimum(start, end) * len(self.vertices) + np.maximum(start, end)
@@ -75,7 +75,7 @@ class Triangles:
 
     @property
     def is_closed(self) -> bool:
-        """True if all edges belong to two triangles, and the volume is above zero."""
+        """True if all edges belong to two triangles, and the volume is positive."""
         _, is_first = self._joints
         if 2 * np.count_nonzero(is_first) != self.faces.size:
             return False
@@ -83,7 +83,7 @@ class Triangles:
         return float(np.einsum("ij,ij->", firsts, self.areas)) > 0
 
     def edges(self, front: BoolArray, edges: Edges, crease: float) -> IndexArray:
-        """Return the edges to draw as pairs of vertices, (k, 2), as `Facets.features` has them.
+        """Return the edges to draw as pairs of vertices, (k, 2), like `Facets.features`.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class Triangles:
 
 
 class Buffer:
-    """Samples, and what is nearest in each.
+    """The z-buffer: the nearest triangle of each sample.
 
     Parameters
     ----------
@@ -128,9 +128,9 @@ class Buffer:
         self.nearest = np.full(self.width * self.height, -1, dtype=np.int64)
 
     def placed(self, vertices: FloatArray) -> FloatArray:
-        """Return columns, rows and depths of points, (n, 3); whole numbers are middles of samples.
+        """Return columns, rows and depths of points, (n, 3); integers are centres of samples.
 
-        Depths grow away from the viewer, and are linear on planes as they are seen.
+        Depths grow away from the viewer, and are linear on planes in picture coordinates.
         """
         placed = self._camera.place(vertices)
         image = self._camera.flatten(placed) * (self.height / 2)
@@ -139,19 +139,19 @@ class Buffer:
         return np.column_stack([across, self.height / 2 - image[:, 1] - 0.5, depth])
 
     def fill(self, placed: FloatArray, faces: IndexArray, chosen: IndexArray) -> None:
-        """Let the chosen triangles be seen where nothing is nearer."""
+        """Draw the chosen triangles where nothing is nearer."""
         for some in _shares(self._rows(placed, faces[chosen]), _MAX_SAMPLES_PER_BATCH):
             self._fill(placed, faces, chosen[some])
 
     def _rows(self, placed: FloatArray, faces: IndexArray) -> IndexArray:
-        """Return how many rows of samples each triangle meets."""
+        """Return the number of rows of samples that each triangle meets."""
         down = placed[:, 1][faces]
         first, last = self._span(down.min(axis=1), down.max(axis=1), self.height)
         return last - first
 
     @staticmethod
     def _span(low: FloatArray, high: FloatArray, end: int) -> tuple[IndexArray, IndexArray]:
-        """Return the whole numbers in half-open intervals, from 0 on and below an end."""
+        """Return the integers in half-open intervals, clipped to the range from 0 to an end."""
         first, last = (np.ceil(np.clip(x, 0, end)).astype(np.int64) for x in (low, high))
         return first, np.maximum(first, last)
 
@@ -196,7 +196,7 @@ class Buffer:
         self.nearest[samples[is_nearest]] = triangles[is_nearest]
 
     def lines(self, ends: FloatArray) -> BoolArray:
-        """Return the samples in which lines are seen, (height, width).
+        """Return the samples in which lines are visible, (height, width).
 
         Parameters
         ----------
@@ -220,7 +220,7 @@ class Buffer:
         return marked.reshape(self.height, self.width)
 
     def _framed(self, ends: FloatArray) -> FloatArray:
-        """Return the parts of lines that may be in the picture."""
+        """Return the parts of lines that are in the picture."""
         start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
         first, last = np.zeros(len(ends)), np.ones(len(ends))
         for axis, extent in ((0, self.width), (1, self.height)):
@@ -235,7 +235,7 @@ class Buffer:
         return framed
 
     def _farthest_around(self) -> FloatArray:
-        """Return for each sample the greatest depth in it and beside it: lines lie between."""
+        """Return for each sample the greatest depth of it and its neighbours."""
         depths = self._depths.reshape(self.height, self.width)
         padded = np.pad(depths, 1, mode="edge")
         wide = np.maximum(np.maximum(padded[:, :-2], padded[:, 1:-1]), padded[:, 2:])
@@ -254,7 +254,7 @@ def raster(
     cull: bool | None,
     line: int,
 ) -> tuple[IndexArray, ColourArray, BoolArray]:
-    """Return what each sample shows.
+    """Return the content of each sample.
 
     Parameters
     ----------
@@ -270,11 +270,11 @@ def raster(
     Returns
     -------
     nearest : (height, width) int64
-        The triangle that is seen, -1 for none.
+        The visible triangle, -1 for none.
     fills : (m, 3) uint8
-        The colours of triangles in this light.
+        The shaded colours of triangles.
     ink : (height, width) bool
-        Where edges are.
+        True where edges are.
     """
     buffer = Buffer(camera, size)
     placed = buffer.placed(scene.vertices)
@@ -293,7 +293,7 @@ def raster(
 
 
 def in_front(points: FloatArray, camera: Camera) -> bool:
-    """Say whether all points are before the eye, so that nothing has to be cut off."""
+    """Say whether all points are in front of the eye, so that no clipping is needed."""
     return not camera.is_perspective or bool((camera.place(points)[:, 2] > 0).all())
 
 
@@ -307,7 +307,7 @@ def _hides_its_back(scene: Triangles, camera: Camera) -> bool:
 
 
 def _thickened(marked: BoolArray, width: int) -> BoolArray:
-    """Return marks as discs of a width."""
+    """Return marks thickened to discs of a width."""
     reach = (width - 1) / 2
     thick = marked.copy()
     far = int(np.ceil(reach))
@@ -320,7 +320,7 @@ def _thickened(marked: BoolArray, width: int) -> BoolArray:
 
 
 def _shifted(down: int, across: int) -> tuple[tuple[slice, ...], tuple[slice, ...]]:
-    """Return where what is in an array goes that is shifted, and what of it does."""
+    """Return the target and source slices for shifting an array."""
     steps = down, across
     to = tuple(slice(max(step, 0), min(step, 0) or None) for step in steps)
     of = tuple(slice(max(-step, 0), min(-step, 0) or None) for step in steps)
@@ -328,21 +328,21 @@ def _shifted(down: int, across: int) -> tuple[tuple[slice, ...], tuple[slice, ..
 
 
 def _slopes(rise: FloatArray, run: FloatArray) -> FloatArray:
-    """Return quotients, and 0 where there is none: no sample needs it then."""
+    """Return quotients, and 0 for division by zero, where no sample needs it."""
     with np.errstate(all="ignore"):
         slopes = rise / run
     return np.where(np.isfinite(slopes), slopes, 0.0)
 
 
 def _expanded(counts: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return for rows of so many things whose each is, and its number there."""
+    """Return the row of each item, and its number in the row, given the counts of rows."""
     owner = np.repeat(np.arange(len(counts)), counts)
     starts = np.cumsum(counts) - counts
     return owner, np.arange(len(owner)) - starts[owner]
 
 
 def _shares(counts: IndexArray, most: int) -> Iterator[slice]:
-    """Yield ranges of rows whose counts come to about so many, in order."""
+    """Yield consecutive ranges of rows whose counts add up to about `most`."""
     ends = np.cumsum(counts)
     start = 0
     while start < len(counts):

@@ -72,7 +72,7 @@ def _spots(points: FloatArray) -> list[Spot]:
 
 
 def _turned(polygon: list[Spot]) -> list[Spot]:
-    """Return a polygon so that its area is not negative."""
+    """Return a polygon, reversed if its area is negative."""
     pairs = zip(polygon, polygon[1:] + polygon[:1], strict=True)
     area = sum(ax * by - ay * bx for (ax, ay), (bx, by) in pairs)
     return polygon if area >= 0 else polygon[::-1]
@@ -90,7 +90,7 @@ def _drawn(steps: list[Step]) -> list[str]:
 
 
 def _relative(spots: list[Spot]) -> str:
-    """Return the commands that go to the first spot and on from each to the next."""
+    """Return the path commands to the first spot and relatively from each spot to the next."""
     (x, y), *_ = spots
     steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(spots)]
     return f"M{x},{y}l" + " ".join(f"{dx},{dy}" for dx, dy in steps)

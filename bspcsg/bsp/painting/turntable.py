@@ -1,4 +1,4 @@
-"""Pictures one after another as an animated GIF."""
+"""Sequences of pictures as an animated GIF."""
 
 import io
 from collections.abc import Iterable
@@ -11,14 +11,14 @@ _MIN_FRAME_MILLISECONDS = 20
 
 
 def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
-    """Return the bytes of a GIF file that repeats for ever.
+    """Return the bytes of a GIF file that repeats endlessly.
 
     Parameters
     ----------
     pictures : iterable of Picture
         Of one size.
     seconds : float
-        For all of them.
+        Total duration.
 
     Raises
     ------
@@ -29,7 +29,7 @@ def gif(pictures: Iterable[Picture], seconds: float) -> bytes:
     from PIL import Image
 
     palette = frames[0].convert("RGB").quantize(255)
-    # One palette for all: a GIF with one each is larger, and flickers.
+    # Use one common palette: with one for each picture, the GIF is larger and flickers.
     flat = [
         frame.convert("RGB").quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames
     ]

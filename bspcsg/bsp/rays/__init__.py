@@ -1,1 +1,1 @@
-"""Rays: exact hits, and trees that learn from what is asked."""
+"""Rays: exact hits, and trees that adapt to the queries."""

@@ -1,4 +1,4 @@
-"""Trees of supporting hyperplanes that rays stab: self-organising, and static to compare with."""
+"""Trees of supporting hyperplanes for ray casting: self-organising ones, and static ones."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from .trace import LeafDivision, StabNodes, StabTrace, stab_nodes, stab_step
 
 @dataclass(frozen=True, eq=False)
 class Tests:
-    """First hits of rays, and what each ray cost.
+    """First hits of rays, and the cost of each ray.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ class Tests:
     leaves : (n,) int64
         Leaves among them: the stabbed leaves.
     tests : (n,) int64
-        Facets that the ray was tested against; in long lists those whose boxes it meets.
+        Facets against which the ray was tested; in long lists only those whose boxes it meets.
     """
 
     __test__ = False  # not a test class
@@ -44,7 +44,7 @@ class Tests:
 
 @dataclass(frozen=True)
 class StabStats:
-    """The size of a tree and what it has been through.
+    """The size of a tree and its counters.
 
     Parameters
     ----------
@@ -70,14 +70,14 @@ class StabStats:
 
 
 class StabTree:
-    """The common part of both kinds of trees; make an `AdaptiveTree` or a `StaticTree`."""
+    """The base class of both kinds of trees; make an `AdaptiveTree` or a `StaticTree`."""
 
     _facets: RayTargets
     _tree: RayTree
     _threshold: int | None = None
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle facets, cuts and all counters; copies are made so, too, and grow by themselves."""
+        """Pickle facets, cuts and all counters; copies use this, too, and grow independently."""
         with core_errors():
             grown = self._tree.dump()
         return _regrown, (type(self), self._facets, self.pitch, self._threshold, grown)
@@ -97,12 +97,12 @@ class StabTree:
         return self.stats().nodes
 
     def __repr__(self) -> str:
-        """Say how large the tree is."""
+        """Show the size of the tree."""
         stats = self.stats()
         return f"{type(self).__name__}({stats.nodes} nodes, {stats.fragments} fragments)"
 
     def stats(self) -> StabStats:
-        """Return the size of the tree and the counts of what it has been through."""
+        """Return the size of the tree and its counters."""
         return StabStats(**self._tree.stats())
 
     @property
@@ -112,13 +112,13 @@ class StabTree:
             return stab_nodes(self._tree.nodes())
 
     def trace(self) -> tuple[LeafDivision, ...]:
-        """Return the divisions that made the tree, in their order."""
+        """Return the divisions that made the tree, in order."""
         return self.nodes.divisions
 
     def trace_ray(self, origin: Any, direction: Any) -> StabTrace:
-        """Test one ray as `test_ray` does, and return each step of its way.
+        """Test one ray like `test_ray`, and return each step of its path.
 
-        It counts, and lets the tree grow, as every ray does.
+        Like every ray, it counts and may make the tree grow.
 
         Parameters
         ----------
@@ -157,8 +157,7 @@ class StabTree:
     def to_partition_tree(self) -> PartitionTree:
         """Return the partition tree with the same cuts, over the same facets.
 
-        A facet that is left in a leaf becomes a node of its own, as `PartitionTree` has no facets
-        in leaves.
+        A facet in a leaf becomes a node, since a `PartitionTree` has no facets in leaves.
 
         Raises
         ------
@@ -175,10 +174,10 @@ class StabTree:
         return tree.with_cuts([(-1, pieces[facet]) for facet in _pivots(self.nodes)])
 
     def test_ray(self, origins: Any, directions: Any) -> Tests:
-        """Return the first hit of each ray, in the order given, and what each ray cost.
+        """Return the first hit and the cost of each ray, in the given order.
 
-        Answers are exactly those of `RayCaster.first_hit` on the same lattice. All rays are
-        checked before the first is tested.
+        Answers equal those of `RayCaster.first_hit` on the same lattice. All rays are checked
+        before the first is tested.
 
         Parameters
         ----------
@@ -200,31 +199,30 @@ class StabTree:
 class AdaptiveTree(StabTree):
     """The augmented, self-organising BSP tree.
 
-    It starts as one preliminary leaf v with all facets in its list L(v). Each ray counts its
-    visits T(v) and, in the leaves it visits, its hits T(p). A leaf visited more than `threshold`
-    times is divided by the hyperplane of the facet with most hits (L(v) is a heap; of equal ones
-    the first of the input), the other facets being split exactly, so that what is hit often moves
-    to the top. Parts of a split facet inherit its counter.
+    It starts as one preliminary leaf v with all facets in its list L(v). Each ray increments the
+    visits T(v) of nodes and, in the leaves it visits, the hits T(p) of facets. A leaf visited more
+    than `threshold` times is divided by the hyperplane of the facet with most hits (L(v) is a heap;
+    ties go to the first of the input). The other facets are split exactly, and the parts of a split
+    facet inherit its counter. So facets that are hit often move to the top.
 
-    Objects can be shared by threads, whose rays are on their way at the same time; only to count
-    hits and to divide a leaf one waits for the other. How the tree grows depends on the order of
-    the rays; answers do not. In lists of more than 4096 facets those are tested whose boxes a ray
-    meets. Pickles and copies keep the tree as it is, with its counters, and go on growing from
-    there.
+    Threads can share an object and cast rays concurrently; they wait for each other only to count
+    hits and to divide a leaf. The growth of the tree depends on the order of rays, the answers do
+    not. In lists of more than 4096 facets, only those whose boxes a ray meets are tested. Pickles
+    and copies keep the tree with its counters, and continue to grow from there.
 
     Parameters
     ----------
     facets : array_like, Solid, or mesh
         As for `RayCaster`.
     threshold : int
-        Visits that a leaf survives, at least 0.
+        The largest number of visits of an undivided leaf, at least 0.
     pitch : int, optional
         As for `RayCaster`.
 
     Raises
     ------
     InvalidMeshError, LimitError
-        As for `RayCaster`, and for a threshold that is no count.
+        As for `RayCaster`, and for a threshold that is no natural number.
 
     Notes
     -----
@@ -254,7 +252,7 @@ class AdaptiveTree(StabTree):
 
 
 class StaticTree(StabTree):
-    """An autopartition made at once, which rays do not change.
+    """An autopartition made at once and never changed by rays.
 
     Every leaf keeps at most one facet (several only in the coplanar set of a cut), and each cut is
     the hyperplane of the first facet of the order that is left in its region.
@@ -264,9 +262,9 @@ class StaticTree(StabTree):
     facets : array_like, Solid, or mesh
         As for `RayCaster`.
     order : "given", "random", or (n,) array_like of int
-        A permutation of the facets, first cut first.
+        The order of the facets, first cut first; an array must be a permutation.
     seed : int
-        Names the random order.
+        The seed of the random order.
     pitch : int, optional
         As for `AdaptiveTree`.
     max_nodes : int
@@ -292,7 +290,7 @@ class StaticTree(StabTree):
         self._facets = facets_from(facets)
         permutation = _permutation(order, seed_number(seed), len(self._facets.corners))
         step = self._facets.pitch if pitch is None else pitch_exponent(pitch)
-        # The heap takes most hits first.
+        # The heap pops the facet with most hits first.
         hits = np.zeros(len(permutation), dtype=np.int64)
         hits[permutation] = np.arange(len(permutation), 0, -1)
         with core_errors():

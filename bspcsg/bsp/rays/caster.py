@@ -128,7 +128,7 @@ class InsideSpans:
         return (self[i] for i in range(len(self)))
 
     def lengths(self) -> FloatArray:
-        """Return how far each ray runs inside, in lengths of its direction, (n,)."""
+        """Return the total length inside for each ray, in lengths of its direction, (n,)."""
         rays = np.repeat(np.arange(len(self)), np.diff(self.offsets))
         lengths = np.zeros(len(self))
         np.add.at(lengths, rays, self.t[:, 1] - self.t[:, 0])
@@ -137,7 +137,7 @@ class InsideSpans:
 
 @dataclass(frozen=True, eq=False)
 class CasterNodes:
-    """The nodes of a `RayCaster` that rays have reached; what is deferred is not divided yet.
+    """The nodes of a `RayCaster` that rays have reached; deferred nodes are not divided yet.
 
     Parameters
     ----------
@@ -176,14 +176,13 @@ class RayCaster:
     Facets are snapped to a lattice, as those of a solid are; facets without extent there are never
     hit. A ray's origin is snapped to the same lattice; its direction is taken as it is, bit by bit
     (but components more than 2**60 times smaller than the largest are rounded to 2**-113 of it).
-    From there on every answer is exact: facets are closed sets, a ray through an edge or a vertex
-    of a closed mesh never slips through, and of several facets at one point the first of the input
-    is named. A ray in a facet's own plane meets it at the first point they have in common.
+    After that every answer is exact: facets are closed sets, a ray never slips through an edge or a
+    vertex of a closed mesh, and of several facets at one point the first of the input is reported.
+    A ray in the plane of a facet hits it at their first common point.
 
-    The hierarchy of boxes over the facets grows where rays go; its shape never shows in an answer,
-    nor does the order in which rays are cast: those that go alike go together, in bundles that
-    share their way down. Objects can be shared by threads. Answers are the same bytes for any
-    number of threads.
+    The hierarchy of boxes over the facets grows where rays go. Neither its shape nor the order of
+    rays affects an answer. Similar rays are traced in bundles that share their path down the
+    hierarchy. Threads can share an object, and answers are bitwise equal for any number of threads.
 
     Parameters
     ----------
@@ -193,7 +192,7 @@ class RayCaster:
         a bounded solid is); a *tuple* ``(vertices, faces)``; or what `Solid.from_mesh` takes. A
         mesh need not be closed, but for `intervals`.
     pitch : int, optional
-        The lattice step is ``10**pitch`` units; by default the solid's, or what the size asks for.
+        The lattice step is ``10**pitch`` units; by default the solid's, or one that suits the size.
     deferred : bool
         True to divide boxes when rays first reach them, rather than all at once now.
 
@@ -239,14 +238,14 @@ class RayCaster:
     def refitted(self, facets: Any) -> Self:
         """Return a caster of the facets after they have moved.
 
-        It has the same lattice and the same hierarchy, whose boxes are made to fit, which takes a
-        fraction of what growing one takes. Answers are those of a new caster; they come slower the
-        more neighbours have parted. This caster stays as it is.
+        It has the same lattice and the same hierarchy with refitted boxes, which is much faster
+        than growing a new one. Answers equal those of a new caster, but get slower the farther
+        neighbours have moved apart. This caster does not change.
 
         Parameters
         ----------
         facets : array_like, Solid, or mesh
-            As many facets as there are, in the same order.
+            The same number of facets, in the same order.
 
         Raises
         ------
@@ -290,7 +289,7 @@ class RayCaster:
         return self
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle facets and lattice; the tree, which never shows, grows again."""
+        """Pickle facets and lattice; the tree grows again, which does not affect answers."""
         return _restored, (type(self), self._facets, self.pitch)
 
     @property
@@ -308,7 +307,7 @@ class RayCaster:
         return len(self._facets.corners)
 
     def __repr__(self) -> str:
-        """Say what is in the scene."""
+        """Show the content of the scene."""
         name = ("points", "segments", "triangles")[self.dimension - 1]
         return f"RayCaster({len(self)} {name})"
 
@@ -318,9 +317,9 @@ class RayCaster:
         Parameters
         ----------
         origins, directions : (n, d) or (d,) array_like of float
-            In model units; one of them may be one for all rays. Directions need no unit length.
+            In model units; either may be a single one for all rays. Directions may have any length.
         threads : int
-            0 for as many as there are processors.
+            The number of threads; 0 for the number of processors.
 
         Raises
         ------
@@ -356,11 +355,10 @@ class RayCaster:
         origins, directions, threads
             As for `first_hit`, as are the errors.
         merge : bool
-            The fate of a point on several facets, as on the edge that two of them share. By
-            default it appears once for each of them, in the order of the input; with ``merge=True``
-            once, with the first of the input, as for `first_hit`. Whether points are the same is
-            decided exactly. A point where a ray only touches a boundary is one, too: where it
-            crosses says `intervals`.
+            Whether to merge hits of several facets at one point, as on a common edge. By default
+            the point appears once for each facet, in input order; with ``merge=True`` once, with
+            the first facet of the input, as for `first_hit`. Points are compared exactly. Points
+            where a ray only touches a boundary are included; `intervals` returns crossings.
         """
         first, second = ray_arrays(origins, directions, self.dimension)
         count, merges = thread_count(threads), truth_value(merge, "merge")
@@ -379,20 +377,20 @@ class RayCaster:
     ) -> InsideSpans:
         """Return the stretches of each ray (t ≥ 0) inside the boundary that the facets make.
 
-        The facets must bound: a closed mesh, closed outlines with their inside to the left, or an
-        even number of points, between which inside and outside alternate. That is decided exactly,
-        on the lattice, when this is first asked. Winding numbers are counted from the far end of
-        the ray, where they are 0, or 1 for a solid whose complement is bounded. Every ray is taken
-        at an infinitesimal shift (ε, ε², ε³), so that edges and vertices need no exception, and a
-        ray that runs within a facet is inside there if the points beside it in that direction are.
-        Stretches of length zero do not appear, and those that touch are one.
+        The facets must be a closed mesh, closed outlines with their inside to the left, or an even
+        number of points, between which inside and outside alternate. This is checked exactly, on
+        the lattice, in the first call. Winding numbers are counted from the far end of the ray,
+        where they are 0, or 1 for a solid whose complement is bounded. Every ray is shifted by an
+        infinitesimal vector (ε, ε², ε³), so edges and vertices are no special cases; a ray within a
+        facet is inside there if the points beside it in that direction are. Stretches of length
+        zero are omitted, and stretches that touch are joined.
 
         Parameters
         ----------
         origins, directions, threads
             As for `first_hit`, as are the errors.
         winding : {"positive", "nonzero", "even-odd"}
-            The winding numbers that are inside; points on the line are always even-odd.
+            The rule for winding numbers that are inside; points on the line always use even-odd.
 
         Raises
         ------
@@ -420,9 +418,9 @@ class RayCaster:
     ) -> np.ndarray[Any, np.dtype[np.bool_]]:
         """Return whether a facet lies strictly between each origin and its target, (n,) bool.
 
-        The ends do not count, so that a test from a facet's vertex to another is not blocked by
-        the facets at the two. Facets that the way runs along do block it. They block from both
-        sides and need not close: whether the way is free does not depend on an inside.
+        The ends do not count, so facets at two vertices do not block the segment between them.
+        Facets that contain a part of the segment do block it. Facets block from both sides and need
+        not be closed.
 
         Parameters
         ----------
@@ -432,8 +430,8 @@ class RayCaster:
         directions : (n, d) or (d,) array_like of float
             Instead of targets.
         max_t : float or (n,) array_like of float
-            With directions only, of which hits with ``0 < t < max_t`` count, `t` as `first_hit`
-            rounds it.
+            Only with directions: hits with ``0 < t < max_t`` count, with `t` rounded as in
+            `first_hit`.
         threads : int
 
         Raises
@@ -447,7 +445,9 @@ class RayCaster:
         if targets is not None:
             first, second = ray_arrays(origins, targets, self.dimension, ("Origins", "Targets"))
             if not np.isposinf(_limits(max_t, len(first))).all():
-                raise invalid_parameter("max_t goes with directions; targets are where a way ends.")
+                raise invalid_parameter(
+                    "max_t needs directions; with targets, each ray ends at its target."
+                )
             with core_errors():
                 return self._scene.hidden(first.ravel(), second.ravel(), thread_count(threads))
         first, second = ray_arrays(origins, directions, self.dimension)
@@ -460,7 +460,7 @@ class RayCaster:
         return self._facets.normals()
 
     def _hits(self, *columns: Any) -> Hits:
-        # For a few hits normals of all facets are not made.
+        # For a few hits, do not compute the normals of all facets.
         many = len(columns[0]) >= len(self._facets.corners)
         return hits_of(self._facets, columns, self._normals if many else None)
 
@@ -488,7 +488,7 @@ def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None)
 
 
 def _taken(rows: Any, index: IndexArray) -> Any:
-    """Return the rows at an index, anything at -1."""
+    """Return the rows at indices, arbitrary ones for -1."""
     return rows[index] if len(rows) else np.zeros((len(index), *rows.shape[1:]), rows.dtype)
 
 

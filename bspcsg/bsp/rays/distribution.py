@@ -1,8 +1,8 @@
-"""Trees for a given distribution of rays: most likely hit facets first.
+"""Trees for a given distribution of rays, with the facets most likely hit at the top.
 
-The score of a facet p for rays l with the density ω is
-``score(p) = ∫ ω(l) · |n · l_d| · area(p) / area(S) dl``, the integral being a sum over a sample
-(lecture notes, "Distribution optimized BSP").
+The score of a facet p for rays l with the density ω is ``score(p) = ∫ ω(l) · |n · l_d| · area(p) /
+area(S) dl``; the integral is computed as a sum over a sample (lecture notes, "Distribution
+optimized BSP").
 """
 
 from collections.abc import Callable
@@ -43,8 +43,8 @@ def scores(
     weights : (k,) array_like of float, optional
         ω of each ray, at least 0; by default every ray counts 1/k.
     density : callable, optional
-        Instead of weights: ``density(origins, directions)`` returns ω of each ray of the sample,
-        which then stands for rays drawn uniformly, so that each counts ω/k.
+        Used instead of weights: ``density(origins, directions)`` returns ω of each ray of the
+        sample. The sample must then be drawn uniformly; each ray counts ω/k.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def _scores(
 
 
 def _unit(directions: FloatArray) -> FloatArray:
-    # Scaling first keeps lengths of very long and very short directions within doubles.
+    # Scaling first avoids overflow and underflow of very long and short directions.
     largest = np.abs(directions).max(axis=1, keepdims=True, initial=0)
     bad = np.flatnonzero(~(np.isfinite(largest) & (largest > 0))[:, 0])
     if len(bad):

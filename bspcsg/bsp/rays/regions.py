@@ -1,4 +1,4 @@
-"""The regions of trees that rays stab."""
+"""The regions of nodes of adaptive and static trees."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from .trace import StabNodes
 def region_of(
     nodes: StabNodes, node: int, corners: FloatArray, pitch: int, margin: float
 ) -> RegionShape:
-    """Return R(v) within the box of the facets, grown by a margin in model units.
+    """Return R(v) inside the box of the facets, enlarged by a margin in model units.
 
     Without facets the box is the origin.
 
@@ -38,7 +38,7 @@ def region_of(
 
 
 def _way(nodes: StabNodes, node: int) -> list[tuple[int, int]]:
-    """Return the nodes above, from the root down, with the side of each that leads on."""
+    """Return the ancestors, from the root down, each with the side that leads to the node."""
     if at_least(0, node, "node") >= len(nodes):
         raise invalid_parameter(f"There are {len(nodes)} nodes, none is number {shown(node)}.")
     parents = {}

@@ -1,4 +1,4 @@
-"""The targets of rays: points, segments or triangles out of whatever holds them."""
+"""The targets of rays: points, segments or triangles from any object that holds them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -26,7 +26,7 @@ class RayTargets:
     pitch : int or None
         The solid's lattice, if they are a solid's.
     unbounded : bool
-        True if they bound a set that reaches to infinity on all sides.
+        True if they bound a set that is unbounded on all sides.
     """
 
     corners: FloatArray
@@ -45,7 +45,7 @@ class RayTargets:
         Parameters
         ----------
         facets : slice or (n,) int64
-            Their facets; by default all.
+            The facets; by default all.
         """
         corners = self.corners[facets]
         edges = corners[:, 1:] - corners[:, :1]
@@ -70,7 +70,7 @@ class RayTargets:
 
 
 def facets_from(given: Any) -> RayTargets:
-    """Return the facets of an array, a solid, or whatever holds a mesh.
+    """Return the facets of an array, a solid, or any object that holds a mesh.
 
     Parameters
     ----------
@@ -82,9 +82,9 @@ def facets_from(given: Any) -> RayTargets:
     Raises
     ------
     InvalidMeshError
-        If nothing of the kind is found, or an index is out of range.
+        If the object has no such facets, or an index is out of range.
     UnboundedError
-        If a solid and its complement both reach to infinity, so that its boundary does, too.
+        If a solid and its complement are both unbounded, so that the boundary is, too.
     """
     if isinstance(given, Solid):
         return _boundary_of(given)
@@ -100,7 +100,7 @@ def facets_from(given: Any) -> RayTargets:
 
 @uncounted
 def _boundary_of(solid: Solid) -> RayTargets:
-    """Return the finite boundary of a solid, or that of its complement turned over."""
+    """Return the boundary of a bounded solid, or the reversed one of a bounded complement."""
     reduced = solid.normalized()
     outside = reduced if reduced.is_bounded else (~solid).normalized()
     unbounded = outside is not reduced and outside.is_bounded
@@ -122,7 +122,7 @@ def _corner_array(given: Any) -> FloatArray:
 
 
 def vectors(given: Any, dimension: int, name: str) -> FloatArray:
-    """Return (n, d) float64 of points or directions; one alone becomes the only row.
+    """Return points or directions as (n, d) float64; a single one becomes one row.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def ray_arrays(
     Raises
     ------
     InvalidMeshError
-        If the shapes are others, or neither is one for all.
+        If the shapes are wrong, or the counts differ and neither is 1.
     """
     first, second = vectors(origins, dimension, names[0]), vectors(heads, dimension, names[1])
     if len(first) != len(second) and 1 not in (len(first), len(second)):

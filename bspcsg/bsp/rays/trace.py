@@ -1,4 +1,4 @@
-"""The work of a ray on a tree that counts, step by step, and the tree after it."""
+"""Step-by-step traces of rays on counting trees, and snapshots of the trees."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class StabStep:
-    """A step of a ray through a tree that counts.
+    """A step of a ray through a counting tree.
 
     Parameters
     ----------
@@ -27,10 +27,11 @@ class StabStep:
     facet : int or None
         The facet that is tested or hit, or whose hyperplane divides the leaf.
     count : int
-        T(v) after a visit; 1 or 0 for a test that hits or not; T(p) after a hit; of a division the
-        number of the new leaf on the minus side, that on the plus side being the next.
+        T(v) after a visit; 1 or 0 for a test that hits or misses; T(p) after a hit; for a division,
+        the number of the new leaf on the minus side (the leaf on the plus side has the next
+        number).
     coplanar, minus, plus : tuple of int
-        Of a division: the facets in the cut, and L(v) of the two new leaves.
+        For a division: the facets in the cut, and L(v) of the two new leaves.
     """
 
     kind: Literal["visit", "leaf", "test", "count", "divide"]
@@ -44,7 +45,7 @@ class StabStep:
 
 @dataclass(frozen=True, eq=False)
 class StabTrace:
-    """The way of one ray through an `AdaptiveTree` or a `StaticTree`.
+    """The path of one ray through an `AdaptiveTree` or a `StaticTree`.
 
     Parameters
     ----------
@@ -62,13 +63,13 @@ class StabTrace:
     steps: tuple[StabStep, ...]
 
     def __repr__(self) -> str:
-        """Say what the ray met and cost; `steps` shows the way."""
+        """Show the hit and the cost of the ray; `steps` has the path."""
         counts = f"{self.nodes} nodes, {self.leaves} leaves, {self.tests} tests"
         return f"StabTrace({self.hits!r}, {counts}, {len(self.steps)} steps)"
 
 
 def stab_step(row: "_StabRow") -> StabStep:
-    """Return a step of the core's row."""
+    """Return the step of a row of the core."""
     kind, node, facet, count, lists = row
     parts = [tuple(part) for part in lists or ((), (), ())]
     return StabStep(kind, node, None if facet < 0 else facet, count, *parts)
@@ -76,16 +77,16 @@ def stab_step(row: "_StabRow") -> StabStep:
 
 @dataclass(frozen=True)
 class LeafDivision:
-    """A leaf was divided.
+    """The division of a leaf.
 
     Parameters
     ----------
     node : int
-        The leaf, an inner node since then.
+        The leaf, which is an inner node since then.
     facet : int
-        The facet whose hyperplane its cut is.
+        The facet whose hyperplane is the cut.
     minus, plus : int
-        The nodes made.
+        The new nodes.
     """
 
     node: int
@@ -96,7 +97,7 @@ class LeafDivision:
 
 @dataclass(frozen=True, eq=False)
 class StabNodes:
-    """The nodes of an `AdaptiveTree` or `StaticTree` as they are now, in the order of their making.
+    """A snapshot of the nodes of an `AdaptiveTree` or `StaticTree`, in order of creation.
 
     Parameters
     ----------
@@ -109,7 +110,7 @@ class StabNodes:
     offsets : (n + 1,) int64
         Node v holds ``facets[offsets[v]:offsets[v + 1]]``.
     facets : (k,) int64
-        Of a leaf L(v), as a heap by T(p); of an inner node S(v), the facet that gave the cut first.
+        L(v) of a leaf, as a heap by T(p); S(v) of an inner node, with the facet of the cut first.
     hits : (k,) int64
         T(p) in the leaf; 0 in cuts.
     coefficients : tuple of tuple of int
@@ -148,7 +149,7 @@ class StabNodes:
 
     @property
     def divisions(self) -> tuple[LeafDivision, ...]:
-        """The divisions so far, in their order."""
+        """The divisions so far, in order."""
         inner = np.flatnonzero(self.minus >= 0)
         order = inner[np.argsort(self.minus[inner], kind="stable")]
         return tuple(
@@ -167,7 +168,7 @@ class StabNodes:
 
 
 def stab_nodes(arrays: "StabArrays") -> StabNodes:
-    """Return the nodes of the core's columns."""
+    """Return the nodes of columns of the core."""
     return StabNodes(
         visits=arrays["visits"],
         depth=arrays["depth"],

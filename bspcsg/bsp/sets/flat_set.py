@@ -1,4 +1,4 @@
-"""`FlatSet`: a set of points of the line or of the plane, which has a partition tree."""
+"""`FlatSet`: a set of points of the line or the plane that has a partition tree."""
 
 from typing import Any, Self
 
@@ -33,20 +33,20 @@ class FlatSet(TreeSet):
 
     @property
     def tree(self) -> ObjectTree:
-        """The partition tree, which shows its nodes, cells and pieces of boundary."""
+        """The partition tree, with its nodes, cells and pieces of boundary."""
         return ObjectTree._of(self._tree)
 
     # Set operations
 
     def __invert__(self) -> Self:
-        """Complement; all nodes are shared."""
+        """Complement, which shares all nodes."""
         return self._of((~self.tree)._tree)
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
-        """Return a result, its tree built anew once merging has let it grow too far.
+        """Return the result of an operation; rebuild its tree if merging made it too large.
 
-        Each doubling is paid for once, so that a chain of n operations stays near-linear in what it
-        makes.
+        The cost of rebuilding is amortised, so a chain of n operations stays near-linear in its
+        output.
         """
         merged = merge(self.tree, other.tree, op)
         base = max(_built_nodes(self), _built_nodes(other))
@@ -57,12 +57,12 @@ class FlatSet(TreeSet):
         return made
 
     def equals(self, other: "TreeSet") -> bool:
-        """Say whether both are the same set of points, exactly; so says ``==``, too.
+        """Say whether both are the same set of points, exactly; same as ``==``.
 
         Raises
         ------
         InvalidMeshError
-            If the other set has another dimension; for ``==`` the two are different then.
+            If the other set has another dimension; ``==`` then returns False.
         """
         return self.tree.equals(set_of(other).tree)
 
@@ -77,7 +77,7 @@ class FlatSet(TreeSet):
     # Questions
 
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the boundary point nearest to each point, and how far it is.
+        """Return the nearest boundary point of each point, and its distance.
 
         See `ObjectTree.nearest`.
         """
@@ -96,7 +96,7 @@ class FlatSet(TreeSet):
 
 
 def _built_nodes(operand: TreeSet) -> int:
-    """Return how many nodes a tree had when it was last built from a boundary."""
+    """Return the number of nodes of a tree when it was last built from a boundary."""
     known = operand._built_size if isinstance(operand, FlatSet) else 0
     return known or operand.tree.stats()["nodes"]
 

@@ -23,21 +23,21 @@ from .flat_set import FlatSet
 class Intervals(FlatSet):
     """A union of intervals on the line.
 
-    Ends belong to the boundary, so that intervals that touch are one and single points are nothing
-    (regularised sets). Coordinates are snapped to the lattice of step ``10**pitch``. ``==``,
-    ``<=``, ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
+    Sets are regularised: ends belong to the boundary, intervals that touch are joined, and single
+    points vanish. Coordinates are snapped to the lattice of step ``10**pitch``. ``==``, ``<=``,
+    ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`.
 
     Parameters
     ----------
     pairs : (n, 2) array_like of float
-        Lower and upper ends, in any order of intervals; may overlap, may be infinite. None of them
-        makes the empty set.
+        Lower and upper ends of intervals in any order, which may overlap or be infinite. Without
+        intervals the set is empty.
     pitch : int, optional
 
     Raises
     ------
     InvalidMeshError
-        If an end is NaN or an interval ends before it begins or where it begins.
+        If an end is NaN, or an upper end is not above its lower end.
     LimitError
         If the ends do not fit on the lattice.
 
@@ -88,7 +88,7 @@ class Intervals(FlatSet):
         return ends.reshape(-1, 2)
 
     def _holds_lowest(self) -> bool:
-        """Say whether the set reaches to minus infinity."""
+        """Say whether the set is unbounded below."""
         nodes = self.tree.nodes
         at = 0
         while at >= 0:
@@ -98,7 +98,7 @@ class Intervals(FlatSet):
 
     @property
     def length(self) -> float:
-        """Total length, rounded once; `measure` is the exact one.
+        """Total length, rounded once; `measure` is exact.
 
         Raises
         ------
@@ -109,13 +109,13 @@ class Intervals(FlatSet):
 
     @property
     def centroid(self) -> float:
-        """Middle of the length; NaN for the empty set."""
+        """Centre of mass; NaN for the empty set."""
         if self.measure == 0:
             return float("nan")
         step = Fraction(10) ** self.pitch
         ends = [[round(Fraction(end) / step) for end in pair] for pair in self.pairs.tolist()]
         total = sum(b - a for a, b in ends)
-        # Beyond 2^52 steps doubles do not tell all ends apart.
+        # Beyond 2^52 steps doubles cannot distinguish all ends.
         middle = Fraction(sum(b * b - a * a for a, b in ends), 2 * total) if total else ends[0][0]
         return float(middle * step)
 
@@ -147,18 +147,18 @@ class Intervals(FlatSet):
             return self._placed(np.sort(self.pairs * by, axis=1))
 
     def _placed(self, pairs: FloatArray) -> "Intervals":
-        """Return intervals that these became, on their own lattice or a finer one if that holds."""
+        """Return moved intervals, on this set's lattice, or another one that suits them."""
         if np.isinf(pairs).sum() > np.isinf(self.pairs).sum():
-            raise LimitError("The moved set lies beyond all doubles.", "too_large")
+            raise LimitError("The moved set lies outside the range of doubles.", "too_large")
         suited = chosen_pitch(None, pairs[np.isfinite(pairs)][:, None])
-        # Far out two ends may be one double: nothing lies between them there.
+        # Far from 0, two ends may round to one double: the interval vanishes.
         there = pairs[pairs[:, 0] < pairs[:, 1]]
         with suppress(LimitError):
             return type(self)(there, pitch=min(self.pitch, suited))
         return type(self)(there, pitch=suited)
 
     def __repr__(self) -> str:
-        """Show the intervals, as long as they are few."""
+        """Show the intervals, unless there are many."""
         pairs = self.pairs.tolist()
         shown = [f"({low:.12g}, {high:.12g})" for low, high in pairs[:6]]
         if len(pairs) > 6:
@@ -177,7 +177,7 @@ def _pairs(pairs: Any) -> FloatArray:
     wrong = np.flatnonzero(~(array[:, 0] < array[:, 1]))
     if len(wrong):
         low, high = array[wrong[0]]
-        message = f"Interval {wrong[0]} from {low:g} to {high:g} does not begin before it ends."
+        message = f"Interval {wrong[0]} must begin before it ends, but is from {low:g} to {high:g}."
         raise invalid_parameter(message, wrong.tolist())
     return array
 

@@ -1,4 +1,4 @@
-"""Closed outlines in the plane: reading, nesting, moving."""
+"""Closed outlines in the plane: input, nesting, transforms."""
 
 import math
 from dataclasses import dataclass
@@ -19,10 +19,10 @@ class Outline:
     Parameters
     ----------
     points : (n, 2) float64
-        The corners, from the one smallest in x, then y; read-only.
+        The corners, starting with the one smallest in x, then y; read-only.
     parent : int
-        The number of the outline around this one, that of the region for a hole, that of the hole
-        for an island; -1 outermost.
+        The number of the enclosing outline: that of the region for a hole, that of the hole for an
+        island; -1 if there is none.
     """
 
     points: FloatArray
@@ -32,7 +32,7 @@ class Outline:
     def is_hole(self) -> bool:
         """True if the loop runs clockwise."""
         before, at, after = self.points[-1], self.points[0], self.points[1]
-        # The first corner is convex, so that its turn is the loop's.
+        # The first corner is convex, so its turn gives the orientation of the loop.
         (ax, ay), (bx, by) = at - before, after - at
         return bool(ax * by - ay * bx < 0)
 
@@ -49,7 +49,7 @@ class Outline:
 
 
 def closed_loops(outlines: Any) -> list[FloatArray]:
-    """Return the outlines as (n, 2) float64 arrays, in the order and orientation given.
+    """Return the outlines as (n, 2) float64 arrays, in the given order and orientation.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def loop_segments(loops: list[FloatArray]) -> FloatArray:
 
 
 def moved_points(factor: transform.Factor, points: FloatArray) -> FloatArray:
-    """Return (n, 2) points moved by an affine map, turned round if it mirrors."""
+    """Return (n, 2) points moved by an affine map, in reverse order if it mirrors."""
     space = np.column_stack([points, np.zeros(len(points))])
     moved = transform.apply(factor.matrix, space)[:, :2]
     return moved[::-1] if transform.determinant_sign(factor.matrix) < 0 else moved

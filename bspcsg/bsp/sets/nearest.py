@@ -13,7 +13,7 @@ _PAIRS_PER_BATCH = 1 << 20
 
 
 def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
-    """Return the point of any of (n, 2, d) segments that is nearest to each of (k, d) points."""
+    """Return the nearest point on (n, 2, d) segments for each of (k, d) points."""
     start = segments[:, 0]
     along = segments[:, 1] - start
     squared = (along**2).sum(axis=1)
@@ -27,7 +27,7 @@ def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
 
 
 def nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
-    """Return the point of any convex polygon in space that is nearest to each of (k, 3) points."""
+    """Return the nearest point on convex polygons in space for each of (k, 3) points."""
     triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
 
     def candidates(block: FloatArray) -> FloatArray:

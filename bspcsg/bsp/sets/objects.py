@@ -1,8 +1,8 @@
 """`ObjectTree`: a set of points as a partition tree with in and out leaves, in any dimension.
 
-The same tree stands for a set on the line, in the plane and in space: its inner nodes divide a
-convex region by a hyperplane, its leaves are in or out. Set operations merge two trees; nothing is
-rounded after the coordinates have been snapped to the lattice of step ``10**pitch``.
+Trees represent sets on the line, in the plane and in space alike: inner nodes divide a convex
+region by a hyperplane, leaves are in or out. Set operations merge two trees; nothing is rounded
+after the coordinates are snapped to the lattice of step ``10**pitch``.
 
 Sources: Thibault, Naylor 1987; Naylor, Amanatides, Thibault 1990.
 """
@@ -41,26 +41,26 @@ Set = TypeVar("Set", bound=TreeSet)
 class ObjectTree(TreeQueries):
     """A set of points as a partition tree; an immutable value.
 
-    ``==``, ``<=``, ``<``, ``in`` and the like are those of Python's sets, for the points: two trees
-    are equal if they stand for the same set, however they divide it. They are exact.
+    ``==``, ``<=``, ``<``, ``in`` and the like compare sets of points exactly, like those of
+    Python's sets: two trees are equal if they represent the same set, however they divide it.
 
     Parameters
     ----------
     facets : array_like
         The closed boundary: (n, 2) interval ends (1D); (n, 2, 2) segments with the inside on their
         left (2D); (n, 3, 3) triangles counterclockwise seen from outside (3D). They may cross,
-        overlap and repeat: inside is where the winding number satisfies the rule.
+        overlap and repeat: a point is inside if its winding number satisfies the rule.
     winding : {"positive", "nonzero", "even-odd"}
     pitch : int, optional
-        The lattice step is ``10**pitch`` units; by default -9, or what the size asks for.
+        The lattice step is ``10**pitch`` units; by default -9, or another if the size requires it.
     policy : {"balanced", "random", "first", "fewest-splits"}
         The rule that divides the tree. Only "balanced" keeps convex outlines from becoming chains;
         the others are autopartitions.
     seed : int
         For the random order.
     cuts : sequence of (normal, offset)
-        Hyperplanes to be cut along first, in this order, wherever facets lie: a partition that is
-        there before the boundary.
+        Hyperplanes to cut along first, in this order and regardless of facets: a partition above
+        that of the boundary.
 
     Raises
     ------
@@ -121,9 +121,10 @@ class ObjectTree(TreeQueries):
 
     @classmethod
     def from_mesh(cls, mesh: Any, **options: Any) -> Self:
-        """Return the set inside a closed mesh, or whatever holds one (see `Solid.from_mesh`).
+        """Return the set inside a closed mesh, given in any form (see `Solid.from_mesh`).
 
-        An autopartition in space grows with the square of the faces: meant for small meshes.
+        Meant for small meshes: an autopartition in space grows with the square of the number of
+        faces.
 
         Raises
         ------
@@ -137,10 +138,10 @@ class ObjectTree(TreeQueries):
     def half_space(cls, normal: Any, offset: Scalar = 0.0, *, pitch: int | None = None) -> Self:
         """Return the minus side of a hyperplane: all points x with ``normal . x <= offset``.
 
-        The numbers count as the decimals they are written as. A hyperplane that holds lattice
-        points is this very one; others are moved to the nearest of their direction that does, at
-        most half a step, as coordinates are. The same goes for all hyperplanes given to trees.
-        (Normals of more than 62 bits in the plane, or 106 in space, are rounded to 61.)
+        The numbers count as the decimals they are written as. A hyperplane that contains lattice
+        points is exact; others are moved, by at most half a step, to the nearest parallel one that
+        does. The same holds for all hyperplanes given to trees. (Normals of more than 62 bits in
+        the plane, or 106 in space, are rounded to 61.)
 
         Parameters
         ----------
@@ -157,7 +158,7 @@ class ObjectTree(TreeQueries):
 
     @classmethod
     def uniform(cls, dimension: int, *, full: bool, pitch: int = -9) -> Self:
-        """Return the empty set, or everything, in 1, 2 or 3 dimensions."""
+        """Return the empty set or the whole space, in 1, 2 or 3 dimensions."""
         count, step = dimension_number(dimension), pitch_exponent(pitch)
         with core_errors():
             return cls._of(CoreTree.uniform(count, truth_value(full, "full"), step))
@@ -165,7 +166,7 @@ class ObjectTree(TreeQueries):
     # Set operations
 
     def __invert__(self) -> Self:
-        """Complement; all nodes are shared."""
+        """Complement, which shares all nodes."""
         return self._of(self._tree.complement())
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
@@ -180,7 +181,7 @@ class ObjectTree(TreeQueries):
                 f"A set of dimension {self.dimension} cannot be combined with one of dimension"
                 f" {other.dimension}."
             )
-        # Nothing and everything live on any lattice.
+        # The empty set and the whole space fit on any lattice.
         pitches = [s.pitch for s in (self, other.tree) if not (s.is_empty or s.is_full)]
         pitch = min(pitches, default=self.pitch)
         return self._refined(pitch), other.tree._refined(pitch)
@@ -192,7 +193,7 @@ class ObjectTree(TreeQueries):
             return self._tree.refined(pitch)
 
     def trace_merge(self, other: TreeSet, op: SetOp) -> MergeTrace:
-        """Return a set operation step by step: pairs of nodes, cases, what was shared or dropped.
+        """Return the trace of a set operation: pairs of nodes, cases, shared and dropped nodes.
 
         Parameters
         ----------
@@ -204,7 +205,7 @@ class ObjectTree(TreeQueries):
         -----
         The nodes of the trace are those of ``trace.first`` and ``trace.second``, which are the
         operands on one lattice. Results of set operations on regions have a tree of their boundary;
-        ``trace.result`` is what merging leaves.
+        ``trace.result`` is the merged tree itself.
         """
         word(SET_OPS, op, "op")
         a, b = self._aligned(set_of(other))
@@ -213,12 +214,12 @@ class ObjectTree(TreeQueries):
         return merge_trace(self._of(a), self._of(b), self._of(result), op, rows)
 
     def equals(self, other: TreeSet) -> bool:
-        """Say whether both are the same set of points, exactly; so says ``==``, too.
+        """Say whether both are the same set of points, exactly; same as ``==``.
 
         Raises
         ------
         InvalidMeshError
-            If the other set has another dimension; for ``==`` the two are different then.
+            If the other set has another dimension; ``==`` then returns False.
         """
         tree = set_of(other).tree
         try:
@@ -235,15 +236,15 @@ class ObjectTree(TreeQueries):
         if self.is_bounded:
             return self.dimension, self.measure
         outside = ~self
-        # Where both are unbounded, nothing that is cheap tells sets apart.
+        # If both are unbounded, no cheap test can distinguish sets.
         return self.dimension, -outside.measure - 1 if outside.is_bounded else None
 
     # Division by a hyperplane
 
     def partitioned(self, normal: Any, offset: Scalar = 0.0) -> Self:
-        """Return the same set as a tree whose root is cut by this hyperplane.
+        """Return the same set as a tree with this hyperplane as the root's cut.
 
-        A leaf, whose halves would be equal, stays one.
+        A leaf stays a leaf, since its halves would be equal.
         """
         row = self._row(normal, offset)
         with core_errors():
@@ -252,7 +253,7 @@ class ObjectTree(TreeQueries):
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
         """Return the parts on the minus and on the plus side of a hyperplane, as sets.
 
-        What is bounded lies on one side of a hyperplane beyond the lattice.
+        A bounded set lies on one side of a hyperplane beyond the lattice.
         """
         is_above = hyperplane(normal, offset, self.dimension).is_above_lattice(self.pitch)
         if is_above is not None and self.is_bounded:
@@ -264,15 +265,16 @@ class ObjectTree(TreeQueries):
         return self._of(minus), self._of(plus)
 
     def split_case(self, normal: Any, offset: Scalar = 0.0) -> SplitCase:
-        """Say how the root and a splitting hyperplane lie to each other.
+        """Return the relative position of the root's cut and a splitting hyperplane.
 
         Returns
         -------
         str
-            "leaf": the root is one. "same", "opposite": the hyperplane is the root's own, with
-            equal or exchanged sides. "crossing": each cuts the other. Else two sides: that of the
-            root's cut on which the hyperplane's part lies, then that of the hyperplane on which the
-            root's sub-hyperplane lies: "minus-minus", "minus-plus", "plus-minus" or "plus-plus".
+            "leaf": the root is a leaf. "same", "opposite": the hyperplane is the root's own, with
+            equal or exchanged sides. "crossing": each cuts the other. Otherwise two sides: the side
+            of the root's cut on which the hyperplane's part lies, then the side of the hyperplane
+            on which the root's sub-hyperplane lies: "minus-minus", "minus-plus", "plus-minus" or
+            "plus-plus".
 
         Notes
         -----
@@ -288,7 +290,7 @@ class ObjectTree(TreeQueries):
     def condensed(self) -> Self:
         """Return the same set as a balanced tree of its own boundary (1D and 2D).
 
-        Merging leaves cuts in the tree that the result no longer needs. In space the tree itself is
+        After merging, a tree has cuts that the result does not need. In space the tree itself is
         returned.
         """
         with core_errors():
@@ -297,7 +299,7 @@ class ObjectTree(TreeQueries):
     # As a value
 
     def __repr__(self) -> str:
-        """Say what kind of tree it is."""
+        """Show the kind of tree."""
         if self.is_empty or self.is_full:
             what = "empty" if self.is_empty else "full"
         else:
@@ -306,7 +308,7 @@ class ObjectTree(TreeQueries):
         return f"{type(self).__name__}({self.dimension}D, {what})"
 
     def __reduce__(self) -> tuple[Any, tuple[type["ObjectTree"], bytes]]:
-        """Pickle the nodes, exactly; which input facets lie in them is not kept."""
+        """Pickle the nodes exactly, without the input facets that lie in them."""
         return _restored, (type(self), self._tree.dump())
 
 
@@ -320,9 +322,9 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
 
     Notes
     -----
-    Naylor, Amanatides, Thibault 1990, section 3. Nodes of `a` come before those of `b`. Regions
-    combine as by their operators, which may sweep over boundaries instead; for them
-    ``merge(a.tree, b.tree, op)`` merges.
+    Naylor, Amanatides, Thibault 1990, section 3. Nodes of `a` come before those of `b`. Regions are
+    combined by their operators, which may sweep over boundaries instead; use ``merge(a.tree,
+    b.tree, op)`` to merge their trees.
     """
     word(SET_OPS, op, "op")
     set_of(a, "a")

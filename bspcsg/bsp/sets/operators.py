@@ -1,4 +1,4 @@
-"""`SetOperators`: the signs of set operations, for sets that hold another set."""
+"""`SetOperators`: operators of set operations, for sets that wrap another set."""
 
 import operator
 from abc import ABC, abstractmethod
@@ -7,7 +7,7 @@ from typing import Any, Self
 
 
 class SetOperators(ABC):
-    """A set whose operations are those of the set that it holds."""
+    """A set with the operations of the set that it wraps."""
 
     __slots__ = ()
 

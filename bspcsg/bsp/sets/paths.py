@@ -1,4 +1,4 @@
-"""Connected paths that bound a region of the plane, also from infinity and to infinity."""
+"""Connected paths that bound a region of the plane, possibly from and to infinity."""
 
 import math
 from dataclasses import dataclass
@@ -25,8 +25,8 @@ class BoundaryPath:
     Parameters
     ----------
     points : (n, 2) float64
-        The corners in order, rounded. A straight line has none: its one point is the nearest to the
-        origin.
+        The corners in order, rounded. A straight line has no corners: its single point is the one
+        nearest to the origin.
     start : (2,) float64 or None
         The direction of length 1 in which the path comes from infinity; None if it is closed.
     end : (2,) float64 or None
@@ -61,12 +61,13 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
     Returns
     -------
     tuple of BoundaryPath
-        None for the empty set and the plane. Closed ones are the region's outlines. Paths touch
-        each other and themselves in corners at most.
+        No paths for the empty set and the plane. Closed paths are the region's outlines. Paths
+        touch each other and themselves only in corners.
 
     Notes
     -----
-    Beyond the lattice is infinity: what leaves its largest square goes on straight.
+    The border of the lattice stands for infinity: paths that leave its largest square continue
+    straight.
 
     Examples
     --------
@@ -87,7 +88,7 @@ def boundary_paths(region: Region) -> tuple[BoundaryPath, ...]:
 
 
 def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
-    """Return what is left of a loop without its edges along the border of a square."""
+    """Return the paths that remain of a loop without its edges along the border of a square."""
     ends = [_along(a, b, border) for a, b in zip(loop, [*loop[1:], loop[0]], strict=True)]
     if not any(ends):
         return [BoundaryPath(_rounded(loop))]

@@ -1,4 +1,4 @@
-"""The visible parts of a partition tree: pieces, nodes, and the names of its cases."""
+"""The public parts of a partition tree: pieces, nodes, and the names of cases."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, TypeAlias

@@ -20,7 +20,7 @@ from .tree_set import TreeSet
 
 
 class PlaneQueries(FlatSet):
-    """A set of the plane, as its questions see it."""
+    """A set of the plane with queries."""
 
     __slots__ = ("_outlines",)
 
@@ -31,7 +31,7 @@ class PlaneQueries(FlatSet):
     # Set operations
 
     def _merged(self, other: TreeSet, op: SetOp) -> Self:
-        """Return a result by whatever is faster: a sweep over the boundaries, or merged trees."""
+        """Return a result by the faster method: a sweep over the boundaries, or merged trees."""
         try:
             a, b = self.tree._aligned(other)
         except LimitError:
@@ -43,10 +43,10 @@ class PlaneQueries(FlatSet):
 
     @property
     def outlines(self) -> tuple[Outline, ...]:
-        """Simple closed loops: outer ones counterclockwise, holes clockwise, with their nesting.
+        """The boundary as nested simple loops: outer ones counterclockwise, holes clockwise.
 
-        Collinear edges are joined; loops touch each other in corners at most, and where one has a
-        corner on another, so has that other. They depend on the set alone.
+        Collinear edges are joined. Loops touch each other only in corners, and if a corner of one
+        lies on another, the other has a corner there, too. The loops depend only on the set.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class PlaneQueries(FlatSet):
 
     @property
     def perimeter(self) -> float:
-        """Length of the boundary in model units, which is that of the complement, too.
+        """Length of the boundary in model units, the same as that of the complement.
 
         Raises
         ------
@@ -129,7 +129,7 @@ class PlaneQueries(FlatSet):
     # Questions
 
     def cast(self, origin: Vector, direction: Vector) -> FloatArray:
-        """Return where a line runs through the inside.
+        """Return the stretches of a line inside the region.
 
         Parameters
         ----------
@@ -140,8 +140,9 @@ class PlaneQueries(FlatSet):
         -------
         (k, 2) float64
             Entry and exit of each stretch in the order of the line, as multiples t of `direction`
-            from `origin`; infinite where the region is. Stretches along the boundary do not count,
-            and one point of boundary separates two stretches. The order is exact, each t rounded.
+            from `origin`; infinite if the stretch is. Stretches along the boundary do not count,
+            and a single boundary point separates two stretches. The order is exact, each t is
+            rounded.
 
         Raises
         ------
@@ -164,7 +165,7 @@ class PlaneQueries(FlatSet):
         return (2**53 - 2) * 10.0**self.pitch
 
     def convex_parts(self) -> list[FloatArray]:
-        """Return convex polygons that make up the region: the leaves of its tree that are inside.
+        """Return the region divided into convex polygons: the inside leaves of its tree.
 
         Returns
         -------
@@ -186,9 +187,9 @@ def on_one_lattice(trees: Sequence[ObjectTree]) -> list[CoreTree]:
     Raises
     ------
     LimitError
-        If there is none.
+        If there is no such lattice.
     """
-    # Nothing and everything live on any lattice.
+    # The empty set and the plane fit on any lattice.
     pitches = {tree.pitch for tree in trees if not (tree.is_empty or tree.is_full)}
     finest, coarsest = min(pitches, default=trees[0].pitch), max(pitches, default=trees[0].pitch)
     for pitch in range(finest, coarsest):
@@ -208,9 +209,8 @@ def _on_lattice(tree: ObjectTree, pitch: int) -> CoreTree:
     step = Fraction(10) ** pitch
     if loops is None or any(Fraction(*x) % step for loop in loops for p in loop for x in p):
         message = (
-            "One region does not fit the lattice of 2^53 steps that holds the corners of another,"
-            f" and these would move on a coarser one; round them to {float(step):g}, or cut off"
-            " what is far out."
+            "One region does not fit the lattice of 2^53 steps that the corners of another need."
+            f" Round those corners to {float(step):g}, or cut off distant parts."
         )
         raise LimitError(message, "too_large")
     corners = [np.array([[n / d for n, d in point] for point in loop]) for loop in loops]

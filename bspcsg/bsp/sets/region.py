@@ -49,25 +49,25 @@ _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 class Region(PlaneQueries):
     """A polygonal set of the plane.
 
-    Inside is where the winding number of the outlines satisfies the rule; outlines may cross, touch
-    or overlap themselves and each other. The lattice is that of solids: coordinates are snapped to
-    steps of ``10**pitch``, at most 2**53 of them from the origin, and everything else is exact.
-    Points and edges without area on either side do not count (regularised sets). ``==``, ``<=``,
-    ``<``, ``in`` and the like compare sets of points, exactly, as for `Solid`. Regions combine on
-    the finest lattice of theirs, or where that does not reach far enough on the finest one that
-    does, if it holds all their corners; else they are refused with a `LimitError`.
+    A point is inside if the winding number of the outlines satisfies the rule; outlines may cross,
+    touch or overlap themselves and each other. The lattice is that of solids: coordinates are
+    snapped to steps of ``10**pitch``, at most 2**53 steps from the origin, and everything else is
+    exact. Sets are regularised: points and edges without adjacent area vanish. ``==``, ``<=``,
+    ``<``, ``in`` and the like compare sets of points exactly, as for `Solid`. Operations use the
+    finest lattice of the operands, or if it does not reach far enough, the finest one that does and
+    that holds all their corners; without one they raise a `LimitError`.
 
     Parameters
     ----------
     outlines : object
         (n, 2) points of one closed outline; a sequence of such outlines; a `Region`; a manifold3d
         cross section; or a shapely polygon, multipolygon or collection, or a list of these. With
-        the rule "positive", inside is on the left of outer outlines (counterclockwise) and holes
-        run clockwise. Rings of shapely shapes are turned so, which makes the region what any of
-        the polygons holds, also where they overlap; points and lines in collections are left out.
+        the rule "positive", outer outlines run counterclockwise, with the inside on their left, and
+        holes clockwise. Rings of shapely shapes are oriented like this, so the region is the union
+        of the polygons; points and lines in collections are ignored.
     winding : {"positive", "nonzero", "even-odd", "negative"}
     pitch : int, optional
-        By default -9, or what the size asks for.
+        By default -9, or another if the size requires it.
 
     Raises
     ------
@@ -101,7 +101,7 @@ class Region(PlaneQueries):
     def from_segments(
         cls, segments: Any, *, winding: FillRule = "positive", pitch: int | None = None
     ) -> Self:
-        """Return what oriented segments surround, (n, 2, 2), the inside on their left.
+        """Return the region enclosed by oriented segments, (n, 2, 2), the inside on their left.
 
         Raises
         ------
@@ -130,9 +130,9 @@ class Region(PlaneQueries):
     def rectangle(
         cls, width: Scalar | Vector, height: Scalar | None = None, *, center: bool = False
     ) -> Self:
-        """Return a rectangle with its lowest corner, or its middle, at the origin.
+        """Return a rectangle with its lowest corner or its middle at the origin.
 
-        Its sides are two numbers or one pair; one number alone makes a square.
+        Give its sides as two numbers or one pair; a single number makes a square.
         """
         sides = pair(width, "size") if height is None else (width, height)
         w, h = positive(sides[0], "width"), positive(sides[1], "height")
@@ -230,7 +230,7 @@ class Region(PlaneQueries):
 
     @classmethod
     def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
-        """Return what one outline surrounds, whichever way round it runs ("nonzero")."""
+        """Return the region that one outline encloses, for either orientation ("nonzero")."""
         return cls([points], winding="nonzero", pitch=pitch)
 
     @classmethod
@@ -309,7 +309,7 @@ class Region(PlaneQueries):
     def translate(
         self, *offset: Scalar | Vector, x: Scalar | None = None, y: Scalar | None = None
     ) -> "Region":
-        """Return the region moved by two numbers, one vector, or along the axes that are named.
+        """Return the region translated by two numbers, one vector, or along named axes.
 
         Exact for whole lattice steps.
 
@@ -323,7 +323,7 @@ class Region(PlaneQueries):
         return self._placed(transform.translation([*step, 0.0]))
 
     def rotate(self, angle: Scalar, *, about: Vector = (0, 0)) -> "Region":
-        """Return the region turned counterclockwise about a point, in degrees.
+        """Return the region rotated counterclockwise about a point, in degrees.
 
         Quarter turns are exact.
         """
@@ -337,7 +337,7 @@ class Region(PlaneQueries):
         y: Scalar | None = None,
         about: Vector = (0, 0),
     ) -> "Region":
-        """Return the region scaled by one factor, by two, or along the axes that are named.
+        """Return the region scaled by one factor, by two, or along named axes.
 
         The point `about` stays.
         """
@@ -383,7 +383,7 @@ class Region(PlaneQueries):
         return self._placed(transform.matrix_factor(wide))
 
     def _placed_about(self, point: Vector, factor: Factor) -> "Region":
-        """Return the image under a factor that leaves a point where it is, not the origin."""
+        """Return the image under a factor with a given fixed point instead of the origin."""
         x, y = vector2(point, "about")
         placed = self
         for one in reversed(transform.about((x, y, 0.0), (factor,))):
@@ -393,7 +393,7 @@ class Region(PlaneQueries):
     def _placed(self, factor: Factor) -> "Region":
         motion = transform.lattice_motion((factor,), self.pitch)
         if motion is not None:
-            # What leaves this lattice goes by its coordinates to a coarser one.
+            # A region that leaves this lattice is moved by coordinates to a coarser one.
             with suppress(LimitError):
                 return self._moved(list(motion.axes[:2]), list(motion.shift[:2]))
         if self.is_bounded:
@@ -402,14 +402,14 @@ class Region(PlaneQueries):
         outside = ~self
         if not outside.is_bounded:
             raise UnboundedError(
-                "This region and its complement both reach to infinity; only moves by whole lattice"
-                " steps, quarter turns and mirrors of the axes act on it.",
+                "This region and its complement both reach to infinity; such a region can only be"
+                " moved by whole lattice steps, quarter turns and mirrors of the axes.",
                 "unbounded",
             )
         return ~outside._placed(factor)
 
     def _pitch_for(self, loops: Sequence[FloatArray]) -> int | None:
-        """Return the region's own pitch if it holds these points."""
+        """Return the region's own pitch if its lattice holds these points."""
         largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
         return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
 
@@ -436,7 +436,7 @@ class Region(PlaneQueries):
         segments : int
             Sides of a full circle, for arcs, at least 3.
         miter_limit : float
-            Mitred corners that reach farther than so many times `delta` become square.
+            Mitred corners that reach farther than this multiple of `delta` become square.
 
         Raises
         ------
@@ -478,16 +478,16 @@ class Region(PlaneQueries):
         r : float
             Radius of the arcs, in model units.
         corners : function, optional
-            Is given points, (n, 2), and returns a truth value for each. By default all corners
-            where the outline bends by more than 30 degrees; others are never rounded.
+            Takes points, (n, 2), and returns a truth value for each. By default all corners where
+            the outline bends by more than 30 degrees; other corners are never rounded.
         segments : int
             Sides of a full circle, at least 4.
 
         Raises
         ------
         InvalidParameterError
-            If the edges leave no room, or new corners cross another outline; the message says
-            where.
+            If the edges have no room, or new corners cross another outline; the message names the
+            place.
         UnboundedError
             If the region and its complement both reach to infinity.
 
@@ -512,7 +512,7 @@ class Region(PlaneQueries):
         Parameters
         ----------
         size : float
-            From the corner to where the cut begins, on both edges, in model units.
+            Distance from the corner to the cut, on both edges, in model units.
         corners : function, optional
             As for `fillet`.
 

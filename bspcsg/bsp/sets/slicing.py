@@ -56,7 +56,7 @@ def _sections(
     products = [_product(direction, offset, origin) for offset in offsets]
     planes = [Hyperplane.from_numbers(direction.tolist(), product) for product in products]
     tree = solid.normalized().tree
-    # Beyond the lattice, nothing of what is bounded is cut.
+    # A plane beyond the lattice does not cut a bounded solid.
     is_met = [plane.is_above_lattice(tree.pitch) is None for plane in planes]
     if not all(is_met) and not solid.is_bounded:
         is_met = [True] * len(planes)
@@ -69,14 +69,14 @@ def _sections(
 
 
 def _region(edges: FloatArray, normal: FloatArray, pitch: int) -> Region:
-    """Return what (n, 6) edges in a plane surround."""
+    """Return the region that (n, 6) edges in a plane enclose."""
     segments = _in_plane(edges.reshape(-1, 3), normal).reshape(-1, 2, 2)
     proper = (segments[:, 0] != segments[:, 1]).any(axis=1)
     return Region.from_segments(segments[proper], pitch=pitch)
 
 
 def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fraction:
-    """Return what the normal's product with all points of the plane is."""
+    """Return the product of the normal with the points of the plane."""
     if origin is None:
         return exact_number(number(offset, "offset"))
     pairs = zip(normal.tolist(), vector3(origin, "origin").tolist(), strict=True)

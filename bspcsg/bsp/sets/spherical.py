@@ -1,8 +1,8 @@
 """Sets of directions: regions of the circle (1S) and of the sphere (2S), exactly.
 
-A great circle is where a plane through the origin cuts the sphere. So a region of the sphere is a
-set of space cut by such planes alone, and set operations are those of `ObjectTree`: in the plane
-for directions of the plane, in space for those of space.
+A great circle is the section of the sphere by a plane through the origin. So a region of the sphere
+is a set in space cut only by such planes, and set operations are those of `ObjectTree`, in the
+plane for directions of the plane, in space for directions of space.
 """
 
 import math
@@ -35,10 +35,10 @@ class SphericalRegion(SetOperators):
     """A set of directions of the plane or of space; an immutable value.
 
     Make one with `hemisphere`, `polygon`, `arc`, `empty` or `full`, and combine them with
-    ``| & - ^ ~``. Directions are points seen from the origin; they need no unit length, and their
-    numbers count as the decimals they are written as. Those that need whole numbers beyond 2**52
-    are rounded to the nearest below that, wherever they are given, so that arcs between them are
-    exact; axes are not. All decisions are exact; only sizes are rounded.
+    ``| & - ^ ~``. Directions are points seen from the origin, of any length; their numbers count as
+    the decimals they are written as. Directions that need integers beyond 2**52 are rounded to
+    smaller ones, the same everywhere, so that arcs between them are exact; axes are not rounded.
+    All decisions are exact; only sizes are rounded.
 
     Examples
     --------
@@ -82,7 +82,7 @@ class SphericalRegion(SetOperators):
         Parameters
         ----------
         corners : (k, 3) array_like of float
-            At least three directions, within a hemisphere, counterclockwise seen from outside.
+            At least three directions in a hemisphere, counterclockwise seen from outside.
 
         Raises
         ------
@@ -96,12 +96,12 @@ class SphericalRegion(SetOperators):
         if any(_dot(side, corner) < 0 for side in sides for corner in whole):
             raise invalid_parameter("The corners are not convex and counterclockwise.")
         if not any(map(any, sides)):
-            raise invalid_parameter("The corners of a polygon are not all in one direction.")
+            raise invalid_parameter("The corners of a polygon must not all have one direction.")
         return cls._inside(side for side in sides if any(side))
 
     @classmethod
     def arc(cls, start: Any, end: Any) -> Self:
-        """Return the directions of the plane from one counterclockwise to another, (2,) each."""
+        """Return the directions of the plane counterclockwise from start to end, (2,) each."""
         a, b = _snapped(start), _snapped(end)
         if len(a) != 2 or len(b) != 2:
             raise invalid_parameter("An arc goes from one direction of the plane to another.")
@@ -141,11 +141,11 @@ class SphericalRegion(SetOperators):
         return type(self), (self._cone,)
 
     def __bool__(self) -> bool:
-        """Say whether anything is in it."""
+        """Say whether the set is not empty."""
         return not self.is_empty
 
     def __repr__(self) -> str:
-        """Say how much of the circle or sphere it is."""
+        """Show the share of the circle or sphere."""
         return f"SphericalRegion({self.dimension - 1}S, {100 * self.share:.1f} %)"
 
     # Questions
@@ -171,7 +171,7 @@ class SphericalRegion(SetOperators):
         return self._cone.is_full
 
     def classify(self, directions: Any) -> SideArray:
-        """Say of each direction whether it is inside, exactly.
+        """Classify directions as inside, outside or on the boundary, exactly.
 
         Parameters
         ----------
@@ -205,8 +205,8 @@ class SphericalRegion(SetOperators):
     def pieces(self) -> list[FloatArray]:
         """Return the region in convex pieces: the corners of each as unit vectors, (k, d).
 
-        In the plane each has two ends; in space corners run counterclockwise seen from outside.
-        They are also cut where the edges of a cube about the origin are seen.
+        In the plane each piece has two ends; in space corners run counterclockwise seen from
+        outside. Pieces are also cut along the projected edges of a cube about the origin.
         """
         return [_units(piece) for piece in self._cut_cube()]
 
@@ -249,9 +249,9 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
     Parameters
     ----------
     facets : (n, 2, 2) or (n, 3, 3) array_like of float
-        Segments of the plane, or triangles of space; from both sides they hide what is behind.
+        Segments in the plane or triangles in space, opaque from both sides.
     eye : (2,) or (3,) array_like of float
-        It must not lie in a facet. One whose hyperplane it lies in hides nothing.
+        It must not lie in a facet. A facet seen edge-on hides nothing.
 
     Examples
     --------
@@ -270,7 +270,7 @@ def visible_sky(facets: Any, eye: Any) -> SphericalRegion:
         cone = _cone_of(arms)
         if cone is not None:
             hidden.append(cone)
-    # Pairs of neighbours first: so each direction is in few merges.
+    # Merge pairs of neighbours first, so that each direction takes part in few merges.
     while len(hidden) > 1:
         hidden = [
             hidden[k] | hidden[k + 1] if k + 1 < len(hidden) else hidden[k]
@@ -356,6 +356,6 @@ def _angle(piece: FloatArray) -> float:
 
 
 def _solid_angle(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
-    """Return that of a triangle of unit vectors (Van Oosterom, Strackee 1983)."""
+    """Return the solid angle of a triangle of unit vectors (Van Oosterom, Strackee 1983)."""
     top = float(np.dot(a, np.cross(b, c)))
     return 2 * math.atan2(top, 1 + float(a @ b) + float(b @ c) + float(c @ a))

@@ -34,8 +34,8 @@ _BORDER_STEPS = 2**53 - 4
 class SubHyperplane(SetOperators):
     """A part of a line in the plane, or of a plane in space; an immutable value.
 
-    The hyperplane is exact only as far as its doubles are; what lies in it is an exact set.
-    ``| & - ^ ~`` combine parts of one hyperplane.
+    The hyperplane has the precision of its doubles; the set in it is exact. ``| & - ^ ~`` combine
+    parts of one hyperplane.
 
     Parameters
     ----------
@@ -44,8 +44,9 @@ class SubHyperplane(SetOperators):
     offset : float
         Points x of the hyperplane have ``normal . x == offset``.
     part : Intervals or Region, optional
-        In the hyperplane's coordinates, which begin at its point nearest to the origin. On a line
-        they grow with the minus side on the left; for planes see `plane_frame`. By default all.
+        In the hyperplane's coordinates, whose origin is the point nearest to that of space. On a
+        line they grow with the minus side on the left; for planes see `plane_frame`. By default the
+        whole hyperplane.
 
     Raises
     ------
@@ -75,12 +76,14 @@ class SubHyperplane(SetOperators):
         try:
             self._offset = float(wanted.offset) / length
         except OverflowError as error:
-            raise LimitError("The hyperplane lies beyond all doubles.", "too_large") from error
+            raise LimitError(
+                "The hyperplane lies outside the range of doubles.", "too_large"
+            ) from error
         inner = self.dimension - 1
         whole: InnerSet = Intervals.full() if inner == 1 else Region.full()
         self._part = whole if part is None else _inner(part)
         if self._part.dimension != inner:
-            raise invalid_parameter(f"What lies in this hyperplane has dimension {inner}.")
+            raise invalid_parameter(f"part must have dimension {inner} in this hyperplane.")
 
     # Parts of sets
 
@@ -132,11 +135,11 @@ class SubHyperplane(SetOperators):
         )
         return below & above
 
-    # What it is
+    # Properties
 
     @property
     def dimension(self) -> int:
-        """That of the space around: 2 or 3."""
+        """The dimension of the enclosing space: 2 or 3."""
         return len(self._normal)
 
     @property
@@ -161,7 +164,7 @@ class SubHyperplane(SetOperators):
 
     @property
     def is_bounded(self) -> bool:
-        """True if what lies in it fits into some box."""
+        """True if the part is bounded."""
         return self._part.is_bounded
 
     @property
@@ -188,7 +191,7 @@ class SubHyperplane(SetOperators):
         return np.asarray(self._lifted(flat)[0])
 
     def pieces(self) -> list[FloatArray]:
-        """Return convex pieces that make it up, (m, d) float64.
+        """Return the part divided into convex pieces, (m, d) float64 each.
 
         Segments run with the minus side on their left; polygons are counterclockwise seen from the
         plus side.
@@ -223,7 +226,9 @@ class SubHyperplane(SetOperators):
         """
         array = point_rows(points, self.dimension)
         if self.is_empty:
-            raise invalid_parameter("Nothing lies in the hyperplane that could be near.")
+            raise invalid_parameter(
+                "This part of the hyperplane is empty, so it has no nearest point."
+            )
         flat = self._flattened(array)
         outside = self._part.classify(flat) < 0
         if outside.any():
@@ -232,7 +237,7 @@ class SubHyperplane(SetOperators):
         return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Do as `nearest` does; deprecated, for a projection is a shadow."""
+        """Call `nearest`; deprecated, since a projection is a shadow."""
         deprecated("SubHyperplane.project", "nearest")
         return self.nearest(points)
 
@@ -253,7 +258,7 @@ class SubHyperplane(SetOperators):
 
     def _facing(self, sign: float, part: Any) -> Self:
         """Return another part of this hyperplane, or of the reversed one."""
-        # A unit normal that is normalised again can be another one.
+        # Normalising a unit normal again may change it.
         made = object.__new__(type(self))
         made._normal = sign * self._normal + 0.0
         made._offset = sign * self._offset + 0.0
@@ -274,9 +279,9 @@ class SubHyperplane(SetOperators):
     # Division and motion
 
     def split(self, normal: Any, offset: Scalar = 0.0) -> tuple[Self, Self]:
-        """Return what lies on the minus and on the plus side of a hyperplane.
+        """Return the parts on the minus and the plus side of a hyperplane.
 
-        What lies in a hyperplane that coincides with this one is on neither side.
+        If the hyperplane coincides with this one, both parts are empty.
         """
         other = SubHyperplane(normal, offset)
         inner = _frame(self._normal) @ other._normal
@@ -290,7 +295,7 @@ class SubHyperplane(SetOperators):
         return self._with(minus), self._with(plus)
 
     def transform(self, matrix: Any) -> "SubHyperplane":
-        """Return the image under an affine map; what was on the minus side stays there.
+        """Return the image under an affine map, which keeps the sides.
 
         Parameters
         ----------
@@ -330,7 +335,7 @@ class SubHyperplane(SetOperators):
         return hash((*self._normal.tolist(), self._offset))
 
     def __bool__(self) -> bool:
-        """Say whether anything is in it."""
+        """Say whether the part is not empty."""
         return not self.is_empty
 
     def __repr__(self) -> str:
@@ -403,7 +408,9 @@ def _lattice_part(
     try:
         whole = SubHyperplane(normal, row[-1] / longest * step)
     except OverflowError as error:
-        raise LimitError("The hyperplane lies beyond all doubles.", "too_large") from error
+        raise LimitError(
+            "The hyperplane lies outside the range of doubles.", "too_large"
+        ) from error
     if pieces is None:
         return whole
     border = _BORDER_STEPS * step

@@ -1,4 +1,4 @@
-"""The merging of two sets: the steps of the core, node by node."""
+"""The trace of merging two sets: the steps of the core, node by node."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ Joined: TypeAlias = Literal["shared", "rebuilt", "collapsed-in", "collapsed-out"
 
 @dataclass(frozen=True)
 class MergePair:
-    """Two trees of one region are to be combined.
+    """The start of combining two trees of one region.
 
     Parameters
     ----------
@@ -54,15 +54,15 @@ class MergePair:
 
 @dataclass(frozen=True)
 class MergeSplit:
-    """A part of the second operand is split by the cut that divided the last pair.
+    """The start of splitting a part of the second operand by the cut of the last pair.
 
     Parameters
     ----------
     root : int
         Its root.
     case : str
-        The way the cut lies to it, see `ObjectTree.split_case`. In the cases of two sides the
-        subtree on the first side is split, and the root lives on in the second half.
+        The position of the cut, see `ObjectTree.split_case`. In the cases of two sides the subtree
+        on the first side is split, and the root stays in the second half.
     """
 
     root: Root
@@ -71,7 +71,7 @@ class MergeSplit:
 
 @dataclass(frozen=True)
 class MergeHalves:
-    """A part of the second operand has been split.
+    """The end of a split of a part of the second operand.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class MergeHalves:
 
 @dataclass(frozen=True)
 class MergeJoin:
-    """The results on the two sides of a node of the first operand have been joined.
+    """The join of the results on both sides of a node of the first operand.
 
     Parameters
     ----------
@@ -107,8 +107,9 @@ MergeStep: TypeAlias = MergePair | MergeSplit | MergeHalves | MergeJoin
 class MergeTrace:
     """A set operation, step by step.
 
-    After a pair that is divided come the splits of the second tree, each followed by its subtrees'
-    and its halves; then the pair on the minus side, that on the plus side, and the join.
+    A divided pair is followed by the splits of the second tree, each with the splits of its
+    subtrees and its halves; then by the pair on the minus side, the pair on the plus side, and the
+    join.
 
     Parameters
     ----------

@@ -14,12 +14,12 @@ from .tree_set import TreeSet
 
 
 class TreeQueries(TreeSet):
-    """A partition tree with in and out leaves, as its questions see it."""
+    """A partition tree with in and out leaves, with queries."""
 
     __slots__ = ()
 
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the boundary point nearest to each point, and how far it is.
+        """Return the nearest boundary point of each point, and its distance.
 
         Parameters
         ----------
@@ -29,7 +29,7 @@ class TreeQueries(TreeSet):
         Returns
         -------
         nearest : (k, d) float64
-            Rounded; of several the one on the first piece of the boundary.
+            Rounded; of several, the one on the first piece of the boundary.
         distance : (k,) float64
 
         Raises

@@ -1,4 +1,4 @@
-"""`TreeSet`: a set of points that is a partition tree, or has one."""
+"""`TreeSet`: a set of points that is or has a partition tree."""
 
 from abc import abstractmethod
 from fractions import Fraction
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 class TreeSet(PointSet):
     """A set of points with a partition tree; an immutable value.
 
-    All such sets of one dimension compare and combine; a result is of the first operand's kind.
+    All such sets of one dimension can be compared and combined; a result has the first operand's
+    type.
     """
 
     __slots__ = ("_tree",)
@@ -29,7 +30,7 @@ class TreeSet(PointSet):
     @property
     @abstractmethod
     def tree(self) -> "ObjectTree":
-        """The partition tree, which shows its nodes, cells and pieces of boundary."""
+        """The partition tree, with its nodes, cells and pieces of boundary."""
 
     @abstractmethod
     def _merged(self, other: "TreeSet", op: SetOp) -> Self:
@@ -73,13 +74,13 @@ class TreeSet(PointSet):
     # Questions
 
     def classify(self, points: Any) -> SideArray:
-        """Say of each point whether it is inside, exactly.
+        """Classify points as inside, outside or on the boundary, exactly.
 
         Parameters
         ----------
         points : (k, d) array_like of float
-            In model units, snapped to the lattice; on the line (k,) will do. What is bounded may be
-            asked about any point.
+            In model units, snapped to the lattice; on the line (k,) is allowed. For a bounded set,
+            points may lie anywhere.
 
         Returns
         -------
@@ -90,10 +91,10 @@ class TreeSet(PointSet):
 
     @abstractmethod
     def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Return the boundary point nearest to each point, and how far it is."""
+        """Return the nearest boundary point of each point, and its distance."""
 
     def project(self, points: Any) -> tuple[FloatArray, FloatArray]:
-        """Do as `nearest` does; deprecated, for a projection is a shadow."""
+        """Call `nearest`; deprecated, since a projection is a shadow."""
         deprecated(f"{type(self).__name__}.project", "nearest")
         return self.nearest(points)
 
@@ -136,7 +137,7 @@ class TreeSet(PointSet):
 
 
 def set_of(value: object, name: str = "other") -> TreeSet:
-    """Return what has to be a set of points."""
+    """Return a value, checked to be a set of points."""
     if isinstance(value, TreeSet):
         return value
     message = f"{name} must be a Region, Intervals or an ObjectTree, not {shown(value)}."

@@ -1,7 +1,7 @@
-"""The view of an eye: visibility polygons in the plane, visibility volumes in space, exactly.
+"""Exact visibility polygons in the plane, and visibility volumes in space.
 
-A facet hides what is behind it: the part beyond its hyperplane of the cone under which it is seen.
-What is left of a box without these shadows is what the eye sees.
+The shadow of a facet is the part of its cone from the eye that lies beyond its hyperplane. The eye
+sees a box minus all shadows.
 """
 
 from collections.abc import Sequence
@@ -34,8 +34,8 @@ def visibility_polygon(
     Parameters
     ----------
     segments : (n, 2, 2) array_like of float
-        They may cross, touch and overlap. One that points at the eye hides nothing. All points are
-        snapped to the lattice that suits them.
+        They may cross, touch and overlap. A segment that points at the eye hides nothing. All
+        points are snapped to a lattice that suits them.
     eye : (2,) array_like of float
         Anywhere but on a segment.
     low, high : (2,) array_like of float
@@ -67,7 +67,7 @@ def visibility_polygon(
                 raise invalid_parameter("The eye lies on a segment.")
             continue
         first, last = (a, b) if turn > 0 else (b, a)
-        # Left of the way to the first end, right of that to the last, and beyond the wall.
+        # Left of the ray to the first end, right of the ray to the last, and beyond the wall.
         ways = (place, first), (last, place), (last, first)
         halves = [_left_of(start, end, pitch) for start, end in ways]
         shadow = halves[0] & halves[1] & halves[2]
@@ -149,7 +149,7 @@ def _snapped(point: _Point, pitch: int) -> _Point:
 
 
 def _left_of(start: _Point, end: _Point, pitch: int) -> ObjectTree:
-    """Return all points to the left of the way from one point to another."""
+    """Return all points to the left of the line from one point to another."""
     normal = [end[1] - start[1], start[0] - end[0]]
     return ObjectTree.half_space(normal, _offset(normal, start), pitch=pitch)
 
@@ -165,7 +165,7 @@ def _offset(normal: Sequence[Fraction], point: _Point) -> Any:
 
 
 def _united(regions: list[Region]) -> Region:
-    """Return the union, pairs of neighbours first, so that each corner is in few merges."""
+    """Return the union; merge neighbours first, so that each corner takes part in few merges."""
     while len(regions) > 1:
         regions = [
             regions[k] | regions[k + 1] if k + 1 < len(regions) else regions[k]

@@ -1,1 +1,1 @@
-"""Partition trees over facets: the order they give, their cost, their text."""
+"""Partition trees over facets: traversal orders, costs, serialization."""

@@ -1,4 +1,4 @@
-"""The bounds that the notes derive, measured.
+"""Measurements of the bounds in the lecture notes.
 
 Fragments of n disjoint segments under a random order: at most n + 2 n ln n expected. The chance
 that the line of s_i cuts s_j: at most 1 / (dist(s_i, s_j) + 2), with equality where nothing but
@@ -89,7 +89,7 @@ def growth_table(
     grids : sequence of int
         Sizes of `ruled_grid`, built in random order; even numbers.
     meshes : sequence of object
-        Surfaces, each whatever `PartitionTree.from_mesh` takes, built with axis-parallel cuts on
+        Surfaces, of any type that `PartitionTree.from_mesh` takes, built with axis-parallel cuts on
         top.
     trials : int
         Constructions for each row, each with a seed of its own.
@@ -152,9 +152,9 @@ def _cell(value: Any) -> str:
 
 @dataclass(frozen=True, eq=False)
 class VisitBound:
-    """The cost of rays beside the bound of the notes: C(T) ≤ depth(T) · stabbed leaves.
+    """The cost of rays and the bound of the notes: C(T) ≤ depth(T) · stabbed leaves.
 
-    A leaf and the nodes above it are as many as its level, and every node that a ray visits is
+    The level of a leaf is the number of nodes on its path, and every node that a ray visits is
     above a leaf that it stabs.
 
     Parameters
@@ -184,7 +184,7 @@ class VisitBound:
 
 
 def visit_bound(tree: PartitionTree, origins: Any, directions: Any) -> VisitBound:
-    """Cast rays through a tree, and compare what each cost with depth · stabbed leaves.
+    """Cast rays through a tree, and compare the cost of each with depth · stabbed leaves.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def ruled_grid(n: int) -> FloatArray:
 
 @dataclass(frozen=True)
 class CutFrequency:
-    """The number of times that the line of one segment cut another one.
+    """The frequency with which the line of one segment cuts another segment.
 
     Parameters
     ----------
@@ -278,7 +278,7 @@ class CutFrequency:
 
 
 def cut_frequencies(segments: Any, trials: int = 1000, seed: int = 0) -> list[CutFrequency]:
-    """Count over random orders how often each line cuts each segment, beside the bound.
+    """Count over random orders how often each line cuts each segment, and compare with the bound.
 
     Parameters
     ----------

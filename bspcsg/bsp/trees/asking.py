@@ -1,4 +1,4 @@
-"""Policies that are callables, and hyperplanes of the caller's own."""
+"""Policies given as callables, and hyperplanes given by the caller."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from .facets import Corners
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """The facts by which a callable policy chooses the hyperplane that divides a region.
+    """The data from which a callable policy chooses the hyperplane that divides a region.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def asked_tree(
     lenience: tuple[bool, bool],
     own: list[list[int]],
 ) -> FragmentTree:
-    """Return the core's tree whose cuts a callable chooses."""
+    """Return the core's tree with cuts chosen by a callable."""
     corners, offsets = facets
     dimension = corners.shape[1]
 

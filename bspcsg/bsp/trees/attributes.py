@@ -1,7 +1,7 @@
 """`AttributeTree`: a partition of space whose regions have labels of any kind.
 
 Facets and hyperplanes are inserted one after the other. Each region that one of them divides
-becomes two, whose labels a cut rule gives: both inherit the label, or each side gets its own.
+becomes two, labelled by a cut rule: both inherit the label, or each side gets its own.
 
 Everything is exact, in whole numbers and fractions; meant for trees of hundreds of regions.
 """
@@ -44,8 +44,7 @@ class LabelledRegion(Generic[Label]):
     ----------
     label : object
     sides : tuple of (hyperplane, side)
-        The way from the root: whole numbers n, c of n·x = c in lattice steps, and the side of it,
-        -1 or 1.
+        The path from the root: integers n, c of n·x = c in lattice steps, and the side, -1 or 1.
     pitch : int
         The lattice step is ``10**pitch`` units.
     """
@@ -73,7 +72,7 @@ class LabelledRegion(Generic[Label]):
         return float(part.measure) * 10.0 ** (self.pitch * part.dimension)
 
     def _clipped(self, low: Any, high: Any) -> Polytope | None:
-        # The whole space as a region does not tell its dimension.
+        # The whole space as a region has no known dimension.
         dimension = len(self.sides[0][0]) - 1 if self.sides else max(np.size(low), 1)
         least, most = box_corners(low, high, dimension)
         part: Polytope | None = Polytope.box(_steps(least, self.pitch), _steps(most, self.pitch))
@@ -90,7 +89,7 @@ class AttributeTree(Generic[Label]):
     dimension : int
         1, 2 or 3.
     label : object
-        That of the whole space.
+        The label of the whole space.
     pitch : int
         The lattice step is ``10**pitch`` units.
 
@@ -273,7 +272,7 @@ class AttributeTree(Generic[Label]):
             pending += [(plus, (*way, (row, 1))), (minus, (*way, (row, -1)))]
 
     def mapped(self, function: Callable[[Label], Any]) -> "AttributeTree[Any]":
-        """Return the tree with each label replaced by what a function makes of it."""
+        """Return the tree with a function applied to each label."""
         made: AttributeTree[Any] = self._copy()
         made._labels = list(map(function_of(function, "function"), self._labels))
         return made
@@ -300,7 +299,7 @@ def _steps(values: Any, pitch: int) -> list[int]:
 
 
 def _supporting(corners: Sequence[Corner]) -> tuple[int, ...]:
-    """Return the hyperplane of a facet with whole corners, its minus side where facets have it."""
+    """Return the hyperplane of a facet with integer corners, with the facet's minus side."""
     whole = [[int(x) for x in corner] for corner in corners]
     first = whole[0]
     arms = [[x - y for x, y in zip(corner, first, strict=True)] for corner in whole[1:]]

@@ -1,4 +1,4 @@
-"""Partition trees as text: JSON to keep them, DOT and SVG to look at them."""
+"""Partition trees as text: JSON for storage, DOT and SVG for display."""
 
 import json
 import zlib
@@ -41,13 +41,13 @@ def to_json(tree: "PartitionTree") -> str:
         "cuts": tree.arrays["cut"].tolist(),
     }
     if tree.own_hyperplanes:
-        # As texts, since they can be wider than what some readers take for whole numbers.
+        # As strings, since some JSON readers limit the size of integers.
         content["own"] = [[str(entry) for entry in row] for row in tree.own_hyperplanes]
     return _text(content | {"checksum": _checksum(content)})
 
 
 def parsed(text: str) -> Parts:
-    """Return what `to_json` wrote."""
+    """Return the parts of a tree from the text of `to_json`."""
     try:
         content = json.loads(text)
         known = content["format"] == _FORMAT and content["version"] in (_FIRST, _SECOND, _VERSION)
@@ -74,7 +74,7 @@ def _text(content: dict[str, Any]) -> str:
 
 
 def _checksum(content: dict[str, Any]) -> int:
-    """Return the CRC-32 of the content, however its text is laid out."""
+    """Return the CRC-32 of the content, independent of the layout of the text."""
     return zlib.crc32(json.dumps(content, separators=(",", ":"), sort_keys=True).encode())
 
 

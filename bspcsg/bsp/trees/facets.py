@@ -1,4 +1,4 @@
-"""Points, segments and polygons in whatever form they come, as corners and offsets."""
+"""Points, segments and polygons of any input form, as corners and offsets."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -50,7 +50,7 @@ def _polygons(facets: Any) -> Corners:
     refusal = InvalidMeshError(f"Facets must be {_FORMS}.", "shape")
     try:
         polygons = [doubles(polygon, refusal) for polygon in facets]
-    except TypeError:  # nothing that has facets
+    except TypeError:  # an object without facets
         raise refusal from None
     if not polygons:
         raise refusal
@@ -63,14 +63,14 @@ def _polygons(facets: Any) -> Corners:
 
 
 def mesh_triangles(mesh: Any) -> FloatArray:
-    """Return the (n, 3, 3) triangles of whatever holds a mesh; it need not be closed."""
+    """Return the (n, 3, 3) triangles of any object that holds a mesh, closed or not."""
     vertices, faces = mesh_of(mesh)
     triangles: FloatArray = vertices[faces]
     return triangles
 
 
 def mesh_of(mesh: Any) -> MeshArrays:
-    """Return the vertices and triangles of whatever holds a mesh; it need not be closed."""
+    """Return vertices and triangles of any object that holds a mesh, closed or not."""
     if isinstance(mesh, Solid):
         mesh = mesh.to_mesh()
     vertices, faces = interop.own_arrays(*interop.arrays_from(mesh))
@@ -81,12 +81,12 @@ def mesh_of(mesh: Any) -> MeshArrays:
 
 
 def chosen_pitch(given: Any, points: FloatArray) -> int:
-    """Return the exponent of the lattice step: the given one, or what suits these points."""
+    """Return the exponent of the lattice step: the given one, or one that suits these points."""
     return _suited_pitch(points) if given is None else pitch_exponent(given)
 
 
 def _suited_pitch(points: FloatArray) -> int:
-    """Return the exponent of the lattice step for these points: -9 unless their size asks else."""
+    """Return the exponent of the lattice step for these points: -9, or another for their size."""
     if len(points) == 0 or not np.isfinite(points).all():
         return -9
     extent = float(np.ptp(points, axis=0).max())
@@ -100,7 +100,7 @@ def box_corners(low: Any, high: Any, dimension: int) -> tuple[list[Fraction], li
     Raises
     ------
     InvalidParameterError
-        If one has another dimension or is not finite, or the box is turned over.
+        If a corner has another dimension or is not finite, or the corners are exchanged.
     """
     least, most = exact_point(low, dimension, "low"), exact_point(high, dimension, "high")
     if any(start > end for start, end in zip(least, most, strict=True)):
@@ -110,7 +110,7 @@ def box_corners(low: Any, high: Any, dimension: int) -> tuple[list[Fraction], li
 
 
 def vector_rows(given: Any, dimension: int, name: str) -> FloatArray:
-    """Return (n, d) float64 of points or directions; one alone becomes the only row.
+    """Return points or directions as (n, d) float64; a single one becomes one row.
 
     Raises
     ------

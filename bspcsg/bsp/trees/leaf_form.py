@@ -2,7 +2,7 @@
 
 A `PartitionTree` divides until no region has a facet, so that every leaf is empty and every
 fragment lies in the hyperplane of an inner node. In the notes a region with one fragment is a leaf
-that stores it. The one is the other with these leaves divided once more by their own fragment.
+that stores it. A `PartitionTree` is such a tree with these leaves divided by their own fragment.
 """
 
 from dataclasses import dataclass
@@ -64,7 +64,7 @@ def leaf_form(tree: "PartitionTree") -> LeafForm:
     single = arrays["end"] - arrays["start"] == 1
     stores = single & (arrays["minus"] < 0) & (arrays["plus"] < 0) & (arrays["cut"][:, 0] == -1)
     inner = np.flatnonzero(~stores)
-    # What a link to each node becomes, and at the end what a link to no node does.
+    # The new link for each node, and at the end the one for no node.
     links = np.full(len(tree) + 1, EMPTY, dtype=np.int64)
     links[inner] = np.arange(len(inner))
     kept = np.flatnonzero(stores)

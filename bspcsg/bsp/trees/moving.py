@@ -27,7 +27,7 @@ def moved_core(
     offset: Any,
     scale: int,
 ) -> FragmentTree:
-    """Return the core's tree with facets and cuts moved, and made again by these cuts."""
+    """Return the core's tree with moved facets, rebuilt with moved cuts."""
     corners, offsets = core.lattice()
     matrix = _rotation(axes, core.dimension)
     shift = _steps(offset, core.dimension, core.pitch)
@@ -40,7 +40,7 @@ def moved_core(
         if cut[0] >= 0:
             row = [0] * core.dimension + [int(cut[1])]
             row[cut[0]] = 1
-            # As one of the tree's own, since the minus side may be where coordinates are larger.
+            # Stored as an own hyperplane, since the minus side may have the larger coordinates.
             cut[:] = _OWN, len(own)
             own.append(_moved_row(row, matrix, shift, scale))
     moved = np.ascontiguousarray(scale * corners @ matrix.T + shift)

@@ -26,10 +26,10 @@ class Visitor(Protocol):
     """The functions that `PartitionTree.visit` calls."""
 
     def node(self, node: "Node") -> None:
-        """Take note of an inner node."""
+        """Visit an inner node."""
 
     def leaf(self, leaf: "Leaf") -> None:
-        """Take note of an empty region."""
+        """Visit an empty region."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Node:
 
     @property
     def is_free(self) -> bool:
-        """True if no facet gave H(v): it is parallel to axes, or one of your own."""
+        """True if H(v) is not from a facet: it is axis-parallel, or given by the caller."""
         return bool(self.tree.arrays["cut"][self.index, 0] != _PIVOT)
 
     @property
@@ -123,7 +123,7 @@ class Node:
         return None if index < 0 else Node(self.tree, index)
 
     def __repr__(self) -> str:
-        """Say where the node is and what it does."""
+        """Show the position and the cut of the node."""
         normal, offset = self.hyperplane
         terms = ", ".join(f"{x:.4g}" for x in normal)
         return f"Node({self.index}, normal=({terms}), offset={offset:.6g}, depth={self.depth})"

@@ -1,4 +1,4 @@
-"""Orders of a partition tree: the painter's, by distance, and plain traversals."""
+"""Traversals of a partition tree: back to front, by distance, and plain ones."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
@@ -77,13 +77,13 @@ class Ordered(ABC):
         if given.shape != (self.core.dimension,):
             message = f"The {name} must have {self.core.dimension} coordinates, not {given.shape}."
             raise invalid_parameter(message)
-        # Whoever looks along a direction is infinitely far away on its other side.
+        # A viewer who looks along a direction is infinitely far away in the opposite direction.
         full: FloatArray = np.zeros(3)
         full[: self.core.dimension] = -given if at_infinity else given
         return full.tolist(), at_infinity
 
     def near_to_far(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
-        """Yield nodes and leaves as a viewer meets them: near side, node, far side."""
+        """Yield nodes and leaves from near to far: near side, node, far side."""
         return self._by_distance(self._sides(eye, direction))
 
     def far_to_near(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
@@ -105,7 +105,7 @@ class Ordered(ABC):
         return self._traversed(arranged)
 
     def walk(self, order: Literal["pre", "in", "post"] = "pre") -> Iterator[Node | Leaf]:
-        """Yield all nodes and leaves, minus before plus, a node before, between or after them."""
+        """Yield all nodes and leaves, minus before plus; a node before, between or after both."""
         orders = ("pre", "in", "post")
         place = orders.index(word(orders, order, "order"))
 

@@ -1,4 +1,4 @@
-"""Pivot policies compared: one tree for each, in figures."""
+"""A comparison of pivot policies by the figures of their trees."""
 
 import time
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from .tree import PartitionTree
 
 @dataclass(frozen=True)
 class PolicyRow:
-    """One policy's tree in figures.
+    """The figures of one policy's tree.
 
     Parameters
     ----------

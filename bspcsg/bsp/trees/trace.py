@@ -1,8 +1,8 @@
-"""Traces: how a tree over facets came about, and the ways of points and rays through it.
+"""Traces of the construction of a tree over facets, and of points and rays in it.
 
-Everything in a trace was written down by the core while it worked; a few lines that follow it reach
-the same tree and the same answer. Convex pieces are named by number: those of facets that are not
-concave polygons have the numbers of the facets, and `Construction.facets` has them all.
+The core records a trace while it works; replaying it takes a few lines and gives the same tree and
+the same answer. Convex pieces are numbered; if no facet is a concave polygon, the numbers are those
+of the facets. `Construction.facets` has the facet of each piece.
 """
 
 from collections.abc import Iterator
@@ -59,7 +59,7 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Division:
-    """A region was divided, which made a node.
+    """The division of a region by a new node.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class Division:
     pivot : int or None
         The piece whose hyperplane it is.
     axis : tuple of int or None
-        Instead of a pivot: the axis that the cut is across, and its place in lattice steps.
+        Instead of a pivot: the axis perpendicular to the cut, and its position in lattice steps.
     own : int or None
         Instead of both: the place in `PartitionTree.own_hyperplanes`.
     reason : str
@@ -162,7 +162,7 @@ def division(row: "_DivisionRow") -> Division:
 
 @dataclass(frozen=True)
 class PointTrace:
-    """The way of a point from the root down.
+    """The path of a point from the root down.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def point_trace(tree: "PartitionTree", path: list[tuple[int, int]]) -> PointTrac
 
 @dataclass(frozen=True)
 class RayStep:
-    """The steps of a ray on its way; parameters count lengths of its direction.
+    """A step of a ray on its path; parameters are in lengths of its direction.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ class RayStep:
 
 @dataclass(frozen=True)
 class RayTrace:
-    """The way of a ray through a tree, up to its first hit.
+    """The path of a ray through a tree, up to its first hit.
 
     Parameters
     ----------
@@ -271,7 +271,7 @@ class RayTrace:
         return tuple(s.node for s in self.steps if s.kind == "visit" and s.node is not None)
 
     def __repr__(self) -> str:
-        """Say what is hit and what it cost; `steps` shows the way."""
+        """Show the hit and the cost; `steps` has the path."""
         met = "no facet" if self.facet is None else f"facet {self.facet} at t = {self.t:.6g}"
         return f"RayTrace({met}, {len(self.steps)} steps, cost {self.cost})"
 
@@ -304,7 +304,7 @@ def ray_trace(facet: int | None, t: float, rows: "list[_RayEventRow]") -> RayTra
 
 @dataclass(frozen=True, eq=False)
 class RayCosts:
-    """First hits of rays through a `PartitionTree`, and what each ray cost.
+    """First hits of rays through a `PartitionTree`, and the cost of each ray.
 
     Parameters
     ----------

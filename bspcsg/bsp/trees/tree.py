@@ -1,4 +1,4 @@
-"""`PartitionTree`: a binary space partition over facets of any kind."""
+"""`PartitionTree`: a binary space partition tree over facets of any kind."""
 
 import math
 import os
@@ -69,11 +69,11 @@ class PartitionTree(Ordered):
     alpha : float
         From 0 (least splits) to 1 (balance), for the policy "weighted".
     cuts : sequence of (normal, offset)
-        Hyperplanes of one's own, ``normal · x = offset`` in model units, with the minus side where
-        the product is smaller. In each region the first of them that does not leave all pieces on
-        one side comes before the policy. They are snapped as `ObjectTree.half_space` does it.
+        Hyperplanes given by the caller, ``normal · x = offset`` in model units, with the minus side
+        where the product is smaller. In each region the first of them with pieces on both sides is
+        used before the policy. They are snapped as by `ObjectTree.half_space`.
     pitch : int, optional
-        The lattice step is ``10**pitch`` units. By default -9 or what the size asks for.
+        The lattice step is ``10**pitch`` units. By default -9, or another if the size requires it.
     non_planar : {"error", "triangulate"}
         The treatment of polygons whose corners are not in one plane after snapping.
     degenerate : {"error", "drop"}
@@ -158,7 +158,7 @@ class PartitionTree(Ordered):
     def from_mesh(
         cls, mesh: Any, policy: Policy = "random", *, top: int = 16, **options: Any
     ) -> "PartitionTree":
-        """Return the tree over the triangles of whatever holds a mesh, closed or not.
+        """Return the tree over the triangles of any object that holds a mesh, closed or not.
 
         Triangles without area are left out unless ``degenerate="error"``.
 
@@ -256,7 +256,7 @@ class PartitionTree(Ordered):
 
     @cached_property
     def own_hyperplanes(self) -> tuple[tuple[int, ...], ...]:
-        """Hyperplanes that no facet and no axis gave, as whole numbers n, c in lattice steps.
+        """Hyperplanes of neither a facet nor an axis, as integers n, c in lattice steps.
 
         Points x of one have n·x = c.
         """
@@ -313,7 +313,7 @@ class PartitionTree(Ordered):
     # Traces
 
     def trace(self) -> Construction:
-        """Return how the tree came about: who divided each region, why, and who went where.
+        """Return the trace of the construction: the cut of each region, its reason, and the pieces.
 
         The construction is repeated, as the tree itself keeps no trace. For a tree that was made by
         a callable, read from a file or inserted into, the cuts themselves are "given".
@@ -332,7 +332,9 @@ class PartitionTree(Ordered):
         """
         place = vector_rows(point, self.dimension, "The point")
         if len(place) != 1 or not np.isfinite(place).all():
-            raise invalid_parameter(f"The point must be one, and finite, not {shown(point)}.")
+            raise invalid_parameter(
+                f"point must be one point of finite numbers, not {shown(point)}."
+            )
         with core_errors():
             return point_trace(self, self.core.path(_filled(place[0])))
 
@@ -341,7 +343,7 @@ class PartitionTree(Ordered):
         return self.trace_point(point).end
 
     def test_ray(self, origins: Any, directions: Any) -> RayCosts:
-        """Return the first facet on each ray, and what the way there cost.
+        """Return the first facet on each ray, and the cost of the path to it.
 
         The child on the side of the ray's origin comes first, then what lies in the hyperplane,
         then the other child, until there is a hit. Facets are closed; of several at one point it is
@@ -391,7 +393,7 @@ class PartitionTree(Ordered):
         sample: int = 8,
         alpha: float = 0.5,
     ) -> "PartitionTree":
-        """Return the tree with more facets: its nodes stay, and what was empty is divided.
+        """Return the tree with more facets: its nodes stay, and empty regions are divided.
 
         New facets are cut by the hyperplanes that are there; those that reach an empty region
         divide it by the policy.
@@ -537,14 +539,14 @@ class PartitionTree(Ordered):
         return self
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Pickle facets on the lattice and cuts, of which the tree is made again."""
+        """Pickle the facets on the lattice and the cuts, from which the tree is rebuilt."""
         corners, offsets = self.core.lattice()
         own = [list(row) for row in self.own_hyperplanes]
         parts = corners, offsets, self.pitch, self.arrays["cut"], self.lenience, own
         return _restored, (type(self), parts, self._margin)
 
     def __repr__(self) -> str:
-        """Say how large the tree is."""
+        """Show the size of the tree."""
         facets = len(self.core.lattice()[1]) - 1
         return f"PartitionTree({self.dimension}D, {facets} facets, {len(self)} nodes)"
 
@@ -565,7 +567,7 @@ def _cut_rows(cuts: Any) -> IndexArray:
 
 
 def _seal(arrays: Mapping[str, Any]) -> None:
-    """Make arrays read-only that a tree keeps and hands out."""
+    """Make the arrays of a tree read-only."""
     for array in arrays.values():
         array.flags.writeable = False
 
@@ -576,7 +578,7 @@ def _place(of: Node | Leaf | None) -> tuple[int | None, int]:
     if isinstance(of, Node):
         return of.index, 0
     if not isinstance(of, Leaf):
-        raise invalid_parameter(f"A region is that of a node or a leaf, not of {shown(of)}.")
+        raise invalid_parameter(f"region takes a node or a leaf, not {shown(of)}.")
     sides: dict[Side, int] = {"minus": -1, "plus": 1}
     return (None, 0) if of.parent is None else (of.parent.index, sides[of.side])
 

@@ -1,1 +1,1 @@
-"""The terminal: its streams, tables and colours, and the line that says what is under way."""
+"""The terminal: streams, tables, colours, and the status line."""

@@ -1,4 +1,4 @@
-"""The time that the command has been running, from its first line on."""
+"""The running time of the command, counted from its first line."""
 
 import time
 
@@ -6,7 +6,7 @@ _began = time.perf_counter()
 
 
 def start(began: float | None = None) -> None:
-    """Count from now, or from a moment that is past."""
+    """Start the clock now, or at an earlier moment."""
     global _began  # noqa: PLW0603  one command runs at a time
     _began = time.perf_counter() if began is None else began
 

@@ -1,4 +1,4 @@
-"""The streams of the command line's words, and the exit codes of its failures."""
+"""Output streams and exit codes of the command line."""
 
 import json
 import sys
@@ -47,12 +47,12 @@ _TIME_CODES = frozenset({"timed_out", "timeout"})
 
 
 class EmptyResultError(BspcsgError):
-    """The result holds nothing, and nobody said that this is meant."""
+    """The result is empty, and the user did not allow that."""
 
 
 @dataclass(frozen=True)
 class Output:
-    """The streams to which a command tells what.
+    """The streams to which a command writes results, notes and warnings.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class Output:
     as_json : bool
         Standard output gets one JSON document, and nothing else.
     taken : bool
-        Standard output is taken by a mesh, so results go to standard error.
+        True if standard output carries a mesh, so that results go to standard error.
     """
 
     verbosity: int = 0
@@ -70,7 +70,7 @@ class Output:
 
     @classmethod
     def of(cls, settings: dict[str, Any], taken: bool = False) -> "Output":
-        """Return what the options that every verb has say."""
+        """Return the output that the common options of all verbs ask for."""
         return cls(int(settings["verbose"]) - int(settings["quiet"]), settings["as_json"], taken)
 
     def result(self, line: str, document: dict[str, Any]) -> None:
@@ -83,28 +83,28 @@ class Output:
                 click.echo(harmless(line), err=self.taken)
 
     def detail(self, line: str) -> None:
-        """Say on standard error what only ``--verbose`` asks for."""
+        """Print a line on standard error, but only with ``--verbose``."""
         if self.verbosity > 0:
             with status.hidden():
                 click.echo(harmless(line), err=True)
 
     @property
     def advises(self) -> bool:
-        """True if somebody is there to be told what to type next."""
+        """True if a user is there to read advice on what to type next."""
         return self.verbosity >= 0 and sys.stdout.isatty()
 
     def note(self, line: str) -> None:
-        """Say on standard error what ``--quiet`` silences."""
+        """Print a note on standard error, unless ``--quiet`` is given."""
         if self.verbosity >= 0:
             terminal.say("note", line)
 
     def warning(self, line: str) -> None:
-        """Say on standard error what ``--quiet`` silences, but with more weight."""
+        """Print a warning on standard error, unless ``--quiet`` is given."""
         if self.verbosity >= 0:
             terminal.say("warning", line)
 
     def finding(self, name: str, finding: Finding) -> None:
-        """Say on standard error what was noteworthy about a file."""
+        """Print a finding about a file on standard error."""
         least = -1 if finding.severity == "error" else 0
         if self.verbosity >= least:
             said = f"{finding.message}{_places(finding)}"
@@ -112,7 +112,7 @@ class Output:
 
 
 def _places(finding: Finding) -> str:
-    """Return the first numbers of what a message calls these faces or vertices."""
+    """Return the first numbers of the faces or vertices that a finding is about, as text."""
     if " these" not in finding.message or not finding.where:
         return ""
     first = ", ".join(map(str, finding.where[:_MAX_PLACES_NAMED]))
@@ -133,7 +133,7 @@ def exit_code_of(error: BspcsgError) -> int:
 
 
 def tell_error(error: BspcsgError, as_json: bool) -> int:
-    """Say what failed, on standard error and as JSON if that was asked for."""
+    """Print an error on standard error, and as JSON on standard output if asked for."""
     code = exit_code_of(error)
     terminal.say_error(error.message)
     if as_json:
@@ -142,7 +142,7 @@ def tell_error(error: BspcsgError, as_json: bool) -> int:
 
 
 def print_error(values: dict[str, Any], code: int) -> None:
-    """Print what failed as the one document on standard output."""
+    """Print an error as the only JSON document on standard output."""
     click.echo(json.dumps({"schema": SCHEMA, "error": values, "exit": code}))
 
 
@@ -157,10 +157,10 @@ def finding_values(findings: tuple[Finding, ...]) -> list[dict[str, Any]]:
 
 
 def grouped(number: int) -> str:
-    """Return a whole number with its thousands apart."""
+    """Return a whole number as text with separated thousands."""
     return f"{number:,}".replace(",", terminal.thousands())
 
 
 def counted(number: int, one: str) -> str:
-    """Return a number and what it counts."""
+    """Return a number followed by its noun, singular or plural."""
     return f"{grouped(number)} {one}{'' if number == 1 else 's'}"

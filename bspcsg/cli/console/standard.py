@@ -1,8 +1,8 @@
-"""Standard output and error: what goes there is written whole, or fails under its own name.
+"""Standard output and error: each write is complete, or fails with an error of its own.
 
-Python's own streams do neither. An unbuffered one (``PYTHONUNBUFFERED``) passes by in silence that
-a system took a part only, as it does on a full disk, of a limited file and above 2 GiB; and an
-error of either stream does not say which file it is about.
+Python's own streams guarantee neither. An unbuffered one (``PYTHONUNBUFFERED``) silently ignores
+partial writes, which occur on a full disk, at a file size limit and above 2 GiB; and an error of
+either stream does not name the file.
 """
 
 import io
@@ -17,7 +17,7 @@ _BUFFER_BYTES = 1 << 16
 
 
 class FullOutputError(OSError):
-    """Standard output cannot be written: no error of a file that is read or written meanwhile."""
+    """Standard output cannot be written; errors of other files have other classes."""
 
 
 class _CompleteWriter(io.RawIOBase):
@@ -26,11 +26,12 @@ class _CompleteWriter(io.RawIOBase):
     Parameters
     ----------
     raw : file
-        The place that bytes go to.
+        The file to which bytes are written.
     owner : file
-        The stream that closes it when nobody holds that any more.
+        The stream that closes the file when it is garbage-collected.
     fail : callable
-        Told the error of a write, a closed pipe's apart; what it lets pass is lost.
+        Called with the error of a write, unless the pipe is closed. If it returns, the data are
+        lost.
     """
 
     def __init__(self, raw: io.RawIOBase, owner: object, fail: Callable[[OSError], None]) -> None:
@@ -62,14 +63,14 @@ class _CompleteWriter(io.RawIOBase):
         while done < len(view):
             count = self._raw.write(view[done:])
             if count is None:
-                # Whoever shares the pipe has it not wait for its reader.
+                # Another process that shares the pipe has made it non-blocking.
                 select.select([], [self._raw], [])
             else:
                 done += count
 
 
 def take_over(errors: str) -> None:
-    """Have both streams of this process write whole, and their letters by this name of a codec."""
+    """Make both standard streams write completely, with this error handler of their codec."""
     for name, fail in (("stdout", _refuse), ("stderr", _pass_by)):
         stream = getattr(sys, name)
         raw = _raw_of(stream)
@@ -83,7 +84,7 @@ def take_over(errors: str) -> None:
 
 
 def _raw_of(stream: object) -> io.FileIO | None:
-    """Return the file at the end of a stream; none of a terminal of Windows, which is no file."""
+    """Return the raw file of a stream; None for a Windows console, which has none."""
     if not isinstance(stream, io.TextIOWrapper):
         return None
     raw = getattr(stream.buffer, "raw", stream.buffer)
@@ -96,7 +97,7 @@ def _refuse(error: OSError) -> None:
 
 
 def _pass_by(_: OSError) -> None:
-    # Nobody could be told; the work and its exit code are worth more than its words.
+    # The error cannot be reported anywhere; the work and its exit code matter more than messages.
     discard("stderr")
 
 
@@ -106,7 +107,7 @@ def put(chunks: Iterable[bytes]) -> None:
     Raises
     ------
     FullOutputError
-        If it cannot take all of them.
+        If not all bytes can be written.
     """
     sys.stdout.flush()
     sys.stdout.buffer.writelines(chunks)
@@ -114,7 +115,7 @@ def put(chunks: Iterable[bytes]) -> None:
 
 
 def discard(name: str = "stdout") -> None:
-    """Point a stream at nothing, so that what is left is not flushed where it failed."""
+    """Redirect a stream to the null device, so that the rest is not flushed to a broken one."""
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, getattr(sys, name).fileno())
     os.close(nothing)

@@ -1,6 +1,6 @@
-"""The line on a terminal that says, after a second, what is under way and for how long.
+"""The status line of a terminal: after a second it shows the current step and its time.
 
-The line stands at the end of standard error and goes before anything else is said there.
+The line is the last one on standard error and is erased before anything else is printed there.
 """
 
 import os
@@ -18,7 +18,7 @@ _ERASE = "\r\033[K"
 
 
 class _Line:
-    """The line and the thread that keeps it up to date."""
+    """The status line and the thread that updates it."""
 
     def __init__(self, what: str) -> None:
         self.what = what
@@ -30,14 +30,14 @@ class _Line:
         self._thread.start()
 
     def end(self) -> None:
-        """Take the line away for good."""
+        """Erase the line for good."""
         self._is_over.set()
         self._thread.join()
         self._put("")
 
     @contextmanager
     def hidden(self) -> Iterator[None]:
-        """Take the line away while something is said."""
+        """Erase the line while something is printed."""
         with self._lock:
             self._put("")
             yield
@@ -61,7 +61,7 @@ _line: _Line | None = None
 
 @contextmanager
 def watched(what: str, quiet: bool) -> Iterator[None]:
-    """Show for how long something is under way, unless nobody is there or wants to know."""
+    """Show the status line while the block runs, if there is a terminal and no ``--quiet``."""
     global _line  # noqa: PLW0603  there is one terminal
     if quiet or os.environ.get("TERM") == "dumb" or not sys.stderr.isatty():
         yield
@@ -74,18 +74,18 @@ def watched(what: str, quiet: bool) -> Iterator[None]:
 
 
 def tell(what: str) -> None:
-    """Say what is under way now."""
+    """Set the text of the status line."""
     if _line is not None:
         _line.what = what
 
 
 def hidden() -> AbstractContextManager[None]:
-    """Return the context in which something is said."""
+    """Return a context in which the status line is erased, for printing."""
     return nullcontext() if _line is None else _line.hidden()
 
 
 def end() -> None:
-    """Leave the terminal to something else."""
+    """Erase the status line for good, so that something else can use the terminal."""
     global _line
     if _line is not None:
         line, _line = _line, None

@@ -15,10 +15,10 @@ _MARGIN = 3
 def table_text(
     columns: Sequence[str], rows: Iterable[Sequence[str]], right: Sequence[str] = ()
 ) -> str:
-    """Return a table as lines of text: as wide as its entries in a pipe, else as the terminal.
+    """Return a table as lines of text that fit the terminal; in a pipe, their width is not limited.
 
-    Words stay whole: where the terminal has no room for the longest ones side by side, each row
-    becomes lines of a name and a value.
+    Words are not broken: if the terminal is too narrow for the longest words side by side, each row
+    becomes several lines of a name and a value.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def table_text(
 def _longest_word(text: str) -> int:
     from rich.cells import cell_len
 
-    # Not at blanks that do not break, which keep the digits of a number together.
+    # Do not split at no-break spaces, which keep the digits of a number together.
     return max(map(cell_len, text.split(" ")))
 
 

@@ -21,7 +21,7 @@ _MIN_TABLE_WIDTH = 40
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Say whether colours go to a stream: `NO_COLOR` or else `FORCE_COLOR` or its kind decides."""
+    """Say whether a stream gets colours, by `NO_COLOR`, then `FORCE_COLOR`, then its kind."""
     if os.environ.get("NO_COLOR"):
         return False
     forced = os.environ.get("FORCE_COLOR")
@@ -39,24 +39,24 @@ def labelled(label: str, line: str) -> str:
 
 
 def say(label: str, line: str, before: str = "") -> None:
-    """Say a line with its label on standard error."""
+    """Print a line with its label on standard error."""
     with status.hidden():
         told = before + labelled(label, harmless(line))
         click.echo(told, err=True, color=wants_colour(sys.stderr))
 
 
 def say_error(message: str) -> None:
-    """Say on standard error what failed."""
+    """Print an error message on standard error."""
     say("error", message, "bspcsg: ")
 
 
 def width() -> int | None:
-    """Return the columns of the terminal that standard output goes to, or None if it is none."""
+    """Return the number of columns of standard output, or None if it is not a terminal."""
     if not sys.stdout.isatty():
         return None
     return max(_MIN_TABLE_WIDTH, shutil.get_terminal_size().columns)
 
 
 def thousands() -> str:
-    """Return what stands between thousands: a blank that does not break, nothing in a pipe."""
+    """Return the separator of thousands: a no-break space on a terminal, nothing in a pipe."""
     return "\N{NO-BREAK SPACE}" if sys.stdout.isatty() else ""

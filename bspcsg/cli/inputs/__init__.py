@@ -1,1 +1,1 @@
-"""Files, streams and scripts as what a verb works on."""
+"""Inputs of verbs: files, streams and scripts."""

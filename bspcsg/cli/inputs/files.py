@@ -43,17 +43,17 @@ class Inputs:
     Parameters
     ----------
     out : Output
-        The output that tells findings.
+        The output to which findings are printed.
     suffix : str
-        Of the format of standard input, and of files whose own suffix names none.
+        The suffix of the format of standard input, and of files whose own suffix names no format.
     unit : str or None
-        The unit of files that do not say; None if the user has not said either.
+        The unit of files that state none; None if the user gave none either.
     winding : str
     pitch : int or None
     on_invalid : {"error", "warn", "repair"} or None
         The treatment of a file that is not closed; None if the verb leaves no choice.
     noticed : list of Finding
-        The findings about the solids so far, which results repeat.
+        The findings about the solids so far, which the results repeat.
     objects : ObjectNames
         The objects to which the solids' triangles belong.
     """
@@ -69,7 +69,7 @@ class Inputs:
 
     @classmethod
     def of(cls, out: Output, settings: dict[str, Any]) -> "Inputs":
-        """Return what the options of a verb say."""
+        """Return the inputs that the options of a verb describe."""
         names = ("unit", "winding", "pitch", "on_invalid")
         found = {name: settings[name] for name in names if settings.get(name) is not None}
         return cls(out, settings.get("from_format") or "", **found)
@@ -93,13 +93,13 @@ class Inputs:
                 format_of(path)
 
     def _refuse_programs(self, path: Path) -> None:
-        """Refuse scripts that other programs read, where they have no name of their own."""
+        """Refuse a script without a suffix of its own if another program has to read it by name."""
         if self.suffix not in STREAMED:
             message = f"{shown(path)}: {self.suffix} scripts are run by name; save it to a file."
             raise click.UsageError(message)
 
     def tell_units(self, pairs: Iterable[tuple[Path, "Target"]]) -> None:
-        """Say once which inputs have no unit although their outputs state one."""
+        """Print once which inputs have no unit although their outputs state one."""
         from ...formats.registry import FORMATS
 
         unknown = [
@@ -133,7 +133,7 @@ class Inputs:
         return "z" if self.is_script(path) else FORMATS[self.suffix_of(path)].up
 
     def raw(self, path: Path) -> "RawMesh":
-        """Read a mesh, or make that of a script, in millimetres if a unit is known or said."""
+        """Read a mesh or evaluate a script; in millimetres if the unit is known or given."""
         from ...formats.files import decoded, read_as
         from ...formats.placing import rescaled
 
@@ -148,7 +148,7 @@ class Inputs:
         return replace(rescaled(raw, MILLIMETRES[self.unit]), unit="mm")
 
     def _made_by(self, path: Path) -> "Solid":
-        """Return the solid of a script, which is text if its name does not say what it is."""
+        """Return the solid of a script; read its text first if its suffix names no language."""
         if path.suffix.lower() in SUFFIXES:
             return made_by(path, self.out)
         return made_by(path, self.out, _text_of(path), self.suffix)
@@ -161,7 +161,7 @@ class Inputs:
         return replace(raw, name=path.stem, is_empty_set=not len(mesh.faces))
 
     def solid(self, path: Path) -> "Solid":
-        """Read a solid, or make that of a script, and tell what was noteworthy about the file."""
+        """Read a solid or evaluate a script, and print the findings about the file."""
         if self.is_script(path):
             made = self._made_by(path)
             return made if self.unit is None else made.scale(MILLIMETRES[self.unit])
@@ -174,7 +174,7 @@ class Inputs:
         return solid
 
     def as_solid(self, raw: "RawMesh", path: Path) -> "Solid":
-        """Return the solid of what was read; one that is not closed as the user has it."""
+        """Return the solid of a mesh; treat one that is not closed as the user asked for."""
         try:
             return self._solid_of(raw, path)
         except InvalidMeshError as error:
@@ -220,13 +220,13 @@ class Inputs:
         return solid
 
     def tell(self, path: Path, findings: Sequence[Finding]) -> None:
-        """Say what was noteworthy about a file."""
+        """Print the findings about a file."""
         for finding in findings:
             self.out.finding(shown(path), finding)
 
 
 def repair_command(path: Path) -> str:
-    """Return the line to type for a file that is not closed, fit for a shell."""
+    """Return the shell command that repairs a file that is not closed."""
     source = "open.stl" if str(path) == STREAM else str(path)
     target = Path(source).with_name(f"{Path(source).stem}-fixed{Path(source).suffix}")
     return f"bspcsg repair {shlex.quote(source)} -o {shlex.quote(str(target))}"
@@ -242,9 +242,9 @@ class Target:
     suffix : str
         Of the format.
     text : bool
-        True if the form as text is asked for.
+        True for the text form of the format.
     overwrite : bool
-        True if a file that is there may be replaced.
+        True if an existing file may be replaced.
     digits : int or None
         Significant digits of coordinates, if they are to be rounded.
     """
@@ -257,7 +257,7 @@ class Target:
 
     @classmethod
     def of(cls, path: Path, settings: dict[str, Any]) -> "Target":
-        """Return the target that the options of a verb say."""
+        """Return the target that the options of a verb describe."""
         suffix = settings.get("to_format") or path.suffix or (_ANY if is_dropped(path) else "")
         return cls(path, suffix, settings["text"], settings["overwrite"], settings["digits"])
 
@@ -272,7 +272,7 @@ class Target:
         Raises
         ------
         click.UsageError
-            If standard output is asked for two things, or its format is not said.
+            If standard output is used twice, or its format is not given.
         FormatError
             If the format is unknown or the folder cannot be written to.
         """
@@ -288,7 +288,7 @@ class Target:
 
     @property
     def names_objects(self) -> bool:
-        """True if files of this form tell objects apart by names."""
+        """True if files of this form have named objects."""
         from ...formats.files import form_of
 
         return form_of(f"mesh{self.suffix}", self.text).called is not None
@@ -301,13 +301,13 @@ class Target:
         return form_of(f"mesh{self.suffix}", self.text).is_single
 
     def rounded(self, mesh: "_Kind") -> "tuple[_Kind, tuple[Finding, ...]]":
-        """Return the mesh with the digits asked for, and what that did."""
+        """Return the mesh with coordinates rounded to the requested digits, and the findings."""
         from ...formats.rounding import rounded
 
         return (mesh, ()) if self.digits is None else rounded(mesh, self.digits)
 
     def write(self, mesh: "Mesh | RawMesh") -> tuple[Finding, ...]:
-        """Write a mesh, and return what the format or the number of digits could not keep."""
+        """Write a mesh, and return findings about losses by the format or the number of digits."""
         from ...formats.files import encoded
 
         shortened, moved = self.rounded(mesh)
@@ -316,7 +316,7 @@ class Target:
         return moved + made.findings
 
     def put(self, made: "Encoded", prove: Callable[[BinaryIO], None]) -> None:
-        """Write a file and those that go beside it; a stream has none."""
+        """Write a file and its companion files; a stream has none."""
         from ...formats.files import places_beside, write_beside
 
         files = {} if self.is_stream or is_dropped(self.path) else made.files
@@ -338,7 +338,7 @@ def put(
 ) -> None:
     """Write bytes to a file, which appears complete or not at all, or to standard output.
 
-    What `prove` refuses is written to neither.
+    Nothing is written if `prove` raises an error.
     """
     from ...formats.atomic import write_file
 
@@ -388,7 +388,7 @@ def _decoded(data: bytes, name: str) -> str:
 
 
 def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
-    """Refuse a file that is there and to be kept, or in a folder that is missing or forbidden."""
+    """Raise an error if a file must not be replaced, or its folder is missing or not writable."""
     if str(path) == STREAM:
         return
     if not overwrite and os.path.lexists(path) and not is_dropped(path):
@@ -398,7 +398,7 @@ def refuse_unwritable(path: Path, overwrite: bool = True) -> None:
 
 
 def refuse_folder(path: Path) -> None:
-    """Refuse a file to be written to a folder that is not there or forbidden."""
+    """Raise an error if the folder of a file is missing or not writable."""
     if is_dropped(path):
         return
     folder = path.parent
@@ -408,7 +408,7 @@ def refuse_folder(path: Path) -> None:
 
 
 def make_folder(folder: Path) -> None:
-    """Make a folder for files, and those around it."""
+    """Make a folder for files, and its parent folders."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -417,17 +417,17 @@ def make_folder(folder: Path) -> None:
 
 
 def is_dropped(path: Path) -> bool:
-    """Say whether what is written there is kept by nobody."""
+    """Say whether a path is the null device, which keeps nothing."""
     return str(path) == os.devnull
 
 
 def is_among(path: Path, others: Iterable[Path]) -> bool:
-    """Say whether a file is there and one of others, by whatever name."""
+    """Say whether a file exists and is the same file as one of others, under any name."""
     return any(path.exists() and other.exists() and path.samefile(other) for other in others)
 
 
 def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -> None:
-    """Refuse to write the parts of a file over files that are read."""
+    """Raise an error if an output of a file would replace an input."""
     for number, where in enumerate(targets, 1):
         if not is_dropped(where) and is_among(where, inputs):
             message = f"part {number} of {shown(file)} would be written to {where}, which is an"
@@ -435,12 +435,12 @@ def refuse_inputs(file: Path, targets: Iterable[Path], inputs: Sequence[Path]) -
 
 
 def shown(path: Path) -> str:
-    """Return what to call a file in messages."""
+    """Return the name of a file for messages."""
     return "-" if str(path) == STREAM else str(path)
 
 
 def expanded(pattern: Path, replacement: str) -> Path:
-    """Return a path with a text for each ``%`` in its last part, or else before its suffix."""
+    """Return a path with each ``%`` of its name replaced, or with the text before its suffix."""
     if is_dropped(pattern):
         return pattern
     if "%" in pattern.name:

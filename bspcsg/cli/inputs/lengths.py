@@ -1,4 +1,4 @@
-"""Lengths with units, as the options take them."""
+"""Lengths with units, for options."""
 
 import math
 
@@ -9,7 +9,7 @@ MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "ft": 304.8, "um"
 
 
 def as_length(context: click.Context, option: click.Parameter, value: str | None) -> float | None:
-    """Return a length in millimetres, in which it is if it names no unit."""
+    """Return a length in millimetres, which is the unit if none is given."""
     if value is None:
         return None
     text = value.strip().lower()

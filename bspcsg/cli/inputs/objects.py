@@ -1,7 +1,7 @@
-"""Names of objects through set operations: what is left of an object keeps its name.
+"""Names of objects in the results of set operations: the rest of an object keeps its name.
 
-A result is one set of points, of which files tell connected parts apart. A part is called as the
-objects are that its surface comes from.
+A result is one set of points, which a file divides into connected parts. Each part is named after
+the objects that its surface comes from.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ class ObjectNames:
         self._has_names = False
 
     def note(self, solid: "Solid", raw: "RawMesh", stem: str) -> None:
-        """Remember the objects of a file that became a solid; one without names is called so."""
+        """Remember the objects of a file that became a solid; an unnamed one is called `stem`."""
         import numpy as np
 
         names = [name or stem for name, _ in raw.objects] or [stem]
@@ -39,20 +39,20 @@ class ObjectNames:
     def parted(
         self, result: "Solid", cutters: "Sequence[Solid]", in_single: bool
     ) -> "tuple[RawMesh, tuple[Finding, ...]] | None":
-        """Return the mesh of a result by parts that have names, and what single precision changed.
+        """Return the mesh of a result as named parts, and findings about single precision.
 
         Parameters
         ----------
         result : Solid
         cutters : sequence of Solid
-            The solids taken away, whose objects lend no names.
+            The subtracted solids, whose objects give no names.
         in_single : bool
-            True if parts are to be such as single precision can hold.
+            True to round the parts to single precision.
 
         Returns
         -------
         tuple of RawMesh and findings, or None
-            None if no object of the files has a name that is left.
+            None if no named object of the files is left.
         """
         from ...formats.raw import joined
         from ...operations.parts import connected_parts

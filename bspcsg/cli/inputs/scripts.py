@@ -1,4 +1,4 @@
-"""Scripts where meshes are asked for: what they make is the input."""
+"""Scripts as inputs in place of meshes: they are evaluated first."""
 
 import warnings
 from pathlib import Path
@@ -20,23 +20,23 @@ STREAMED = (".csg", ".json")
 def made_by(
     path: Path, out: Output, text: str | None = None, suffix: str | None = None, **options: Any
 ) -> "Solid":
-    """Return the solid that a script makes; what was left out is told.
+    """Return the solid that a script makes, and print what was left out.
 
     Parameters
     ----------
     path : Path
     out : Output
     text : str, optional
-        The script, if it was read already.
+        The text of the script, if it has been read.
     suffix : str, optional
-        Of its language, if its name does not say it.
+        The suffix of its language, if its name has another.
     **options
         As for `run_script` or `csg.load`.
     """
     if (suffix or path.suffix.lower()) == ".py":
         from ...script.run import run_script
 
-        # What it prints has the terminal.
+        # The script's own output gets the terminal.
         status.end()
         return run_script(path, **options)
     from ... import csg
@@ -49,6 +49,6 @@ def made_by(
             form: Literal["csg", "json"] = "json" if suffix == ".json" else "csg"
             return csg.loads(text, name=str(path), form=form, **options)
         finally:
-            # What was left out may be why a script is refused.
+            # The things left out may be the reason why the script fails.
             for said in caught:
                 out.warning(str(said.message))

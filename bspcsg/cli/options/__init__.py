@@ -1,1 +1,1 @@
-"""Options, arguments and formulas as they are typed."""
+"""Options, arguments and formulas, and their parsing."""

@@ -1,4 +1,4 @@
-"""Options that say from where something is seen, and the camera they make."""
+"""Options for the point of view, and the camera that they make."""
 
 import math
 from collections.abc import Callable
@@ -85,14 +85,14 @@ _SEEING = [
 
 
 def seeing(command: _Command) -> _Command:
-    """Add the options that say from where something is seen."""
+    """Add the options for the point of view."""
     for option in reversed(_SEEING):
         command = option(command)
     return command
 
 
 def refuse_contradictions(settings: dict[str, Any]) -> None:
-    """Refuse two ways to say from where something is seen."""
+    """Raise an error if options give two different points of view."""
     angles = [name for name in ("azimuth", "elevation") if settings[name] is not None]
     given = ["eye"] if settings["eye"] is not None else []
     view = settings["view"] != "iso"
@@ -107,7 +107,7 @@ def refuse_contradictions(settings: dict[str, Any]) -> None:
 def camera_of(
     settings: dict[str, Any], points: "FloatArray", aspect: float, turn: float = 0.0
 ) -> "Camera":
-    """Return the camera that options say; without an eye it sees all of the points.
+    """Return the camera of the options; without an eye point it sees all points.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def camera_of(
     aspect : float
         Width of the picture divided by its height.
     turn : float
-        Degrees around z by which it goes on from there.
+        Degrees by which the camera is turned further about z.
     """
     from ...bsp import Camera
 

@@ -1,4 +1,4 @@
-"""The values of the options of crosscheck, and the reading of them."""
+"""Parsing of the options of crosscheck."""
 
 import click
 
@@ -11,7 +11,7 @@ _SUFFIXES = {"": 1, "K": 10**3, "M": 10**6, "G": 10**9, "T": 10**12}
 def as_engines(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[str, ...]:
-    """Return the names of engines apart by commas."""
+    """Return the engine names of a list with commas."""
     names = tuple(name.strip() for name in (value or "").split(",") if name.strip())
     for name in names:
         if name not in ENGINES:
@@ -37,7 +37,7 @@ def as_bytes(context: click.Context, option: click.Parameter, value: str) -> int
 def as_shard(
     context: click.Context, option: click.Parameter, value: str | None
 ) -> tuple[int, int] | None:
-    """Return the number of a shard and how many there are."""
+    """Return the number of a shard and the number of shards."""
     if value is None:
         return None
     number, _, count = value.partition("/")
@@ -64,7 +64,7 @@ def _pose(context: click.Context, option: click.Parameter, value: str) -> tuple[
 
 
 def as_keep(context: click.Context, option: click.Parameter, value: str) -> str:
-    """Return whose meshes are kept."""
+    """Return which cases keep their meshes."""
     if value not in ("interesting", "all", "none") and not value.isdecimal():
         message = f"{value!r} is none of interesting, all, none, or a number."
         raise click.BadParameter(message, context, option)

@@ -45,7 +45,7 @@ class FormulaError(Exception):
 
 @dataclass(frozen=True)
 class File:
-    """A file name, and where it stands in the formula."""
+    """A file name and its column in the formula."""
 
     name: str
     column: int
@@ -72,12 +72,12 @@ class _Token:
 
 
 def parse(text: str) -> Formula:
-    """Return the formula that a text stands for.
+    """Parse a formula.
 
     Raises
     ------
     FormulaError
-        If it stands for none; with the column.
+        If the text is no formula; the error has the column.
     """
     if not text.strip():
         raise FormulaError("the formula is empty.", 0)
@@ -101,7 +101,7 @@ def files_of(formula: Formula) -> list[File]:
 
 
 def subtracted(formula: Formula) -> set[str]:
-    """Return the names of files that are only ever taken away, or whose outside is taken."""
+    """Return the names of files that are only subtracted or complemented."""
     signs: dict[str, set[bool]] = {}
     waiting = [(formula, True)]
     while waiting:
@@ -120,8 +120,8 @@ def evaluated(
     leaf: Callable[[File], _Value],
     combine: Callable[[str, list[_Value]], _Value],
 ) -> _Value:
-    """Return the value of a formula, given that of its files and what its operations do."""
-    # Chains lean to the left, and may be longer than calls may lie in one another.
+    """Evaluate a formula, given functions for its files and its operations."""
+    # Chains are nested on the left, and may be deeper than the limit of recursion.
     leaning: list[NamedOperation] = []
     while isinstance(formula, NamedOperation):
         leaning.append(formula)
@@ -183,7 +183,7 @@ class _Parser:
         return found
 
     def expect(self, kind: str, wanted: str) -> _Token:
-        """Take a token of a kind, or say what is there instead."""
+        """Consume a token of a kind, or raise an error that names the token found instead."""
         token = self._peek()
         if token.kind != kind:
             raise FormulaError(f"expected {wanted}, found {_called(token)}.", token.column)

@@ -1,7 +1,6 @@
-"""From arguments to files: names, folders, and patterns that the shell left as they are.
+"""Files of arguments: names, folders, and patterns that the shell did not expand.
 
-What lies beside meshes, such as pictures of textures, is skipped where it was not asked for by
-name, and counted.
+Files that accompany meshes, such as textures, are skipped and counted, unless the user names them.
 """
 
 import glob
@@ -36,9 +35,9 @@ def files_argument(
     ----------
     metavar, name : str
     opens : bool
-        True if a folder stands for the meshes in it; else it is handed on.
+        True to replace a folder by the meshes in it; else the folder itself is returned.
     also : collection of str
-        Endings of other files in folders and patterns that are taken, too.
+        Suffixes of other files that folders and patterns include.
     """
 
     def found(
@@ -57,7 +56,7 @@ def files_argument(
 
 
 def skipped_files() -> dict[str, int]:
-    """Return how many files of which ending the verb that is run skipped."""
+    """Return how many files of each suffix the running verb skipped."""
     return dict(click.get_current_context().meta.get(_SKIPPED, {}))
 
 
@@ -73,11 +72,11 @@ def files_of(
     *,
     opens: bool = True,
 ) -> list[Path]:
-    """Return the files that names, folders and patterns mean; count by endings what is skipped.
+    """Return the files that names, folders and patterns mean; count skipped files by suffix.
 
-    A folder means the meshes in it and in its folders, but for hidden ones. A pattern that leaves
-    the ending open means meshes. A name is itself, unless it is of a kind that lies beside meshes
-    and others are named as well, as by a pattern of the shell.
+    A folder means the meshes in it and its subfolders, without hidden ones. A pattern with an open
+    suffix means meshes. A name means itself; but a companion file, such as a texture, is skipped if
+    other files are named too, as by a pattern that the shell expanded.
 
     Raises
     ------
@@ -100,7 +99,7 @@ def files_of(
 
 
 def _is_meant(path: Path, value: Path, also: Collection[str], *, alone: bool) -> bool:
-    """Say whether an argument that leads to a file means it."""
+    """Say whether an argument that matches a file is meant to include it."""
     from ...formats.registry import FORMATS
 
     suffix = path.suffix.lower()
@@ -123,7 +122,7 @@ def _inside(path: Path) -> Iterator[Path]:
 
 
 def _counted(skipped: Counter[str]) -> str:
-    """Say how many files of which ending are no meshes."""
+    """Return a text on how many files of each suffix are no meshes."""
     kinds = ", ".join(
         f"{count} {suffix or 'without an ending'}" for suffix, count in sorted(skipped.items())
     )

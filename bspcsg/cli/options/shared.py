@@ -24,14 +24,14 @@ else:
 
 
 class Further(click.Option):
-    """An option that few need, which the help lists in its second part."""
+    """A rarely used option, which the help lists in its second part."""
 
 
 class Verb(click.Command):
     """A verb whose help has its options in two parts."""
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write what most need first, then the rest."""
+        """Write the common options first, then the others."""
         options = [one for one in self.get_params(ctx) if isinstance(one, click.Option)]
         for title, is_further in (("Options", False), ("More options", True)):
             chosen = [one for one in options if isinstance(one, Further) == is_further]
@@ -51,17 +51,16 @@ further = partial(click.option, cls=Further)
 
 
 class FilePath(click.Path):
-    """Names of files or folders; whoever completes a line offers these for it.
+    """Names of files or folders, for which shells offer completion.
 
-    Whether a file can be read is found out by reading: click would call one that is forbidden
-    wrong usage.
+    Readability is not checked here: click would report an unreadable file as wrong usage.
     """
 
     def __init__(self, *, readable: bool = False, **kinds: bool) -> None:
         super().__init__(path_type=Path, readable=readable, **kinds)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        """Return the path of a text, which would be the current folder if it were empty."""
+        """Return the path of a text; refuse the empty text, which would be the current folder."""
         if value == "":
             self.fail("the name is empty, as of a shell variable that is not set.", param, ctx)
         return super().convert(value, param, ctx)
@@ -85,7 +84,7 @@ class FiniteRange(click.FloatRange):
 
 
 class Renamed(click.Option):
-    """An option with one value that takes its old name, too, which the help leaves out.
+    """An option with one value that also accepts its old name, which the help leaves out.
 
     Parameters
     ----------
@@ -105,7 +104,7 @@ class Renamed(click.Option):
 
 
 class Words(_Choice):
-    """Some words, of which an error names the one that is meant."""
+    """A choice of words; an error suggests the nearest one."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Return the word of a text."""
@@ -142,7 +141,7 @@ _COMMON = [
 
 
 def _formats(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
-    """Return the formats whose names begin so, for whoever completes a line."""
+    """Return the formats whose names begin so, for shell completion."""
     from ...formats.registry import FORMATS
 
     known = (*FORMATS, *(STREAMED if option.name == "from_format" else ()))
@@ -282,7 +281,7 @@ _CHECKS = ("quick", "full", "off")
 
 
 def check_depth(command: _Command) -> _Command:
-    """Add the options that say how a result is compared with manifold3d's."""
+    """Add the options for the comparison with manifold3d."""
     leave_out = further(
         "--no-validate", "--no-check", "check", flag_value="off", help="The same as --check=off."
     )
@@ -326,13 +325,13 @@ PORT = further(
 
 
 def is_given(name: str) -> bool:
-    """Say whether an option has a value that somebody gave."""
+    """Say whether the user gave an option."""
     context = click.get_current_context()
     return context.get_parameter_source(name) is not ParameterSource.DEFAULT
 
 
 def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
-    """Return so many finite numbers with commas between them; None for anything else."""
+    """Return the given count of finite numbers of a list with commas; None for anything else."""
     try:
         found = tuple(float(word) for word in text.split(","))
     except ValueError:
@@ -345,14 +344,15 @@ _DIRECTIONS = {"x": "1,0,0", "y": "0,1,0", "z": "0,0,1"}
 
 
 def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, ...] | None]:
-    """Return the callback of an option that takes a direction, and maybe more numbers after it.
+    """Return the callback of an option that takes a direction, optionally followed by more numbers.
 
     Parameters
     ----------
     what : str
         The name of the value in errors, such as ``"normal"``.
     names : str
-        Of the numbers, apart by commas; the first three must not all be 0, and may be an axis.
+        Names of the numbers, with commas. The first three must not all be 0; an axis may replace
+        them.
     example : str
     """
     count = names.count(",") + 1
@@ -382,7 +382,7 @@ def common(command: _Command) -> _Command:
 
 
 def telling(command: _Command) -> _Command:
-    """Add the options of verbs that say with a `-j` of their own what runs at once."""
+    """Add the common options for verbs that have a `-j` of their own."""
     return _with([option for option in _COMMON if option is not _THREADS], command)
 
 
@@ -402,7 +402,7 @@ def writing(command: _Command) -> _Command:
 
 
 def one_by_one(command: _Command) -> _Command:
-    """Add the options of verbs that write a file for each that they read."""
+    """Add the options of verbs that write one file for each input."""
     return _with(_ONE_BY_ONE, command)
 
 
@@ -417,12 +417,12 @@ def making(command: _Command) -> _Command:
 
 
 def making_or_showing(command: _Command) -> _Command:
-    """Add the options of verbs that make one solid and write it, or only show it."""
+    """Add the options of verbs that make one solid and write or only show it."""
     return _with([_MAYBE_OUTPUT, writing, SIMPLIFY, ALLOW_EMPTY, check_depth], command)
 
 
 def from_files(command: _Command) -> _Command:
-    """Add the options of verbs that make one solid of files as sets."""
+    """Add the options of verbs that make one solid from files."""
     return _with([making, reading, sets, common], command)
 
 

@@ -1,1 +1,1 @@
-"""Pages that verbs write, and pages that a live server shows."""
+"""Pages that verbs write or serve."""

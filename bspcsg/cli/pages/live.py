@@ -1,4 +1,4 @@
-"""A server on this machine alone, whose pages load again when what they show has changed."""
+"""A local server whose pages reload when their content changes."""
 
 import contextlib
 import os
@@ -50,13 +50,13 @@ class Site:
 
 
 class LiveServer(ThreadingHTTPServer):
-    """A server that ends when the process does, without waiting for anybody.
+    """A server that ends with the process, without waiting for connections.
 
     Parameters
     ----------
     site : Site
     port : int
-        0 for one that is free.
+        0 for any free port.
 
     Raises
     ------
@@ -83,7 +83,7 @@ class LiveServer(ThreadingHTTPServer):
         return f"http://{_HERE}:{self.server_port}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing: a browser that closes a connection early is no error."""
+        """Ignore errors: a browser that closes a connection early is none."""
 
     def serve(self) -> None:
         """Answer until Ctrl-C."""
@@ -126,11 +126,11 @@ class _Handler(BaseHTTPRequestHandler):
         self.wfile.write(data)
 
     def log_message(self, *args: Any) -> None:
-        """Say nothing of requests."""
+        """Log no requests."""
 
 
 def stamp(paths: Iterable[Path]) -> str:
-    """Return a text that changes when one of some files does, or a folder gets or loses one."""
+    """Return a text that changes whenever a file changes or a folder gains or loses one."""
     marks = []
     for path in _files(paths):
         try:
@@ -143,7 +143,7 @@ def stamp(paths: Iterable[Path]) -> str:
 
 
 def _files(paths: Iterable[Path]) -> list[Path]:
-    """Return the files named, and those in folders that are named, as many as are looked at."""
+    """Return the named files and the files of named folders, up to the limit."""
     found: list[Path] = []
     for path in paths:
         if path.is_dir():

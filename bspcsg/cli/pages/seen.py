@@ -1,4 +1,4 @@
-"""Files as what is to be seen of them."""
+"""Files as layers of a view."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
@@ -16,8 +16,8 @@ def layers_of(
 ) -> "tuple[list[Layer], str]":
     """Return a layer for each object of each file, and the unit if all files have it.
 
-    What was noteworthy about the files is told; meshes need not be closed, unless a section is
-    given: then only what has nx x + ny y + nz z up to d is there.
+    Findings about the files are printed. Meshes need not be closed, unless a section is given: then
+    only the part with nx x + ny y + nz z <= d is shown.
     """
     from ...report.viewer.parts import told_apart
 

@@ -19,7 +19,7 @@ _PART = "/part/"
 
 
 def page_of(files: Sequence[Path], scene: Showing) -> str:
-    """Return the page of some files that is loaded again when they change, or of what failed."""
+    """Return the page of some files, which reloads when they change, or a page with the error."""
     from ...report.assets import rendered
     from ...report.viewer.view import view_page
 
@@ -58,7 +58,7 @@ def site_of_folder(folder: Path, scene: Showing) -> Site:
 
 
 def seen_in(folder: Path) -> list[str]:
-    """Return the names of the files in a folder that can be seen."""
+    """Return the names of the viewable files of a folder."""
     from ...formats.registry import FORMATS
 
     try:
@@ -69,7 +69,7 @@ def seen_in(folder: Path) -> list[str]:
 
 
 def folders_of(files: Sequence[Path]) -> list[Path]:
-    """Return the folders of scripts, which read what lies beside them."""
+    """Return the folders of the scripts among files: a script may read the files beside it."""
     return sorted({path.parent for path in files if path.suffix.lower() in SUFFIXES})
 
 
@@ -87,8 +87,8 @@ class _PageCache:
     Parameters
     ----------
     own, around : callable
-        The state of the files that are shown, and of what lies beside them: that may change while
-        a page is made, for a script may write there, which is no reason to run it again.
+        The state of the files that are shown, and of the files beside them. The latter may change
+        while a page is made, since a script may write there; that is no reason to run it again.
     """
 
     def __init__(self, own: Callable[[], str], around: Callable[[], str]) -> None:

@@ -1,4 +1,4 @@
-"""A script that is run again whenever it changes, and the page of what it makes."""
+"""A script that runs again whenever it changes, and the page of its result."""
 
 import os
 import threading
@@ -24,7 +24,7 @@ _POLL_INTERVAL = 0.2
 
 
 class Watching:
-    """A script, and a job for it each time.
+    """A watched script, with a new job for each run.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Watching:
         Makes the job of one run.
     out : Output
     goes_on : bool
-        True to run again when the script, or a file beside it, has changed.
+        True to run again whenever the script or a file beside it changes.
     """
 
     def __init__(
@@ -55,7 +55,7 @@ class Watching:
         port : int, optional
             The port at which a page of the result is served; none by default.
         opens : bool
-            True to open that in a browser.
+            True to open the page in a browser.
         """
         server = None
         try:
@@ -83,7 +83,7 @@ class Watching:
         except BspcsgError as error:
             self._code = output.tell_error(error, self._out.as_json)
             self._made = error
-        # What the script itself writes beside it is no reason to run again.
+        # Files that the script itself writes do not trigger another run.
         self._around = stamp(folders_of([self._script]))
         self._runs += 1
 

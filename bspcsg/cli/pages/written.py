@@ -1,4 +1,4 @@
-"""Pages that verbs write beside what they say."""
+"""Pages that verbs write in addition to their printed results."""
 
 from pathlib import Path
 
@@ -22,12 +22,12 @@ PAGE = click.option(
 
 
 def refuse_page(path: Path, *others: str) -> None:
-    """Refuse what can be known to be no page, or file of another ending, that can be written.
+    """Raise an error if the path of a page has the wrong suffix or cannot be written.
 
     Raises
     ------
     FormatError
-        If the name has no such ending, or its folder cannot be written to.
+        If the name has another suffix, or its folder is not writable.
     """
     if is_dropped(path):
         return
@@ -41,7 +41,7 @@ def write_page(path: Path, text: str) -> int:
     """Write a page, and return how many bytes it has."""
     from ...formats.atomic import write_file
 
-    # Names of files need not be text.
+    # File names need not be valid Unicode.
     data = text.encode("utf-8", "replace")
     write_file(path, [data])
     return len(data)

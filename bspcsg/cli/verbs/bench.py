@@ -55,7 +55,7 @@ def _as_engines(
 
 
 def _cases_from(context: click.Context, option: click.Parameter, begun: str) -> list[str]:
-    """Return the names of cases that begin so."""
+    """Return the case names that begin so, for shell completion."""
     from ...bench.cases import CASES
 
     return [name for name in CASES if name.startswith(begun)]
@@ -201,7 +201,7 @@ def bench(
 
 
 def _wanted(cases: list[str], everything: bool, cliffs: bool) -> list[str]:
-    """Return the cases that are meant by names and options."""
+    """Return the cases that names and options select."""
     from ...bench.cases import CASES, SHORT
 
     if cliffs:
@@ -210,7 +210,7 @@ def _wanted(cases: list[str], everything: bool, cliffs: bool) -> list[str]:
 
 
 def _kept(path: Path | None) -> list[dict[str, Any]]:
-    """Return the rows of a record that is to be continued; none if there is none yet."""
+    """Return the rows of the record to continue; none if there is no record yet."""
     from ...bench import record as records
     from ...bench.cases import CASES
 
@@ -229,13 +229,13 @@ def _kept(path: Path | None) -> list[dict[str, Any]]:
 
 
 def _missing(wanted: list[str], named: list[str], kept: list[dict[str, Any]]) -> list[str]:
-    """Return the cases to measure: those that are named, and those that a record lacks."""
+    """Return the cases to measure: the named ones, and the ones missing in the record."""
     there = {row["case"] for row in kept}
     return [name for name in wanted if name in named or name not in there]
 
 
 def _dense(cases: list[str]) -> list[str]:
-    """Return those of some cases that are dense places."""
+    """Return the cases that have dense places."""
     from ...bench.cliffs import CLIFFS
 
     found = [name for name in cases if name in CLIFFS]
@@ -247,7 +247,7 @@ def _dense(cases: list[str]) -> list[str]:
 
 
 def _refuse_early(given: dict[str, Any]) -> None:
-    """Refuse what would fail only after everything was measured."""
+    """Raise errors before the measurement that would otherwise come after it."""
     for path in (given["record_path"], given["plot_path"]):
         if path and str(path) == STREAM:
             raise click.UsageError("-o and --plot take names of files, not streams; --json prints.")
@@ -260,7 +260,7 @@ def _refuse_early(given: dict[str, Any]) -> None:
 
 @contextmanager
 def _whole_record(source: Path | None) -> Iterator[None]:
-    """Say which file lacks something, if a record was read and is not what we once wrote."""
+    """Turn errors from a damaged record into a `FormatError` that names its file."""
     try:
         yield
     except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
@@ -285,7 +285,7 @@ def _tell_cases(cases: list[str], as_json: bool) -> None:
 def _measured(
     cases: list[str], kept: list[dict[str, Any]], given: dict[str, Any]
 ) -> dict[str, Any]:
-    """Measure cases and return a record of them and of rows that are kept."""
+    """Measure cases, and return a record of them and of the kept rows."""
     from ...bench import record as records
     from ...bench.runner import run_case
 
@@ -297,7 +297,7 @@ def _measured(
         rows[name] = run_case(name, settings, told)
         rows = _sorted(rows) if kept else rows
         if given["record_path"]:
-            # What is measured stays, whatever happens later.
+            # Keep each measurement, even if a later one fails.
             records.write(_record(rows, given), given["record_path"])
     _tell("") if not given["quiet"] else None
     return _record(rows, given)
@@ -335,11 +335,11 @@ def _settings(given: dict[str, Any]) -> "Settings":
 
 
 def _silence(line: str) -> None:
-    """Say nothing."""
+    """Print nothing."""
 
 
 def _tell(line: str) -> None:
-    """Show what is under way, on a terminal in place of what was."""
+    """Print the current step; on a terminal it replaces the previous one."""
     if sys.stderr.isatty():
         click.echo(f"\r\033[K{line}", nl=False, err=True)
 
@@ -393,7 +393,7 @@ def _write(
 
 
 def _is_wrong(record: dict[str, Any]) -> bool:
-    """Say whether an answer differs from ours, or we gave none."""
+    """Say whether an engine's answer differs from ours, or we have none."""
     from ...bench.targets import OURS, result_of
 
     for row in record["cases"]:
@@ -408,7 +408,7 @@ def _is_wrong(record: dict[str, Any]) -> bool:
 
 
 def _has_cliff(record: dict[str, Any]) -> bool:
-    """Say whether our cost grows too fast in a row of full size that bounds its growth."""
+    """Say whether our cost grows too fast in a full-size row that has a bound on growth."""
     from ...bench.table import has_cliff
 
     return any(has_cliff(row) for row in record["cases"])

@@ -83,7 +83,7 @@ def check(
 
 @dataclass(frozen=True)
 class _Checked:
-    """A file, and what was found about it and each of its objects."""
+    """A file with the findings about it and each of its objects."""
 
     path: Path
     found: "Diagnosis | BspcsgError"
@@ -218,7 +218,7 @@ def _cases(one: _Checked, strict: bool) -> "Iterator[JUnitCase]":
         reason, details = "".join(lines[:1]), "\n".join(lines)
         yield JUnitCase(group, name, found.verdict, element, reason, details, _measures(found))
     for clash in (finding for finding in one.found.findings if finding.code == "clash"):
-        # What objects have in common is of none of them.
+        # Findings about several objects belong to none of them.
         element = "failure" if strict else ""
         yield JUnitCase(group, "objects together", "clash", element, _line(clash), _line(clash))
 
@@ -232,7 +232,7 @@ def _named(path: Path, error: BspcsgError) -> str:
 
 
 def _text(results: Sequence[_Checked], out: Output) -> str:
-    """Return a table if there are several files, and what was found in each."""
+    """Return the findings of each file as text, after a table if there are several files."""
     read = [(one, one.found) for one in results if not isinstance(one.found, BspcsgError)]
     blocks = [_table(read)] if len(read) > 1 else []
     blocks += [_details(one, found, out) for one, found in read]

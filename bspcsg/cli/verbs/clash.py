@@ -72,7 +72,7 @@ def _files(inputs: Inputs, files: "Sequence[Path]") -> "Assembly":
 
 
 def _objects(inputs: Inputs, path: Path) -> "Assembly":
-    """Return what is in one file."""
+    """Return the objects of one file as parts."""
     from ...assembly.files import load_as
     from ...formats.registry import FORMATS
 
@@ -92,7 +92,7 @@ def _objects(inputs: Inputs, path: Path) -> "Assembly":
 
 
 def _values(one: "Clash", kind: str) -> dict[str, Any]:
-    """Return a part of the document."""
+    """Return the values of a clash for the JSON document."""
     pair = {kind: [one.first, one.second], "volume": one.volume}
     return {**pair, "gap": one.gap, "place": one.place.tolist()}
 

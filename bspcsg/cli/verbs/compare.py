@@ -103,7 +103,7 @@ def _write_page(
 
 
 def _within(found: "SetComparison", tolerance: float) -> bool:
-    """Say whether the surfaces are no farther apart than that, as far as samples tell."""
+    """Say whether the sampled distance of the surfaces is within the tolerance."""
     return found.hausdorff is not None and max(found.hausdorff, found.difference.thickness) <= (
         tolerance
     )

@@ -63,7 +63,7 @@ def convert(files: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Conversion:
-    """Some files, and where each goes."""
+    """A conversion of files, each to its own output."""
 
     def __init__(
         self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
@@ -104,7 +104,7 @@ class _Conversion:
             raise click.UsageError(f"--to-unit: {said}, and need no other.")
 
     def _converted(self, path: Path, target: Target) -> tuple[dict[str, Any], int]:
-        """Convert one file; return what happened to it, and the exit code."""
+        """Convert one file; return its document and the exit code."""
         from ...formats.files import decoded, encoded
         from ...verify.roundtrip import losses_between
 
@@ -113,7 +113,7 @@ class _Conversion:
         self._inputs.tell(path, raw.findings)
         if self._settings["tolerance"]:
             raw = self._simplified(raw, path)
-            # Only the shape was to be simplified: all else that the file said counts as lost.
+            # Simplifying keeps only the shape; all other content of the file counts as lost.
             meant = replace(meant, vertices=raw.vertices, faces=raw.faces)
         shortened, _ = target.rounded(raw)
         made = encoded(shortened, shown(target.path), target.suffix, target.text)
@@ -156,28 +156,29 @@ class _Conversion:
         return replace(bare, vertices=mesh.vertices, faces=mesh.faces)
 
     def _turned(self, path: Path, target: Target) -> "RawMesh":
-        """Read a file, turned so that the axis asked for is up in the output."""
+        """Read a file, and turn it so that the requested axis is up in the output."""
         from ...formats.registry import FORMATS
         from ...formats.turning import turned
 
         raw = self._inputs.raw(path)
         usual_in = self._inputs.up_of(path)
         usual_out = FORMATS[target.suffix.lower()].up
-        # Reading and writing turn by what is usual: what is left is the difference to that.
+        # Reading and writing already turn by the convention of each format; only the difference
+        # remains.
         told_in = self._settings["from_up"] or usual_in
         told_out = self._settings["up"] or usual_out
         quarters = (told_in == "y") - (usual_in == "y") - (told_out == "y") + (usual_out == "y")
         return turned(self._in_unit(raw), quarters)
 
     def _in_unit(self, raw: "RawMesh") -> "RawMesh":
-        """Return a mesh of millimetres in the unit asked for."""
+        """Return a mesh in millimetres converted to the requested unit."""
         from ...formats.placing import rescaled
 
         return rescaled(raw, 1, MILLIMETRES[self._settings["to_unit"] or "mm"])
 
     def _tell(self, target: Target, finding: Finding) -> None:
-        """Tell about a file; what is so for all files of a format is told once."""
-        if finding.code == "single_precision":  # its shift is told with the losses, as measured
+        """Print a finding about a file; print only once what holds for all files of a format."""
+        if finding.code == "single_precision":  # its shift is reported with the losses, as measured
             return
         if finding.code == "unit" and finding.message in self._told:
             return

@@ -163,7 +163,7 @@ def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Campaign:
-    """A campaign as the options say it."""
+    """A campaign with the settings of the options."""
 
     def __init__(self, paths: tuple[Path, ...], settings: dict[str, Any]) -> None:
         self._paths, self._settings = paths, settings
@@ -257,7 +257,7 @@ class _Campaign:
         return cases
 
     def _usable(self, inputs: "CaseInputs", answering: "Answering") -> "CaseInputs":
-        """Leave out meshes that are too large, and for random pairs those that are no solids."""
+        """Drop meshes that are too large, and for random pairs also those that are no solids."""
         from dataclasses import replace
 
         from ...campaign.running.runner import survey
@@ -316,7 +316,7 @@ class _Campaign:
 
     @contextmanager
     def _progress(self, count: int) -> "Iterator[Callable[[CaseRecord], None]]":
-        """Yield what is told each record: a bar on a terminal, else lines for those who ask."""
+        """Yield a callback for each record, which moves a progress bar or prints a line."""
         if not sys.stderr.isatty() or self._out.verbosity < 0:
             yield lambda record: self._out.detail(_line(record))
             return
@@ -354,7 +354,7 @@ class _Campaign:
         for name, writer in (("junit", junit_text), ("markdown", markdown_text)):
             path = self._settings[name]
             if path is not None:
-                # Names of cases need not be text.
+                # Case names need not be valid Unicode.
                 write_file(path, [writer(records, [header]).encode("utf-8", "replace")])
 
     def _tell(self, records: "Sequence[CaseRecord]") -> None:
@@ -365,7 +365,7 @@ class _Campaign:
         self._out.result("" if self._out.as_json else self._text(records), document)
 
     def _tell_refused(self, records: "Sequence[CaseRecord]") -> None:
-        """Say why nothing was compared in some cases, each reason once."""
+        """Print why some cases were not compared, each reason once."""
         refused = [record["reason"] for record in records if record["verdict"] == "refused"]
         reasons = list(dict.fromkeys(refused))
         for reason in reasons[:_MAX_REASONS_LISTED]:

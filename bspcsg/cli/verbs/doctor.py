@@ -63,7 +63,7 @@ class _Part:
     name, found : str
         Its name, and its version; empty if it is missing.
     purpose : str
-        The things that need it.
+        The features that need it.
     remedy : str
         The line to type if it is missing or incomplete, else empty.
     required : bool
@@ -117,7 +117,7 @@ def _packages() -> list[_Part]:
 
 
 def _version_of(name: str) -> str:
-    """Return the version of a package that can be imported, or nothing."""
+    """Return the version of an importable package, or the empty text."""
     try:
         return version(name) if find_spec(_MODULES.get(name, name)) is not None else ""
     except (PackageNotFoundError, ImportError, ValueError):
@@ -125,7 +125,7 @@ def _version_of(name: str) -> str:
 
 
 def _with_libraries(part: _Part) -> _Part:
-    """Ask pymeshlab, in a process of its own, whether the system libraries it needs are there."""
+    """Check in a separate process whether pymeshlab finds the system libraries that it needs."""
     from ...repair.child import PLUGINS
     from ...repair.repair import remedy
 
@@ -164,6 +164,6 @@ def _text(parts: list[_Part]) -> str:
 
 
 def _advice(part: _Part) -> str:
-    """Return what is missing and the line to type."""
+    """Return which part is missing and the command that installs it."""
     state = "incomplete" if part.found else "missing"
     return f"{part.name} is {state}, needed for {part.purpose}. Try:\n  {part.remedy}"

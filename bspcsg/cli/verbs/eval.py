@@ -1,4 +1,4 @@
-"""The verb that works out a formula over files: eval."""
+"""The verb that evaluates a formula over files: eval."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -42,7 +42,7 @@ def evaluate(formula: str, **given: Any) -> int:
 
 
 class _Evaluation(Job):
-    """A formula, each of whose files is read once."""
+    """A formula; each of its files is read once."""
 
     def __init__(self, formula: str, **settings: Any) -> None:
         self._text = formula
@@ -90,7 +90,7 @@ def _combined(name: str, solids: list["Solid"]) -> "Solid":
 
 
 def _pointed(formula: str, message: str, column: int) -> str:
-    """Return a message with the formula and a mark under the column."""
+    """Return a message, followed by the formula and a mark under the column."""
     if not formula.strip():
         return f"formula:{column + 1}: {message}"
     printed = "".join(" " if letter.isspace() else letter for letter in formula)

@@ -49,7 +49,7 @@ def info(files: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Entry:
-    """The facts that are told about one file."""
+    """The facts printed about one file."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The verbs that make one solid of others by more than a set operation: hull, simplify."""
+"""The verbs that make one solid by something other than a set operation: hull, simplify."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -69,7 +69,7 @@ def simplify(file: Path, **given: Any) -> int:
 
 
 class _OfFiles(Job):
-    """A job whose result manifold3d is not asked about."""
+    """A job whose result is not compared with manifold3d."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__(op, check="off", **settings)
@@ -98,7 +98,7 @@ class _Hull(_OfFiles):
 
 
 class _Simplified(_OfFiles):
-    """One file, which the job simplifies as any result."""
+    """One file, which the job simplifies like any result."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("simplify", files, **settings)

@@ -213,7 +213,7 @@ class _Rendering(Drawing):
         return {**looks, "colors": self._colours(layers)}
 
     def _colours(self, layers: "list[Layer]") -> Any:
-        """Return a colour for each face, one for all, or None for the one that is usual."""
+        """Return a colour for each face, one for all, or None for the default."""
         from ...report.viewer.faces import are_textured, face_colours
 
         given = self.settings["colours"]
@@ -247,7 +247,7 @@ class _Rendering(Drawing):
 
         frames = self.settings["frames"]
         vertices, faces = joined(layers)
-        # One tree has the order for every point of view.
+        # One tree serves all points of view.
         tree = PartitionTree(vertices[faces], "random", top=16, degenerate="drop")
         pictures = self._turning(layers, tree, vertices[_used(faces)])
         data = gif(pictures, self.settings["seconds"])
@@ -274,7 +274,7 @@ def _used(faces: Any) -> Any:
 
 
 def _room_to_turn(points: "FloatArray") -> "FloatArray":
-    """Return points around all places of a box that turns around its middle."""
+    """Return points that enclose a box in all its positions while it turns about its middle."""
     import numpy as np
 
     if not len(points):

@@ -76,7 +76,7 @@ def repair(files: tuple[Path, ...], target: Path | None, outdir: Path | None, **
 
 
 class _Repairing:
-    """Some files, each before and after."""
+    """The repair of files, with the findings before and after."""
 
     def __init__(
         self, files: tuple[Path, ...], target: Path | None, outdir: Path | None, **settings: Any
@@ -112,7 +112,7 @@ class _Repairing:
         return code
 
     def _repaired(self, path: Path, target: Target, steps: list[str]) -> tuple[dict[str, Any], int]:
-        """Repair one file; return what happened to it, and the exit code."""
+        """Repair one file; return its document and the exit code."""
         from ...assembly.examining import examine
         from ...assembly.mending import mended_as_found
 
@@ -160,7 +160,7 @@ class _Repairing:
 
 
 def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
-    """Return a table of what was there before and after."""
+    """Return a table of the findings before and after."""
     rows = [(name, *pair) for name, *pair in _rows(before, after)]
     lines = [table_text(("", "before", "after"), rows, right=("before", "after"))]
     if made.turned:
@@ -171,7 +171,7 @@ def _text(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Targe
 
 
 def _line(before: "Diagnosis", after: "Diagnosis", made: "Repair", target: Target) -> str:
-    """Return the same in a line."""
+    """Return the same as one line."""
     words = [f"{counted(before.triangles, 'triangle')} became {grouped(after.triangles)}"]
     words += [f"{grouped(made.turned)} turned round"] if made.turned else []
     words += [f"{grouped(made.dropped)} stray ones dropped"] if made.dropped else []

@@ -70,7 +70,7 @@ def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:
 
 
 class _Reporting:
-    """Results files, and the one file that is made of them."""
+    """Results files, and the report that is made of them."""
 
     def __init__(self, files: tuple[Path, ...], target: Path, **settings: Any) -> None:
         self._files = files
@@ -90,7 +90,7 @@ class _Reporting:
         self._refuse_early()
         results = merged(self._files)
         text = self._text(results)
-        # Names of cases need not be text.
+        # Case names need not be valid Unicode.
         self._put(text.encode("utf-8", "replace"))
         if self._is_stream:
             return output.DONE
@@ -164,7 +164,7 @@ class _Reporting:
 
 @contextmanager
 def _progress(out: Output) -> "Iterator[Callable[[list[CaseRecord]], Iterable[CaseRecord]]]":
-    """Yield what shows, as a bar on the terminal, how many cards are drawn."""
+    """Yield a callback that shows the drawn cards as a progress bar on the terminal."""
     if not sys.stderr.isatty() or out.verbosity < 0:
         yield iter
         return

@@ -33,13 +33,13 @@ if TYPE_CHECKING:
 
 
 def _is_plain_word(text: str) -> bool:
-    """Say whether a text needs no quotes: a word of any script; an expression is none."""
+    """Say whether a text is a word of any script, which needs no quotes, and no expression."""
     starts = text[:1].isalpha() or text.startswith("_")
     return starts and all(c.isalnum() or c in "_.-" or category(c)[0] == "M" for c in text)
 
 
 def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -> None:
-    """Print the names of the nodes that can be evaluated, and end."""
+    """Print the names of the nodes that can be evaluated, and exit."""
     if wanted and not context.resilient_parsing:
         from ...csg import node_names
 
@@ -50,7 +50,7 @@ def _list_nodes(context: click.Context, option: click.Parameter, wanted: bool) -
 def _as_texts(
     context: click.Context, option: click.Parameter, values: tuple[str, ...]
 ) -> dict[str, str]:
-    """Return the texts given for variables by their names."""
+    """Return the texts of variables, by name."""
     texts = {}
     for given in values:
         name, equals, text = given.partition("=")
@@ -61,7 +61,7 @@ def _as_texts(
 
 
 def _value(text: str) -> Any:
-    """Return the value of OpenSCAD's language that a text stands for; a plain word is a text."""
+    """Return the OpenSCAD value of a text; a plain word is a string."""
     from ...csg import value_of
 
     try:
@@ -75,7 +75,7 @@ def _value(text: str) -> Any:
 
 
 def _python_value(text: str) -> Any:
-    """Return the value that a text stands for in Python, where 2 is whole, else in OpenSCAD."""
+    """Return the Python value of a text, where 2 is an integer; else its OpenSCAD value."""
     try:
         return ast.literal_eval(text)
     except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):
@@ -246,7 +246,7 @@ class _Run(Job):
 
     @contextmanager
     def _advised(self) -> Iterator[None]:
-        """Add to the refusal of a mesh that is not closed what can be done about it."""
+        """Add advice to the error about a mesh that is not closed."""
         try:
             yield
         except InvalidMeshError as error:

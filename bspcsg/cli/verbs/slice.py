@@ -92,7 +92,7 @@ class _Section(Drawing):
         return self.data(region), f"area {region.area:.9g}  {words}", values
 
     def _tell_of_plane(self, pitch: int) -> None:
-        """Say whether the plane is another one than was asked for."""
+        """Print a note if the plane differs from the requested one."""
         from ...geometry.hyperplane import Hyperplane
 
         plane = Hyperplane.from_numbers(self._normal, self._offset).on_lattice(pitch)
@@ -114,7 +114,7 @@ _PLANE = ("height", "normal", "offset")
 def _plane(
     height: float | None, normal: tuple[float, ...] | None, offset: float | None
 ) -> tuple[tuple[float, ...], float]:
-    """Return normal and offset of the plane that the options say."""
+    """Return normal and offset of the plane that the options give."""
     if (height is None) == (normal is None):
         raise click.UsageError("say where to cut: either --z HEIGHT or --normal NX,NY,NZ.")
     if height is None:

@@ -92,7 +92,7 @@ def split(context: click.Context, files: tuple[Path, ...], target: Path, **given
 
 @dataclass
 class _Parts:
-    """The parts of a file, and manifold3d's verdict on each if there is one."""
+    """The parts of a file, and the comparison of each with manifold3d if there is one."""
 
     file: Path
     meshes: "list[Mesh]"
@@ -113,7 +113,7 @@ class _Splitting:
         self._inputs = Inputs.of(self._out, settings)
 
     def run(self) -> int:
-        """Do it, and return the exit code."""
+        """Split the files, and return the exit code."""
         from ...parameters import set_threads
 
         set_threads(self._settings["threads"])
@@ -163,7 +163,7 @@ class _Splitting:
         return _Parts(file, meshes, [str(s.validate(depth=depth).verdict) for s in checked])
 
     def _simplified(self, file: Path, solid: "Solid") -> "Solid":
-        """Return a solid without short edges and slivers, if that is asked for."""
+        """Return a solid, without short edges and slivers if the options ask for it."""
         tolerance = self._settings["tolerance"]
         simple = solid.simplify(tolerance) if tolerance else solid
         if simple is not solid:
@@ -171,7 +171,7 @@ class _Splitting:
         return simple
 
     def _tell_of_plane(self, file: Path, side: "Solid") -> None:
-        """Say whether the plane is another one than was asked for."""
+        """Print a note if the plane differs from the requested one."""
         found = [Finding.from_core(finding) for finding in side.tree.findings]
         self._inputs.tell(file, [one for one in found if one not in self._inputs.noticed])
 
@@ -193,7 +193,7 @@ class _Splitting:
         self._out.result("", {**whole, "files": files, "parts": documents})
 
     def _written(self, parts: _Parts) -> Iterator[dict[str, Any]]:
-        """Write the parts of a file, and say what was written."""
+        """Write the parts of a file, and report the files."""
         for number, mesh in enumerate(parts.meshes, 1):
             target = self._target(parts.file, number)
             lost = target.write(mesh)

@@ -76,7 +76,7 @@ def tree(file: Path, **given: Any) -> int:
 
 
 class _Showing:
-    """One script, and where its tree goes."""
+    """One script, and the output for its tree."""
 
     def __init__(
         self, file: Path, target: Path | None, form: str | None, source: str, **settings: Any
@@ -123,7 +123,7 @@ class _Showing:
         if self._target and self._to_file:
             put(self._target, [text.encode()], self._settings["overwrite"])
         elif not self._out.as_json:
-            # In pipes click would leave out what is a colour to a terminal.
+            # In pipes click would drop sequences that a terminal takes for colours.
             said = harmless(text) if sys.stdout.isatty() else text
             click.echo(said, nl=False, color=True)
 
@@ -146,7 +146,7 @@ class _Showing:
 
 
 def _form_of(target: Path | None) -> str:
-    """Return what a suffix stands for; text if there is none."""
+    """Return the form of a suffix; text if there is none."""
     if target is None or str(target) == STREAM or is_dropped(target):
         return "text"
     suffix = target.suffix.lower()

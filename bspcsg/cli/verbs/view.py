@@ -98,7 +98,7 @@ class _Viewing:
 
     @property
     def _folder(self) -> Path | None:
-        """The folder that is to be shown, if it is one."""
+        """The folder to show, if the input is a folder."""
         return self._files[0] if len(self._files) == 1 and self._files[0].is_dir() else None
 
     def _scene(self, files: Sequence[Path]) -> "tuple[list[Layer], str]":
@@ -144,7 +144,7 @@ class _Viewing:
         self._inputs.refuse_early(self._files)
 
     def _opened(self, address: str) -> bool:
-        """Open the page, or say why not."""
+        """Open the page, or print why it cannot be opened."""
         reason = opened(address)
         if reason:
             self._out.note(reason)

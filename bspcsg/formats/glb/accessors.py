@@ -11,9 +11,9 @@ from .container import COMPONENTS, ELEMENTS, Container
 
 
 def stored(container: Container, number: int) -> Values:
-    """Return the (count, k) numbers of an accessor as they are in the file; in place, if they are.
+    """Return the (count, k) numbers of an accessor as stored, without a copy where possible.
 
-    Where there are only some that are replaced, the others are zeros.
+    In a sparse accessor without a base, elements that are not replaced are zeros.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def stored(container: Container, number: int) -> Values:
 
 
 def numbers(values: Values, is_fraction: bool) -> Values:
-    """Return stored numbers in this machine's order; fractions in whole numbers become floats."""
+    """Return stored numbers in native byte order; normalized integers become floats."""
     if is_fraction:
         return fractions(values)
     native: Values = values.astype(values.dtype.newbyteorder("="))
@@ -48,7 +48,7 @@ def numbers(values: Values, is_fraction: bool) -> Values:
 
 
 def fractions(values: Values) -> Values:
-    """Return whole numbers as fractions of the largest, from -1 to 1, in single precision."""
+    """Return normalized integers as fractions from -1 to 1, in single precision."""
     if values.dtype.kind == "f":
         return values
     parts: Values = np.maximum(values / np.iinfo(values.dtype).max, -1).astype(np.float32)
@@ -62,7 +62,7 @@ def _rows(
     width: int,
     item: "np.dtype[np.generic]",
 ) -> Values:
-    """Return rows of numbers in a view of the data, in place."""
+    """Return rows of numbers of a buffer view, without a copy."""
     view = container.tree["bufferViews"][told["bufferView"]]
     stride = view.get("byteStride") or item.itemsize * width
     start = view.get("byteOffset", 0) + told.get("byteOffset", 0)

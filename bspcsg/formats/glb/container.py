@@ -1,4 +1,4 @@
-"""Claims of a GLB file, checked before anything is decoded: sizes, ranges, the tree of nodes."""
+"""Validation of a GLB file before anything is decoded: sizes, ranges, the tree of nodes."""
 
 import json
 from dataclasses import dataclass
@@ -49,7 +49,7 @@ TRIANGLES, STRIP, FAN = 4, 5, 6
 
 @dataclass(frozen=True, eq=False)
 class Container:
-    """A file whose claims fit together.
+    """A file whose description is consistent.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ class Container:
     data : bytes
         The binary chunk, which accessors lie in.
     findings : tuple of Finding
-        Points and lines that are passed by.
+        Findings about points and lines, which are skipped.
     dropped : tuple of str
         As `RawMesh.dropped`.
     """
@@ -75,7 +75,7 @@ def container_of(source: Source) -> Container:
     Raises
     ------
     FormatError
-        If it is cut off, is no GLB of version 2, or its claims do not fit together.
+        If it is cut off, is no GLB of version 2, or its description is inconsistent.
     """
     tree, data = _chunks(source)
     try:
@@ -121,7 +121,7 @@ def _parsed(source: Source, chunk: bytes) -> dict[str, Any]:
 
 
 class _Claims:
-    """The description, and how many bytes there are to back it.
+    """The description to check, and the number of bytes that back it.
 
     Parameters
     ----------
@@ -156,15 +156,15 @@ class _Claims:
         self._check_nodes(self._tree.get("nodes", []))
 
     def _entry(self, kind: str, index: Any) -> dict[str, Any]:
-        """Return what an index names; negative ones name nothing, though Python counts back."""
+        """Return the entry of an index; unlike in Python, negative indices are errors."""
         entries: list[dict[str, Any]] = self._tree.get(kind, [])
         if type(index) is not int or not 0 <= index < len(entries):
-            message = f"the description names {kind} {index}, and has {len(entries)} of them."
+            message = f"the description refers to {kind} {index}, but has only {len(entries)}."
             raise self._source.error(message, "index_out_of_range")
         return entries[index]
 
     def _check_accessor(self, number: int, accessor: dict[str, Any]) -> None:
-        """Check where the elements lie; those that lie nowhere are checked where they are used."""
+        """Check where the elements lie; accessors without a buffer view are checked when used."""
         count, element = accessor["count"], _bytes_of(accessor)
         if "bufferView" in accessor:
             self._check_elements(number, accessor, count, element)
@@ -194,25 +194,25 @@ class _Claims:
             raise self._source.error(message, "truncated")
 
     def _used(self, number: Any) -> dict[str, Any]:
-        """Return an accessor whose elements will be read: zeros where only some are replaced."""
+        """Return an accessor that will be read; without a buffer view it must be sparse."""
         accessor = self._entry("accessors", number)
         if "bufferView" in accessor:
             return accessor
         if "sparse" not in accessor:
-            # Extensions that compress leave it so, too.
+            # Compression extensions leave it without a view, too.
             used = self._tree.get("extensionsUsed", [])
             packing = next((one for one in used if one in _PACKINGS), "")
             message = f"accessor {number} has no data that can be read here."
             raise self._source.error(message + _way_out(packing), "unsupported")
         zeros = accessor["count"] * _bytes_of(accessor)
         if not 0 <= zeros <= self._held:
-            # Nothing else bounds them.
+            # Nothing else limits their number.
             message = f"accessor {number} has {zeros} bytes of zeros, more than the file has data."
             raise self._source.error(message, "too_large")
         return accessor
 
     def _check_nodes(self, nodes: list[dict[str, Any]]) -> None:
-        """Refuse nodes with several parents: they could contain each other or multiply."""
+        """Raise an error for nodes with several parents, which allow cycles and huge scenes."""
         parents = [-1] * len(nodes)
         for number, node in enumerate(nodes):
             for child in node.get("children", []):
@@ -250,7 +250,7 @@ class _Claims:
         return total * times
 
     def _times(self, node: dict[str, Any]) -> int:
-        """Return how often a node shows its mesh."""
+        """Return the number of instances of a node's mesh."""
         told = instances_of(node)
         if told is None:
             return 1
@@ -261,7 +261,7 @@ class _Claims:
 
 
 def _way_out(extension: str) -> str:
-    """Return how to make one that can be read of a file that needs an extension, if known."""
+    """Return advice on how to convert a file that needs an extension, if there is any."""
     return _UNPACK if extension in _PACKINGS else ""
 
 
@@ -271,7 +271,7 @@ def _bytes_of(told: dict[str, Any], shape: str = "") -> int:
 
 
 def instances_of(node: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the accessors of the places at which a node shows its mesh, None if at its own."""
+    """Return the accessors of the instances of a node, None if it has no instancing."""
     told = node.get("extensions", {}).get(_INSTANCES)
     return None if told is None else dict(told["attributes"])
 
@@ -282,7 +282,7 @@ def _is_nowhere(primitive: dict[str, Any]) -> bool:
 
 
 def _dropped(tree: dict[str, Any]) -> tuple[str, ...]:
-    """Return what is said besides the shape."""
+    """Return the kinds of data besides the shape."""
     found = {key for key in ("animations", "skins") if tree.get(key)}
     for primitive in _primitives(tree):
         if primitive.get("targets"):
@@ -302,13 +302,13 @@ def _primitives(tree: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def picture_of(material: dict[str, Any]) -> dict[str, Any]:
-    """Return what a material says of the picture that colours it; nothing if there is none."""
+    """Return the texture entry of a material's base colour; empty if there is none."""
     told: dict[str, Any] = material.get("pbrMetallicRoughness", {}).get("baseColorTexture", {})
     return told
 
 
 def uv_of(tree: dict[str, Any], primitive: dict[str, Any]) -> str:
-    """Return the name of the texture coordinates by which the picture of a primitive is laid."""
+    """Return the name of the texture coordinates that a primitive's base colour uses."""
     materials, number = tree.get("materials", []), primitive.get("material", -1)
     told = picture_of(materials[number]) if 0 <= number < len(materials) else {}
     return f"TEXCOORD_{told.get('texCoord', 0)}"

@@ -1,8 +1,8 @@
 """GLB, the binary form of glTF 2.0: metres, y upwards, single precision.
 
-The model's millimetres with z upwards become metres by the matrix of a node, so that no coordinate
-is multiplied: numbers that single precision can hold read back as they were. Names need not
-differ, so every object is a node and a mesh of its own.
+The matrix of a node converts the model's millimetres with z upwards to metres, so coordinates are
+stored unscaled: numbers that single precision can hold read back unchanged. Names need not differ,
+so every object is a node with a mesh of its own.
 """
 
 import json
@@ -45,7 +45,7 @@ def read(source: Source) -> RawMesh:
     Raises
     ------
     FormatError
-        If the file is cut off, is no GLB of version 2, or holds what cannot be read.
+        If the file is cut off, is no GLB of version 2, or has content that cannot be read.
     """
     container = container_of(source)
     try:
@@ -79,8 +79,8 @@ def _placed(one: NodeMesh) -> PlacedMesh:
 
 def _moved(vertices: FloatArray, matrix: FloatArray) -> FloatArray:
     x, y, z = vertices.T
-    # Not a matrix product: where a row has one entry, its result must be exact.
-    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is refused later
+    # No matrix product: if a row has one entry, the result must be exact.
+    with np.errstate(invalid="ignore", over="ignore"):  # refused later
         rows = [row[0] * x + row[1] * y + row[2] * z + row[3] for row in matrix[:3]]
     return np.stack(rows, axis=1)
 
@@ -98,13 +98,13 @@ def _unit() -> Finding:
 
 
 def most_bytes(mesh: Mesh | RawMesh) -> int:
-    """Return how many bytes of data the file has at most: each object has vertices of its own."""
+    """Return an upper bound of the bytes of data; each object has vertices of its own."""
     vertices = min(3 * len(mesh.faces), len(mesh.vertices) * len(parts_of(mesh)))
     return 12 * (len(mesh.faces) + vertices)
 
 
 def beyond(mesh: Mesh | RawMesh) -> str:
-    """Say why no file can hold so large a mesh; nothing if one can."""
+    """Return why a mesh is too large for the format, or nothing if it fits."""
     is_beyond = most_bytes(mesh) > np.iinfo(np.uint32).max
     return "too many triangles for GLB; write 3MF." if is_beyond else ""
 
@@ -128,7 +128,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 
 
 def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
-    """Yield the file with what is said: vertices are divided where corners differ."""
+    """Yield the file with attributes; vertices are split where the values of corners differ."""
     described = Description(False)
     pictures = Pictures(said.materials, described.append)
     start = 0
@@ -143,7 +143,7 @@ def _with_attributes(mesh: Mesh | RawMesh, said: Attributes) -> Iterator[bytes]:
 
 
 def _divided(faces: IndexArray, columns: dict[str, Values]) -> tuple[IndexArray, IndexArray]:
-    """Return the corner that stands for each vertex, and the triangles that number those."""
+    """Return one corner for each split vertex, and the triangles as indices of those vertices."""
     blocks = [faces.reshape(-1, 1).astype("<i8").view(np.uint8)]
     for values in columns.values():
         flat = np.ascontiguousarray(values).reshape(len(blocks[0]), -1)
@@ -155,7 +155,7 @@ def _divided(faces: IndexArray, columns: dict[str, Values]) -> tuple[IndexArray,
 
 
 def _runs(names: Values | None, count: int) -> list[tuple[int, int, str]]:
-    """Return where triangles of one material begin and end, one run after another."""
+    """Return the ranges of consecutive triangles of one material."""
     if names is None:
         return [(0, count, "")]
     starts = [0, *(np.flatnonzero(names[1:] != names[:-1]) + 1).tolist()]
@@ -164,7 +164,7 @@ def _runs(names: Values | None, count: int) -> list[tuple[int, int, str]]:
 
 
 class Description:
-    """The JSON of a file, object by object."""
+    """The JSON of a file, built object by object."""
 
     def __init__(self, is_empty_set: bool) -> None:
         self._extras = {"extras": {"bspcsg": "the empty set"}} if is_empty_set else {}
@@ -192,7 +192,7 @@ class Description:
         self._accessors.append({**accessor, "count": count, "type": kind})
 
     def add_object(self, name: str, primitives: list[dict[str, Any]]) -> None:
-        """Add an object of which the data were appended."""
+        """Add an object whose data have been appended."""
         self._names.append({"name": called(name)} if name else {})
         self._primitives.append(primitives)
 
@@ -207,7 +207,7 @@ class Description:
     def append_mesh(
         self, points: FloatArray, faces: IndexArray, said: Attributes, pictures: Pictures
     ) -> list[dict[str, Any]]:
-        """Add the triangles of an object with what is said of them; return its primitives."""
+        """Append the triangles of an object with their attributes; return its primitives."""
         columns = columns_of(said, np.arange(len(faces)))
         first, corners = _divided(faces, columns)
         vertices = points[faces.ravel()[first]].astype("<f4")
@@ -297,7 +297,7 @@ def _primitive(number: int) -> dict[str, Any]:
 
 
 def container(description: bytes, blocks: list[bytes]) -> Iterator[bytes]:
-    """Yield a file; the sizes of all blocks are multiples of four already."""
+    """Yield a file of blocks whose sizes are multiples of four."""
     text = description + b" " * (-len(description) % 4)
     held = sum(map(len, blocks))
     total = 20 + len(text) + (8 + held if blocks else 0)

@@ -1,4 +1,4 @@
-"""Colours of glTF are amounts of light; attributes and materials have them as a screen shows them.
+"""Conversion between linear colours of glTF and sRGB colours of attributes and materials.
 
 # Source
 IEC 61966-2-1 (sRGB); glTF 2.0, sections 3.7.2.1 and 3.9.2.
@@ -24,7 +24,7 @@ _BYTE, _WORD = 255, 65535
 
 
 def to_light(colors: npt.ArrayLike) -> FloatArray:
-    """Return amounts of light of colours from 0 to 1; a fourth number, opacity, stays."""
+    """Return linear colours of sRGB colours from 0 to 1; a fourth number, opacity, stays."""
     values = np.array(colors, dtype=np.float64)
     shown = values[..., :3]
     curve = ((shown + _SHIFT) / (1 + _SHIFT)) ** _POWER
@@ -33,7 +33,7 @@ def to_light(colors: npt.ArrayLike) -> FloatArray:
 
 
 def to_screen(colors: npt.ArrayLike) -> FloatArray:
-    """Return the colours of amounts of light from 0 to 1."""
+    """Return sRGB colours of linear colours from 0 to 1."""
     values = np.array(colors, dtype=np.float64)
     light = np.clip(values[..., :3], 0, 1)
     curve = (1 + _SHIFT) * light ** (1 / _POWER) - _SHIFT
@@ -42,23 +42,23 @@ def to_screen(colors: npt.ArrayLike) -> FloatArray:
 
 
 def color_of(light: npt.ArrayLike) -> tuple[float, ...]:
-    """Return the colour of one amount of light, as it is read."""
+    """Return the sRGB colour of one linear colour, as it is read."""
     return tuple(round(value, _DIGITS) for value in to_screen(light).tolist())
 
 
 def as_read(color: tuple[float, ...]) -> tuple[float, ...]:
-    """Return a colour as it is read after it was written."""
+    """Return the colour that is read back after this one was written."""
     return color_of(to_light(color))
 
 
 def words_of(colors: npt.NDArray[np.uint8]) -> npt.NDArray[np.uint16]:
-    """Return colours in bytes as light in words, which tell all bytes apart."""
+    """Return sRGB bytes as linear 16-bit numbers, which keep all bytes distinct."""
     found: npt.NDArray[np.uint16] = np.rint(to_light(colors / _BYTE) * _WORD).astype(np.uint16)
     return found
 
 
 def shown(light: npt.NDArray[Any], is_whole: bool) -> npt.NDArray[Any]:
-    """Return light of a file as colours: bytes if the file has whole numbers, else floats."""
+    """Return linear colours of a file as sRGB: bytes if the file has integers, else floats."""
     colors = to_screen(light)
     if is_whole:
         return np.rint(np.clip(colors, 0, 1) * _BYTE).astype(np.uint8)

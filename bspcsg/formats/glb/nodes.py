@@ -1,4 +1,4 @@
-"""The content of the nodes of a GLB: triangles in single precision under a matrix, node by node."""
+"""The meshes of the nodes of a GLB: triangles in single precision, each mesh with a matrix."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ class NodeMesh:
     Parameters
     ----------
     name : str
-        Of the mesh, or of the node if the mesh has none.
+        The name of the mesh, or of the node if the mesh has none.
     vertices : (n, 3) float32
         Before the matrix.
     faces : (m, 3) int64
@@ -47,13 +47,13 @@ class NodeMesh:
 def shown(container: Container) -> tuple[list[NodeMesh], int]:
     """Return what the scene shows, and how many nodes with a mesh it does not show.
 
-    A mesh at several nodes is shown at each of them. The nodes come in the order of the file,
-    those inside a node after it.
+    A mesh of several nodes appears at each of them. The nodes come in the order of the file,
+    children after their parent.
 
     Raises
     ------
     ValueError, LookupError, TypeError
-        If the data are of kinds that glTF does not have.
+        If the data have types that glTF does not allow.
     """
     tree = container.tree
     nodes = tree.get("nodes", [])
@@ -98,7 +98,7 @@ def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tupl
 
 
 def local_matrix(node: dict[str, Any]) -> FloatArray:
-    """Return the place of a node in the one around it, for column vectors."""
+    """Return the matrix from a node to its parent, for column vectors."""
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     given = [
@@ -114,7 +114,7 @@ _USUAL = ([0, 0, 0], [0, 0, 0, 1], [1, 1, 1])
 
 
 def places_of(container: Container, node: dict[str, Any]) -> FloatArray:
-    """Return where a node shows its mesh, (n, 4, 4), seen from the node itself."""
+    """Return the matrices of a node's instances, (n, 4, 4), relative to the node."""
     told = instances_of(node)
     if told is None:
         return _IDENTITY[None]
@@ -151,7 +151,7 @@ def _turned(quaternions: FloatArray) -> FloatArray:
 
 
 def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -> _Triangles:
-    """Return the triangles of all primitives of a mesh, and what is said of them."""
+    """Return the triangles of all primitives of a mesh, and their attributes."""
     vertices: list[SingleArray] = [np.zeros((0, 3), np.float32)]
     faces = [np.zeros((0, 3), np.int64)]
     parts = []
@@ -165,7 +165,7 @@ def triangles_of(container: Container, mesh: dict[str, Any], materials: Named) -
         corners = _faces(container, primitive, len(points), mode)
         used = None
         if primitive["attributes"]["POSITION"] in shared:
-            # Of vertices that several primitives have, each takes what it uses.
+            # If several primitives share vertices, each takes the vertices that it uses.
             used, corners = compacted(corners)
         columns = read_columns(container, primitive, len(points), used)
         points = points if used is None else points[used]

@@ -1,8 +1,8 @@
 """Attributes and materials of GLB.
 
-Colours become light and light becomes colours (see `light`), other numbers go into the file as they
-are. glTF counts texture coordinates from the
-upper left corner of a picture, attributes count from the lower left, so they are turned over.
+Colours are converted between sRGB and linear (see `light`); other numbers are stored unchanged.
+glTF counts texture coordinates from the upper left corner of a picture, attributes count from the
+lower left, so they are flipped.
 """
 
 from collections.abc import Callable, Mapping
@@ -32,12 +32,12 @@ _OWN = "_"
 
 
 def called(name: str) -> str:
-    """Return a name without lone surrogates, which are no text."""
+    """Return a name without lone surrogates, which UTF-8 cannot encode."""
     return name.encode("utf-8", "replace").decode("utf-8")
 
 
 def kept(said: Attributes, vertices: FloatArray) -> Attributes:
-    """Return what GLB holds of attributes, in single precision.
+    """Return the attributes that GLB can hold, in single precision.
 
     Normals and texture coordinates of corners, colours, materials of faces, and other floats of
     vertices and corners, up to four for each. Where normals are missing, those of the faces are.
@@ -85,24 +85,24 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
     if name == "normal":
         is_whole = shape == (3,) and not np.isnan(single).any()
         return single if is_whole else None
-    # A file must hold no NaN, and no name that is no text.
+    # A file must not contain NaN, or names that UTF-8 cannot encode.
     is_fit = name not in _KNOWN.values() and called(name) == name
     return single if is_fit and not np.isnan(single).any() else None
 
 
 def _color(values: Values) -> Values:
-    """Return colours as files hold them: four bytes, for a row of bytes is a multiple of four."""
+    """Return colours as files store them: four bytes, since rows must be multiples of four."""
     return opaque(as_bytes(values))
 
 
 def _upright(uv: Values) -> Values:
-    """Turn texture coordinates over, in single precision."""
+    """Flip texture coordinates vertically, in single precision."""
     turned: Values = np.stack([uv[..., 0], np.float32(1) - uv[..., 1]], axis=-1)
     return turned
 
 
 def columns_of(said: Attributes, rows: IndexArray) -> dict[str, Values]:
-    """Return what some triangles have at their corners, (k, 3, …), by glTF's names."""
+    """Return the values at the corners of some triangles, (k, 3, …), by glTF's names."""
     called = {name: semantic for semantic, name in _KNOWN.items()}
     found = {}
     for name in said.names:
@@ -181,7 +181,7 @@ def materials_of(tree: Mapping[str, Any], data: bytes) -> Named:
 
 
 def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
-    """Return the picture of a texture, if it lies in the file and is one that is known."""
+    """Return the picture of a texture, if the file contains it in a known format."""
     try:
         image = tree["images"][tree["textures"][told["index"]]["source"]]
         view = tree["bufferViews"][image["bufferView"]]
@@ -193,7 +193,7 @@ def _texture(tree: Mapping[str, Any], data: bytes, told: Any) -> bytes | None:
 
 
 def dropped_pictures(tree: Mapping[str, Any], data: bytes) -> tuple[str, ...]:
-    """Return the words for pictures of materials that are not kept, as `RawMesh.dropped` has it."""
+    """Return the kinds of pictures that are not kept, for `RawMesh.dropped`."""
     textures = range(len(tree.get("textures", [])))
     named = [picture_of(material) for material in tree.get("materials", [])]
     given = [told for told in named if told.get("index") in textures]
@@ -217,7 +217,7 @@ class Pictures:
         self._append = append
 
     def described(self) -> dict[str, Any]:
-        """Return what the description says of them."""
+        """Return the entries of the description for them."""
         if not self._materials:
             return {}
         images: list[dict[str, Any]] = []

@@ -1,4 +1,4 @@
-"""The tree of a GLB's nodes, in and out."""
+"""Reading and writing the tree of a GLB's nodes."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -61,12 +61,12 @@ class _Reading:
         return found[0] if len(found) == 1 else SceneNode("", _IDENTITY, children=found)
 
     def _only_turns(self, told: dict[str, Any]) -> bool:
-        """Say whether a node is what this package puts around a tree: metres, y upwards."""
+        """Say whether a node only converts to metres with y upwards, as this package writes it."""
         is_bare = set(told) == {"matrix", "children"} and len(told["children"]) == 1
         return is_bare and bool((local_matrix(told) == TO_METRES).all())
 
     def _node(self, number: int, outer: FloatArray) -> SceneNode:
-        """Return a node; the claims were checked, so that none is deeper than is bearable."""
+        """Return a node; the depth of the tree has been checked."""
         if not 0 <= number < len(self._nodes):
             raise IndexError(f"node {number} does not exist")
         told = self._nodes[number]
@@ -83,7 +83,7 @@ class _Reading:
         return SceneNode(name, matrix, None, None, (*own, *children))
 
     def _mesh(self, number: int) -> tuple[RawMesh, tuple[float, ...] | None]:
-        """Return a mesh and its colour, always the same object for all nodes."""
+        """Return a mesh and its colour; all nodes share one object."""
         if number not in self._meshes:
             told = self._held.tree["meshes"][number]
             vertices, faces, said = triangles_of(self._held, told, self._materials)
@@ -123,13 +123,13 @@ class _AsGlb:
 
 
 def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
-    """Return a mesh, and the colour that its one material is called after instead of that."""
+    """Return a mesh and its colour: a lone material that is named after a colour is removed."""
     said = mesh.attributes
     if said is None or "material" not in said.face or "color" in said.names or not len(mesh.faces):
         return mesh, None
     names = np.unique(said.face["material"]).tolist()
     material = said.materials.get(names[0], Material())
-    # Colours that are the same in bytes have names that differ in a number behind them.
+    # Colours that are equal in bytes have names that differ by a number at the end.
     is_named = len(names) == 1 and names[0].partition(" ")[0] == hexadecimal(material.color)
     if not is_named or material.texture is not None:
         return mesh, None
@@ -138,9 +138,9 @@ def _painted(mesh: RawMesh) -> tuple[RawMesh, tuple[float, ...] | None]:
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:
-    """Yield the file of a tree as `as_written` returns it; what is at several nodes is once there.
+    """Yield the file of a tree from `as_written`; meshes of several nodes are stored once.
 
-    Meshes have no names, for those of the nodes are all there is.
+    Meshes have no names, since a tree has only names of nodes.
     """
     nodes: list[dict[str, Any]] = [{"matrix": TO_METRES.T.ravel().tolist()}]
     described = SceneDescription(nodes)

@@ -1,6 +1,5 @@
-"""The content of a written file, read by its layout alone: arrays, object by object.
+"""The content of written files as arrays, object by object, for the proof of a file.
 
-These are no readers: they take the very layout that the writers of this package make, byte for
-byte, and nothing else. They share no code with the writers, and every byte that tells of a triangle
-is read.
+These modules are no general readers: they accept only the exact layout that the writers of this
+package make. They share no code with the writers, and read every byte that describes a triangle.
 """

@@ -1,4 +1,4 @@
-"""The content of files of GLB."""
+"""The content of GLB files."""
 
 from typing import BinaryIO
 

@@ -1,4 +1,4 @@
-"""Objects as they stand in a file, and blocks of numbers in one layout."""
+"""Objects of a file, and blocks of numbers with a common layout."""
 
 import os
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class StoredMesh:
     vertices : (n, 3) float32 or float64
         In the precision of the file.
     faces : (m, 3) int, optional
-        Indices of `vertices`; where there are none, three vertices after another are a triangle.
+        Indices of `vertices`; without them, every three consecutive vertices are a triangle.
     name : str
     """
 
@@ -35,7 +35,7 @@ class StoredMesh:
         return len(self.vertices) // 3 if self.faces is None else len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
-        """Say whether these are its very arrays."""
+        """Say whether the object has exactly these arrays."""
         if self.faces is None or self.vertices.shape != vertices.shape:
             return False
         return bool((self.faces == faces).all() and (self.vertices == vertices).all())
@@ -46,7 +46,7 @@ class StoredMesh:
 
 
 class RowsInFile(Protocol):
-    """Rows of three numbers in a file, which are read when they are asked for."""
+    """Rows of three numbers in a file, which are read on demand."""
 
     def __len__(self) -> int:
         """Return the number of rows."""
@@ -99,7 +99,7 @@ class Rows:
 
     @property
     def end(self) -> int:
-        """The first byte behind them."""
+        """The offset of the first byte after them."""
         return self._start + self._count * int(self._row.itemsize)
 
     def check_last(self) -> None:
@@ -114,7 +114,7 @@ class Rows:
         )
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows of a block, of numbers of eight bytes, are these, bit by bit."""
+        """Say whether the rows of a block, of numbers of eight bytes, equal these bit by bit."""
         base = self._row.base
         words = np.ascontiguousarray(expected, base.newbyteorder("=")).view(np.uint64)
         return are_words(self.data(block), words, base == base.newbyteorder(">"))
@@ -157,7 +157,7 @@ class StoredRows:
         return len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
-        """Say whether the file holds these very arrays, in its order."""
+        """Say whether the file holds exactly these arrays, in this order."""
         if len(self.vertices) != len(vertices):
             return False
         found = self.vertices.are(vertices) and self.faces.are(faces)
@@ -177,7 +177,7 @@ class StoredRows:
 
 
 def piece(file: BinaryIO, start: int, count: int) -> bytes:
-    """Return so many bytes of a file, and refuse one that ends before."""
+    """Return `count` bytes of a file; raise an error if it ends earlier."""
     file.seek(start)
     data = file.read(count)
     if len(data) != count:
@@ -201,19 +201,19 @@ def text_at(file: BinaryIO, start: int, count: int = _MAX_LINE_BYTES) -> bytes:
 
 
 def header_of(file: BinaryIO) -> bytes:
-    """Return the bytes of a file among which all of its header is."""
+    """Return the first bytes of a file, which include its whole header."""
     return text_at(file, 0)
 
 
 def after(key: bytes, line: bytes) -> str:
-    """Return the name in a line that begins with a key."""
+    """Return the name that follows a key in a line."""
     if not line.startswith(key):
         raise ValueError(f"a line does not begin with “{key.decode()}”")
     return line[len(key) :].decode("utf-8")
 
 
 def rows_of(block: bytes, row: bytes) -> npt.NDArray[np.float64]:
-    """Return the numbers of a block that is one row again and again, in which `#` is a number."""
+    """Return the numbers of a block of equal rows; `#` stands for a number in the pattern `row`."""
     return numbers_in_rows(block, row).reshape(-1, row.count(b"#"))
 
 

@@ -23,7 +23,7 @@ class Lines:
     ----------
     file : binary file
     start : callable
-        Returns where the first line begins.
+        Returns the offset of the first line.
     count : int
     read : callable
     """
@@ -45,7 +45,7 @@ class Lines:
         return self._read(b"").dtype
 
     def end(self) -> int:
-        """Return where the last line ends; all are read for it, unless they were."""
+        """Return the offset at which the last line ends; this reads all lines once."""
         if self._end is None:
             self._end = self._start() + sum(map(len, self._texts()))
         return self._end
@@ -82,7 +82,7 @@ class Lines:
 
 
 def _first_lines(text: bytes, most: int) -> tuple[bytes, int]:
-    """Return the whole lines that a text begins with, so many at most, and their number."""
+    """Return the complete lines at the start of a text, at most `most`, and their number."""
     count = text.count(b"\n")
     if count > most:
         return text[: -len(text.split(b"\n", most)[most])], most

@@ -1,4 +1,4 @@
-"""The content of files of STL, OBJ, OFF and PLY."""
+"""The content of STL, OBJ, OFF and PLY files."""
 
 import io
 import re
@@ -72,7 +72,7 @@ def obj(file: BinaryIO) -> list[StoredMesh] | list[StoredRows]:
 
 
 def _lines(data: bytes, start: int, end: int, read: Reader) -> Lines:
-    """Return the lines between two places, of which the last must end."""
+    """Return the lines between two offsets; the last must end with a line break."""
     if start < end and data[end - 1 : end] != b"\n":
         raise ValueError(f"it ends within a line at byte {end}")
     return Lines(io.BytesIO(data), lambda: start, data.count(b"\n", start, end), read)
@@ -87,7 +87,7 @@ def _named_faces(text: bytes) -> npt.NDArray[Any]:
 
 
 def _first(data: bytes, start: int, letters: bytes) -> int:
-    """Return where one of these letters comes first, which no number has and no other line."""
+    """Return the offset of the first of these letters, which occur only in lines of this kind."""
     found = [data.find(letter, start) for letter in letters]
     return min((at for at in found if at >= 0), default=len(data))
 
@@ -121,7 +121,7 @@ def binary_ply(file: BinaryIO) -> list[StoredRows]:
 
 
 class _Faces(Rows):
-    """Rows of three corners, each after a byte that says three."""
+    """Rows of three corners, each after a byte of value three."""
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
         return are_triangles(self.data(block), expected.astype(np.int64, copy=False))

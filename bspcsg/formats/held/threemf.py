@@ -1,4 +1,4 @@
-"""The content of archives of 3MF."""
+"""The content of 3MF archives."""
 
 import zipfile
 from collections.abc import Iterator
@@ -22,7 +22,7 @@ def archive(file: BinaryIO) -> list[StoredMesh]:
 
 
 def _read(archive: zipfile.ZipFile, name: str) -> bytes:
-    """Return a part, whose sum is checked; by pieces, so that a signal is heard between them."""
+    """Return a part and check its checksum; read it in pieces, so that it can be interrupted."""
     with archive.open(name) as part:
         return b"".join(iter(lambda: part.read(_CHUNK_BYTES), b""))
 

@@ -1,4 +1,4 @@
-"""The content of grids of VTK and VTU."""
+"""The content of VTK and VTU grids."""
 
 import re
 import zlib
@@ -115,7 +115,7 @@ def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArra
 
 
 def _unpacked(text: bytes, order: str) -> bytes:
-    """Return an array's bytes, which stand in pieces packed by zlib behind the lengths of these."""
+    """Return the bytes of an array, stored as a table of lengths and pieces compressed by zlib."""
     end = _letters(_WORD)
     count = int(np.frombuffer(_bytes(text[:end])[:_WORD], order + "u4")[0])
     end = _letters(_WORD * (3 + count))
@@ -138,5 +138,5 @@ _WORD = 4
 
 
 def _letters(count: int) -> int:
-    """Return how many letters of base 64 so many bytes take."""
+    """Return the number of base64 letters that encode `count` bytes."""
     return -(-count // 3) * 4

@@ -1,8 +1,8 @@
-"""Attributes as columns of PLY, and columns as attributes.
+"""Conversion between attributes and columns of PLY.
 
 Programs know colours as red, green, blue and alpha, normals as nx, ny and nz, and texture
-coordinates as s and t, or as a list called texcoord on faces. Other arrays have a column, or one
-for each of their numbers, with that behind the name; values of corners are lists on faces.
+coordinates as s and t, or as a list called texcoord on faces. Any other array has one column, or
+one for each component with its number after the name; values of corners are lists on faces.
 """
 
 import re
@@ -51,7 +51,7 @@ _MAX_LIST_LENGTH = 255
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return what PLY holds of attributes: numbers, under names of one word."""
+    """Return the attributes that PLY can hold: numbers with one-word names."""
     return chosen(said, _kept)
 
 
@@ -71,7 +71,7 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
 
 
 def _of_known_type(values: Values) -> Values | None:
-    """Return numbers in a type that PLY has, or None if it has none for them."""
+    """Return numbers in a type of PLY, or None if no type fits."""
     if values.dtype.kind == "b":
         return values.astype(np.uint8)
     if values.dtype.kind == "f":
@@ -106,7 +106,7 @@ def lists_of(attributes: Mapping[str, Values]) -> Iterator[tuple[str, Values]]:
 
 
 def attributes_of(columns: Mapping[str, Values]) -> dict[str, Values]:
-    """Return the attributes that columns of vertices or faces are."""
+    """Return the attributes of columns of vertices or faces."""
     left: dict[str, Values] = {}
     for name, values in columns.items():
         usual = _ALIASES.get(name, name)
@@ -122,7 +122,7 @@ def attributes_of(columns: Mapping[str, Values]) -> dict[str, Values]:
 
 
 def _numbered(columns: Mapping[str, Values]) -> dict[str, list[str]]:
-    """Return the names of columns that are the numbers of one array, from 0 on."""
+    """Return the names of columns that form one array, numbered from 0."""
     counts: dict[str, int] = {}
     for name in columns:
         match = _NUMBERED.fullmatch(name)
@@ -136,7 +136,7 @@ def _numbered(columns: Mapping[str, Values]) -> dict[str, list[str]]:
 
 
 def corners_of(lists: Mapping[str, Values], count: int) -> dict[str, Values]:
-    """Return the values at the corners of polygons, one after another, that lists on them are.
+    """Return the values at the corners of polygons, one polygon after another, from lists on faces.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def corners_of(lists: Mapping[str, Values], count: int) -> dict[str, Values]:
 
 
 def names_in(attributes: Attributes | None) -> dict[str, set[str]]:
-    """Return the names of columns and lists, by the elements that have them, that are kept."""
+    """Return the names of kept columns and lists, by element."""
     if attributes is None:
         return {}
     vertex = {name for name, _ in columns_of(attributes.vertex)}

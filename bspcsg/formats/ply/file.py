@@ -48,7 +48,7 @@ class _Found:
         error_at: Callable[[int, str, str], FormatError],
         columns: dict[str, Values],
     ) -> None:
-        """Take in the lists of an element: strips become triangles, unless there are faces."""
+        """Take the lists of an element; strips become triangles, unless there are faces."""
         has_faces = self.polygons is not None and len(self.polygons.counts) > 0
         if name == _STRIPS and not has_faces:
             triangles, owners = polygons.of_strips()
@@ -100,7 +100,7 @@ def _triangles_and_attributes(
     vertices: FloatArray,
     error_at: Callable[[int, str, str], FormatError],
 ) -> tuple[IndexArray, Attributes | None]:
-    """Return the triangles and what is said of them and of vertices."""
+    """Return the triangles and the attributes."""
     if not found.vertex_columns and not found.face_columns:
         return polygons.triangles(vertices, error_at), None
     positions = polygons.positions(vertices, error_at)
@@ -117,7 +117,7 @@ def _triangles_and_attributes(
 
 
 def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
-    """Yield the arrays of vertices, corners and faces, of which no two have one name."""
+    """Yield the arrays of vertices, corners and faces, under distinct names."""
     taken: set[str] = set()
     for kind in kinds:
         yield {name: values for name, values in kind.items() if name not in taken}
@@ -125,7 +125,7 @@ def _apart(*kinds: dict[str, Values]) -> Iterator[dict[str, Values]]:
 
 
 def _more_than_a_shape(header: Header, said: Attributes | None, faces: str) -> tuple[str, ...]:
-    """Return which elements and properties say something besides the shape, and are not kept."""
+    """Return the elements and properties besides the shape that are not kept."""
     columns = names_in(said)
     told = [f"the picture “{name}”" for name in header.pictures]
     for element in header.elements:
@@ -145,7 +145,7 @@ def _axes(element: Element) -> tuple[int, int, int] | None:
 
 
 def _face_column(source: Source, header: Header, element: Element) -> int | None:
-    """Return which property lists the corners of a face, if this element has one."""
+    """Return the property that lists the corners of a face, if this element has one."""
     is_listing = element.name in (_FACES, _STRIPS)
     column = element.index(*_FACE_LISTS) if is_listing else None
     if column is None or element.properties[column].count is None:
@@ -167,8 +167,8 @@ def _read_text(source: Source, header: Header, found: _Found) -> tuple[Finding, 
 
 
 def _spread(header: Header, lines: list[_Line]) -> list[_Line] | None:
-    """Return a line for each record if the file has their numbers, but on other lines."""
-    # Where there are as many lines as there should be, one of them is wrong.
+    """Return a line for each record if the numbers are complete, but on other lines."""
+    # If the number of lines is right, one of the lines must be wrong.
     if sum(element.number for element in header.elements) == len(lines):
         return None
     words = [(number, word) for number, line in lines for word in line]
@@ -251,7 +251,7 @@ def _text_columns(
     element: Element,
     known: tuple[int, ...],
 ) -> dict[str, Values]:
-    """Return the columns of an element without lists that are not known by themselves."""
+    """Return the columns of an element without lists, except those already known."""
     return {
         prop.name: _text_numbers(source, block, [words[k] for _, words in block], prop.item)
         for k, prop in enumerate(element.properties)
@@ -276,7 +276,7 @@ def _text_face_columns(
 
 
 def _split(words: list[bytes], element: Element) -> list[list[bytes]]:
-    """Return the words of each property of a line that was checked."""
+    """Return the words of each property of a checked line."""
     at, found = 0, []
     for prop in element.properties:
         length = 1 if prop.count is None else integral(words[at])
@@ -353,7 +353,7 @@ def _read_binary(
 
 
 def _read_records(source: Source, order: Order, element: Element, start: int, found: _Found) -> int:
-    """Read an element without lists; return where its data end."""
+    """Read an element without lists; return the offset at which its data end."""
     fields = [(f"p{k}", p.item.newbyteorder(order)) for k, p in enumerate(element.properties)]
     record = np.dtype(fields)
     end = start + record.itemsize * element.number
@@ -401,7 +401,7 @@ _Columns: TypeAlias = list[tuple[str, Values]]
 
 
 def _columns(mesh: Mesh | RawMesh) -> tuple[_Columns, _Columns, _Columns]:
-    """Return the further columns of vertices, those of faces, and the lists of faces."""
+    """Return the additional columns of vertices, the columns of faces, and the lists of faces."""
     said = said_of(mesh)
     if said is None:
         return [], [], []
@@ -418,7 +418,7 @@ def _type_of(values: Values) -> str:
 
 
 def beyond(mesh: Mesh | RawMesh) -> str:
-    """Say why no file can hold so large a mesh; nothing if one can."""
+    """Return why a mesh is too large for the format, or nothing if it fits."""
     is_beyond = len(mesh.vertices) > np.iinfo(np.int32).max
     return "too many vertices for PLY; write OBJ." if is_beyond else ""
 
@@ -477,7 +477,7 @@ def _lines(mesh: Mesh | RawMesh) -> Iterator[str]:
 
 
 def _words(columns: _Columns, count: int) -> Iterable[str]:
-    """Return what follows in each line, with a space before each word; lists begin by length."""
+    """Return the end of each line, with a space before each word; lists begin with their length."""
     if not columns:
         return itertools.repeat("", count)
     lists = [listed(values) for _, values in columns]

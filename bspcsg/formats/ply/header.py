@@ -1,4 +1,4 @@
-"""The header of a PLY file: which elements follow, how many, and with which properties."""
+"""The header of a PLY file: its elements, their counts and properties."""
 
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -46,7 +46,7 @@ class Property:
 
 @dataclass(frozen=True)
 class Element:
-    """One kind of record, and how many of them follow."""
+    """One kind of record, and the number of records."""
 
     name: str
     number: int
@@ -65,7 +65,7 @@ class Element:
 
 @dataclass(frozen=True)
 class Header:
-    """The content of the header, and where the data begin.
+    """The content of the header, and the start of the data.
 
     Parameters
     ----------
@@ -78,9 +78,9 @@ class Header:
     lines : int
         Lines before the data.
     pictures : tuple of str
-        The files of pictures that programs name in comments.
+        The picture files that programs name in comments.
     unknown : tuple of int
-        Lines that are no statements, which are taken for comments.
+        Numbers of lines that are no statements; they count as comments.
     """
 
     order: Order | None
@@ -135,7 +135,7 @@ def read_header(source: Source) -> Header:
 
 
 def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
-    """Return the line that begins at `start`, and where the next one begins."""
+    """Return the line that begins at `start`, and the offset of the next line."""
     data = source.data
     stop = data.find(b"\n", start)
     carriage = data.find(b"\r", start, None if stop < 0 else stop)

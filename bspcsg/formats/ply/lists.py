@@ -1,4 +1,4 @@
-"""Binary PLY elements with lists: at once if all lists are equally long, else one by one."""
+"""Binary PLY elements with lists, read at once if all lists have one length, else one by one."""
 
 import struct
 from collections.abc import Callable
@@ -20,7 +20,7 @@ class ListBlock:
     Parameters
     ----------
     end : int
-        The place at which its data end.
+        The offset at which its data end.
     polygons : IndexPolygons or None
         The lists of the wanted column, if one was wanted.
     error_at : callable
@@ -142,7 +142,7 @@ class _Step:
         self._count = None if prop.count is None else struct.Struct(order + prop.count.char)
 
     def extent(self, data: bytes, at: int) -> tuple[int, int]:
-        """Return where the values begin and how many there are; past the end, one too many."""
+        """Return offset and number of the values; past the end of the data, one too many."""
         if self._count is None:
             return at, 1
         if at + self._count.size > len(data):

@@ -27,8 +27,8 @@ def read(source: Source) -> RawMesh:
     Raises
     ------
     FormatError
-        If the archive is damaged, has no model, the model is not valid, or needs an extension that
-        is not read here.
+        If the archive is damaged or has no model, or the model is not valid or needs an extension
+        that is not supported.
     """
     with opened(source) as package:
         root = package.root()
@@ -75,7 +75,7 @@ def _assembled(package: Package, root: str) -> RawMesh:
 
 
 def _bodies(package: Package) -> set[tuple[str, str]]:
-    """Return part and number of the objects of the parts read so far that have a shape."""
+    """Return part and number of all objects with a shape, in the parts read so far."""
     parts = package.parts.items()
     objects = ((path, item, one) for path, part in parts for item, one in part.objects.items())
     return {(path, item) for path, item, one in objects if one.is_body or one.beams}
@@ -128,7 +128,7 @@ def _unit_finding(part: ModelPart) -> tuple[Finding, ...]:
 
 
 def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
-    """Return the finding about parts in other units than the root has, whose unit goes for all."""
+    """Return the finding about parts in other units than the root's, which counts for all."""
     others = [path for path, part in package.parts.items() if part.unit != unit]
     if not others:
         return ()
@@ -138,7 +138,7 @@ def _other_units(package: Package, unit: str) -> tuple[Finding, ...]:
 
 
 def _left_out(slicing: Slicing, unmade: list[str]) -> list[Finding]:
-    """Return what is to be told of the parts of objects that slicers call no material."""
+    """Return the findings about parts that slicers do not treat as material."""
     found: list[Finding] = []
     for kind, count in slicing.counts.items():
         if kind != NEGATIVE:

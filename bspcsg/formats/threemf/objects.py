@@ -1,4 +1,4 @@
-"""The objects of a 3MF package: where each is placed, and the mesh of each.
+"""The objects of a 3MF package: their placements and meshes.
 
 Most have a mesh. A boolean shape is a set of meshes, which is evaluated here (3MF Boolean
 Operations Extension 1.1.0, section 2.1).
@@ -35,7 +35,7 @@ _Waiting: TypeAlias = tuple[str, PlacedObject, tuple[FloatArray, ...]]
 
 
 class Objects:
-    """The objects of a package; the mesh of each is made once.
+    """The objects of a package; each mesh is made once.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Objects:
     Attributes
     ----------
     unmade : list of str
-        Why optional shapes could not be made.
+        The reasons why optional shapes could not be made.
     """
 
     def __init__(self, package: Package) -> None:
@@ -62,7 +62,7 @@ class Objects:
         Raises
         ------
         FormatError
-            If an object does not exist, or they contain each other too often.
+            If an object does not exist, or objects are nested too deeply.
         """
         found: list[tuple[str, str, tuple[FloatArray, ...]]] = []
         waiting: list[_Waiting] = [(root, item, ()) for item in reversed(items)]
@@ -83,7 +83,7 @@ class Objects:
         return found
 
     def bare_mesh(self, path: str, item: str) -> RawMesh:
-        """Return the mesh of an object as `mesh` does, without attributes."""
+        """Return the mesh of an object like `mesh`, without attributes."""
         known = self._package.part(path).objects[item]
         if known.shape is None:
             return RawMesh(*known.arrays(), known.name)
@@ -95,7 +95,7 @@ class Objects:
         Raises
         ------
         FormatError
-            If a shape is of what is no closed mesh, or shapes contain each other too often.
+            If an operand of a shape is no closed mesh, or shapes are nested too deeply.
         """
         if (path, item) not in self._meshes:
             known = self._package.part(path).objects[item]
@@ -107,7 +107,7 @@ class Objects:
         return self._meshes[path, item]
 
     def used(self) -> set[tuple[str, str]]:
-        """Return part and number of the objects that boolean shapes were made of."""
+        """Return part and number of the objects that are operands of boolean shapes."""
         return {*self._solids, *self._bases}
 
     def _named(self, here: str, placed: PlacedObject) -> tuple[str, Object]:
@@ -135,7 +135,7 @@ class Objects:
         return RawMesh(vertices, faces, attributes=said)
 
     def _attempted(self, path: str, item: str) -> RawMesh:
-        """Return the mesh of a shape, or that of its base where it cannot be made."""
+        """Return the mesh of a boolean shape, or of its base if the shape cannot be made."""
         shape = held(self._package.part(path).objects[item].shape, "the shape")
         try:
             return self._evaluated(path, item)
@@ -158,7 +158,7 @@ class Objects:
             raise self._too_deep()
         path, known = self._named(here, placed)
         if known.kind != "model" or not known.is_body:
-            message = f"object {placed.item} is part of a boolean shape, and no mesh of a model."
+            message = f"object {placed.item} is part of a boolean shape, but no mesh of a model."
             raise self._package.source.error(message, "unsupported")
         if (path, placed.item) not in self._solids:
             made = self._combined if known.shape is not None else self._meshed

@@ -73,7 +73,7 @@ class Package:
         )
 
     def root(self) -> str:
-        """Return the name of the part that the package's relationships call its model."""
+        """Return the name of the model part, from the package's relationships."""
         targets: list[str] = []
 
         def start(tag: str, attributes: dict[str, str]) -> None:
@@ -85,7 +85,7 @@ class Package:
         return targets[0] if targets else "3D/3dmodel.model"
 
     def is_empty_set(self, root: str) -> bool:
-        """Say whether the model is what this package writes for the empty set."""
+        """Say whether the model is the one that this library writes for the empty set."""
         entry = self._entries.get(root.lower())
         if entry is None or entry.file_size != len(NOTHING):
             return False
@@ -93,11 +93,11 @@ class Package:
             return stream.read(len(NOTHING) + 1) == NOTHING
 
     def named(self, pattern: re.Pattern[str]) -> list[str]:
-        """Return the parts whose names, in small letters, fit a pattern as a whole."""
+        """Return the parts whose lower-case names match a pattern completely."""
         return [name for name in self._entries if pattern.fullmatch(name)]
 
     def parse(self, name: str, start: Start) -> None:
-        """Call `start` with the elements of a part."""
+        """Call `start` with each element of a part."""
         parse_xml(*self._opened(name), start)
 
     def part(self, name: str) -> ModelPart:
@@ -108,7 +108,7 @@ class Package:
         return self.parts[name]
 
     def picture(self, name: str) -> bytes:
-        """Return the bytes of a part, unpacked once; none if there is no such part."""
+        """Return the bytes of a part, unpacked once; None if there is no such part."""
         if name.lower() not in self._entries:
             return b""
         if name not in self._pictures:
@@ -116,7 +116,7 @@ class Package:
         return self._pictures[name]
 
     def _opened(self, name: str) -> tuple[Source, Iterator[bytes]]:
-        """Return what errors about a part name, and its bytes."""
+        """Return the source that errors about a part name, and the chunks of the part."""
         entry = self._entries.get(name.lower())
         if entry is None:
             raise self.source.error(f"the archive has no part {name}.", "truncated")
@@ -144,7 +144,7 @@ class Package:
 
 @contextmanager
 def opened(source: Source) -> Iterator[Package]:
-    """Open a package; damage is told where it shows, as its parts are read.
+    """Open a package; damage in a part raises an error when the part is read.
 
     Raises
     ------

@@ -83,16 +83,16 @@ class PlacedObject:
 
 @dataclass(frozen=True, eq=False)
 class BooleanShape:
-    """A set that is made of others.
+    """A solid made of other shapes by an operation.
 
     Parameters
     ----------
     operation : {"union", "difference", "intersection"}
-        It takes one operand after another.
+        Applied to the base and one operand after another.
     base : PlacedObject
     operands : list of PlacedObject
     is_optional : bool
-        True if it is the base alone where it cannot be made.
+        True if the base stands for a shape that cannot be made.
     """
 
     operation: str
@@ -131,7 +131,7 @@ class Object:
 class ModelPart:
     """The content of one model part.
 
-    Textures are parts of the package by their numbers; groups of coordinates name one of them.
+    Textures are package parts, by number; each group of coordinates names one texture.
     """
 
     unit: str = "millimeter"
@@ -153,8 +153,8 @@ def parse_xml(
 ) -> None:
     """Call `start` with the name (without namespace) and attributes of each element.
 
-    Elements of a namespace that is neither that of the root nor of an extension that is read are
-    passed by: their names are words of others.
+    Elements are skipped unless their namespace is that of the root or of a supported extension,
+    since equal names there have other meanings.
 
     Parameters
     ----------
@@ -164,9 +164,9 @@ def parse_xml(
         The XML.
     start : callable
     spaces : dict of str to str, optional
-        Takes in the namespaces by their prefixes, each before the element that declares it.
+        Receives the namespaces by prefix, each before the element that declares it.
     metadata : callable, optional
-        Takes names and texts of metadata.
+        Called with names and texts of metadata.
 
     Raises
     ------
@@ -212,12 +212,12 @@ def parse_xml(
         raise source.error(message, line=error.lineno) from None
     except FormatError:
         raise
-    except (LookupError, ValueError) as error:  # of the encoding: `begin` lets out none of its own
+    except (LookupError, ValueError) as error:  # from the encoding: `begin` raises none of its own
         raise source.error(f"the XML cannot be decoded: {words_of(error)}.", line=1) from error
 
 
 def _listen(parser: expat.XMLParserType, name: str, metadata: Metadata) -> None:
-    """Take in the text of the element that has just begun; others are passed by unheard."""
+    """Collect the text of the element that has just begun, and pass it to `metadata`."""
     words: list[str] = []
 
     def end(_: str) -> None:
@@ -259,7 +259,7 @@ class PartReader:
         Raises
         ------
         FormatError
-            If it is no valid XML or no valid model, or needs an extension that is not read here.
+            If it is no valid XML or no valid model, or needs an unsupported extension.
         """
         parse_xml(self._source, self._chunks, self._start, self._spaces, self._hear)
         for space in self._needs:
@@ -297,23 +297,23 @@ class PartReader:
             if self._part.unit not in MILLIMETRES:
                 raise ValueError(f"unknown unit {self._part.unit}")
             prefixes = attributes.get("requiredextensions", "").split()
-            # What no prefix stands for, no element can be of.
+            # No element can belong to an extension without a declared prefix.
             self._needs = [self._spaces[one] for one in prefixes if one in self._spaces]
         elif tag in ("booleanshape", "boolean"):
             self._combine(tag, attributes)
         elif tag == "build":
-            # What follows is said of no object.
+            # The elements that follow belong to no object.
             self._current = Object("none")
         else:
             self._note(tag, attributes)
 
     def _hear(self, name: str, text: str) -> None:
-        """Take in metadata: Cura says by it which objects are no material."""
+        """Read metadata, by which Cura marks objects that are no material."""
         if name in _CURA and text.strip().lower() == "true":
             self._current.kind = _CURA[name]
 
     def _combine(self, tag: str, attributes: dict[str, str]) -> None:
-        """Take in a boolean shape or one of its operands."""
+        """Read a boolean shape or one of its operands."""
         placed = self._placed(attributes)
         if tag == "boolean":
             if self._current.shape is None:
@@ -326,7 +326,7 @@ class PartReader:
         self._current.shape = BooleanShape(operation, placed, [])
 
     def _note(self, tag: str, attributes: dict[str, str]) -> None:
-        """Take in what is said besides the shape."""
+        """Read an element about data other than the shape."""
         if tag in ("colorgroup", "basematerials"):
             self._group = attributes["id"]
         elif tag == "color":
@@ -346,7 +346,7 @@ class PartReader:
         self._current.beams += tag == "beam"
 
     def _named(self, attributes: dict[str, str]) -> tuple[str, tuple[int, ...]]:
-        """Return the group and the numbers of the properties at the corners of a triangle."""
+        """Return the property group of a triangle, and the property numbers at its corners."""
         usual = self._current.usual or ("", 0)
         group = attributes.get("pid", usual[0])
         first = attributes.get("p1")
@@ -396,7 +396,7 @@ def _place(attributes: dict[str, str]) -> tuple[float, float]:
 
 
 def _refuse_underscores(words: Iterable[str]) -> None:
-    """Refuse ``1_0``, which Python takes for 10."""
+    """Refuse ``1_0``, which Python reads as 10."""
     if "_" in "".join(words):
         raise ValueError("a number must not contain “_”")
 

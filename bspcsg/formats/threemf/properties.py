@@ -1,6 +1,6 @@
-"""Properties of 3MF: colour groups are colours of corners, base materials are materials.
+"""Properties of 3MF: colour groups become colours of corners, base materials materials.
 
-Textures are materials, too, and their coordinates the attribute ``"uv"``.
+Textures become materials, too, and their coordinates the attribute ``"uv"``.
 """
 
 from collections import Counter
@@ -29,7 +29,7 @@ _WHITE = (255, 255, 255, 255)
 def properties_of(
     part: ModelPart, held: Object, faces: IndexArray, picture: Callable[[str], bytes]
 ) -> Attributes | None:
-    """Return what is said of the triangles of an object, in the order of the file.
+    """Return the attributes of the triangles of an object, in file order.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def properties_of(
         One of its.
     faces : (m, 3) int64
     picture : callable
-        Returns the bytes of a part of the package.
+        Returns the bytes of a part of the package, by name.
 
     Raises
     ------
@@ -73,7 +73,7 @@ class _Reading:
         self._taken = Counter([*(name for name, _ in bases), *pictures])
 
     def take(self, k: int, group: str, numbers: tuple[int, ...]) -> None:
-        """Note what one triangle says."""
+        """Record the properties of one triangle."""
         part = self._part
         if group in part.colors:
             self._colors[k] = [_entry(part.colors[group], number) for number in numbers]
@@ -88,14 +88,14 @@ class _Reading:
             self._places[k] = [_entry(places, number) for number in numbers]
 
     def _called(self, texture: str) -> str:
-        """Return the name of a texture, by which no other material goes."""
+        """Return a name for a texture that no other material has."""
         if texture not in self._part.textures:
             raise IndexError(f"texture {texture} does not exist")
         name = named_after(self._part.textures[texture])
         return name if self._taken[name] == 1 else f"{name} ({texture})"
 
     def attributes(self, faces: IndexArray, picture: Callable[[str], bytes]) -> Attributes | None:
-        """Return all that was said; None if that is nothing."""
+        """Return the attributes; None if there are none."""
         materials = dict(self._materials)
         for texture, name in self._textures.items():
             materials[name] = _pictured(picture(self._part.textures[texture]))
@@ -108,9 +108,9 @@ class _Reading:
 
 
 def _names_of_bases(bases: list[Base], pictures: list[str]) -> dict[Base, str]:
-    """Return the names of base materials, each of which stands for one colour and no picture.
+    """Return the names of base materials, distinct for each colour and different from pictures.
 
-    A name that stands for another already gets a number behind it; no name is that of no material.
+    A name that another material has already gets a number; the empty name means no material.
     """
     taken = {*(name for name, _ in bases), *pictures}
     found: dict[Base, str] = {}
@@ -127,14 +127,14 @@ def _names_of_bases(bases: list[Base], pictures: list[str]) -> dict[Base, str]:
 
 @lru_cache(maxsize=256)
 def _plain(color: tuple[int, ...]) -> Material:
-    """Return the material of a colour in bytes, which many triangles have in common."""
+    """Return the material of a colour in bytes; equal colours share one object."""
     return Material(tuple(value / 255 for value in color))
 
 
 def _pictured(data: bytes) -> Material:
     try:
         return Material(texture=data)
-    except InvalidMeshError:  # a kind of picture that is not known here
+    except InvalidMeshError:  # an unknown picture format
         return Material()
 
 
@@ -145,7 +145,7 @@ def _entry(group: list[_Entry], number: int) -> _Entry:
 
 
 def kept(said: Attributes) -> Attributes:
-    """Return what 3MF holds of attributes: materials of faces, or else colours, both in bytes."""
+    """Return the attributes that 3MF can hold: face materials or else colours, both in bytes."""
     said = said.without_empty_material()
     names = said.face.get("material")
     if names is not None and names.dtype.kind == "U" and names.ndim == 1:
@@ -179,7 +179,7 @@ def _kept_materials(said: Attributes) -> Attributes:
 
 
 def _has_places(said: Attributes) -> bool:
-    """Say whether corners have texture coordinates."""
+    """Say whether the corners have texture coordinates."""
     if said.kind_of("uv") not in ("vertex", "corner"):
         return False
     places = said.at_corners("uv")

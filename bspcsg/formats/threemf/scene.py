@@ -1,6 +1,6 @@
-"""The tree of a 3MF's objects and components, in and out.
+"""Reading and writing the tree of a 3MF's objects and components.
 
-A leaf whose name is not that of its mesh is an object of one component; its part number says so.
+A leaf with another name than its mesh is an object with one component, marked by its part number.
 """
 
 from collections.abc import Iterable, Iterator
@@ -38,7 +38,7 @@ def read(source: Source) -> SceneNode:
 
 
 class _Reading:
-    """The objects of one package; one that is placed several times has one mesh."""
+    """The objects of one package; an object with several placements has one mesh."""
 
     def __init__(self, package: Package, root: str) -> None:
         self._package = package
@@ -48,7 +48,7 @@ class _Reading:
 
     def tree(self) -> SceneNode:
         part = self._package.part(self._root)
-        # This also refuses what is too deep or too often there.
+        # This also raises an error if objects are nested too deeply or placed too often.
         self._objects.placed(self._root, part.items)
         found = self._nodes(self._root, part.items)
         scale = MILLIMETRES[part.unit]
@@ -62,7 +62,7 @@ class _Reading:
         return tuple(node for node in found if node is not None)
 
     def _node(self, here: str, placed: PlacedObject) -> SceneNode | None:
-        """Return a placed object, or None for a shape that is no model but support or surface."""
+        """Return the node of a placed object, or None if it is support or a surface, no model."""
         path = placed.path or here
         part = self._package.part(path)
         told = part.objects[placed.item]
@@ -87,7 +87,7 @@ class _Reading:
 
 
 def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
-    """Return the colour that an object has as a whole."""
+    """Return the colour of an object as a whole."""
     if told.usual is None or told.properties or told.usual[0] not in part.bases:
         return None
     group = part.bases[told.usual[0]]
@@ -97,7 +97,7 @@ def _color(part: ModelPart, told: Object) -> tuple[float, ...] | None:
 
 
 def encode(root: SceneNode) -> Iterator[bytes]:
-    """Yield the package of a tree; what is at several nodes is there once."""
+    """Yield the package of a tree; meshes of several nodes are stored once."""
     resources = Resources(1)
     lines = [*_model(root, resources)]
     yield packed(iter(lines), resources.pictures)
@@ -115,7 +115,7 @@ def _model(root: SceneNode, resources: Resources) -> Iterator[str]:
 
 
 class _Writing:
-    """The objects of a package, each after those that it names."""
+    """The objects of a package, each after the objects that it refers to."""
 
     def __init__(self, root: SceneNode, resources: Resources) -> None:
         self.lines: list[str] = []
@@ -135,7 +135,7 @@ class _Writing:
             self.lines.append("</basematerials>\n")
 
     def object_of(self, node: SceneNode) -> int:
-        """Write a node and all in it, and return the number of its object."""
+        """Write a node and its subtree, and return the number of its object."""
         if node.mesh is not None:
             return self._leaf(node, node.mesh)
         inner = [(self.object_of(child), child.matrix) for child in node.children]

@@ -1,8 +1,8 @@
-"""Parts of objects that slicers call no material, or material that is taken away.
+"""Parts of objects that slicers do not treat as material, or subtract from other parts.
 
-PrusaSlicer and its kin write all volumes of an object as one mesh, and say in a part beside the
-model which triangles are which kind of volume. Bambu Studio and OrcaSlicer say it of components.
-Cura says it in the metadata of objects, which the reader of model parts takes in.
+PrusaSlicer and related programs write all volumes of an object as one mesh; a part beside the model
+gives the kind of each range of triangles. Bambu Studio and OrcaSlicer give a kind for each
+component. Cura uses the metadata of objects, which the reader of model parts collects.
 """
 
 import re
@@ -33,20 +33,20 @@ _KINDS = {
 
 @dataclass
 class Slicing:
-    """The parts of a package that are not what they seem.
+    """The parts of a package that slicers do not treat as plain material.
 
     Parameters
     ----------
     counts : Counter of str
         The number of parts of each kind that is no material.
     inner : set of (str, str)
-        Part and number of objects that are no bodies by themselves.
+        Part and number of objects that are used only inside others.
     findings : list of Finding
-        The trouble with what slicers say.
+        Findings about invalid statements of slicers.
     shapes : int
-        The number of meshes from which others are to be taken away.
+        The number of meshes from which others are to be subtracted.
     unmade : list of str
-        Why others are not.
+        The reasons why meshes are not subtracted.
     """
 
     counts: Counter[str] = field(default_factory=Counter)
@@ -65,7 +65,7 @@ class _SlicerSettings:
     current: str = ""
 
     def take(self, tag: str, attributes: dict[str, str]) -> None:
-        """Take in an element."""
+        """Read an element."""
         if tag == "object":
             self.current = attributes["id"]
         elif tag == "volume":
@@ -80,9 +80,9 @@ class _SlicerSettings:
 
 
 def settled(package: Package, root: str) -> Slicing:
-    """Change the objects of a package so that they are what slicers say of them.
+    """Change the objects of a package according to the statements of slicers.
 
-    What is no material is left out; what is taken away becomes part of a boolean shape.
+    Parts that are no material are left out; subtracted parts become operands of a boolean shape.
     """
     slicing, part = Slicing(), package.part(root)
     settings = _settings_of(package, slicing)
@@ -107,7 +107,7 @@ def _settings_of(package: Package, slicing: Slicing) -> _SlicerSettings:
 
 
 def _kind(slicing: Slicing, word: str) -> str:
-    """Return the kind that a slicer names by a word; what is not known is material."""
+    """Return the kind that a slicer's word names; unknown words mean material."""
     if word not in _KINDS:
         message = f"a part of the kind “{word}”, which is not known here, was read as material."
         slicing.findings.append(Finding("unknown_part", "warning", message, (), 1))
@@ -123,7 +123,7 @@ def _divide(
     item: str,
     volumes: list[tuple[int, int, dict[str, str]]],
 ) -> None:
-    """Leave the triangles of some volumes out of an object, and take away what some enclose."""
+    """Remove the triangles of some volumes from an object, and subtract the negative volumes."""
     whole = part.objects[item]
     is_body = np.ones(len(whole.triangles), dtype=bool)
     negatives = []
@@ -148,7 +148,7 @@ def _divide(
 
 
 def _sort(slicing: Slicing, package: Package, root: str, item: str, kinds: dict[str, str]) -> None:
-    """Leave some components out of an object, and take away what some enclose from the others."""
+    """Remove some components from an object, and subtract negative ones from the others."""
     whole = package.part(root).objects[item]
     kept, negatives = [], []
     for one in whole.components:
@@ -171,7 +171,7 @@ def _lessened(
     one: PlacedObject,
     negatives: list[PlacedObject],
 ) -> PlacedObject:
-    """Return a component from which others are taken away."""
+    """Return a component with others subtracted from it."""
     known = package.part(one.path or root).objects.get(one.item)
     if known is None or not known.is_body:
         slicing.unmade.append(f"object {one.item} is no mesh.")
@@ -183,7 +183,7 @@ def _lessened(
 
 
 def _added(slicing: Slicing, root: str, part: ModelPart, item: str, one: Object) -> PlacedObject:
-    """Add an object of a number that no other has, and return it in the place of another."""
+    """Add an object under a free number, and return a reference to it without a transform."""
     number = len(part.objects)
     while f"{item}.{number}" in part.objects:
         number += 1
@@ -193,7 +193,7 @@ def _added(slicing: Slicing, root: str, part: ModelPart, item: str, one: Object)
 
 
 def _taken(whole: Object, rows: list[int]) -> Object:
-    """Return some triangles of an object with the vertices that they use."""
+    """Return an object of some triangles, with the vertices that they use."""
     triangles = [whole.triangles[row] for row in rows]
     used = sorted({corner for triangle in triangles for corner in triangle})
     numbers = {corner: number for number, corner in enumerate(used)}

@@ -1,7 +1,7 @@
-"""Pictures in packages of 3MF: the parts they are in, and what materials are called by them.
+"""Pictures in 3MF packages: their parts, and the names of their materials.
 
-3MF has no names for textures, so the name of a part is that of the material. Coordinates count from
-the lower left corner of the picture, as those of attributes do.
+3MF has no names for textures, so a material is named after the part. Coordinates count from the
+lower left corner of the picture, like those of attributes.
 """
 
 from collections.abc import Iterable, Iterator
@@ -40,7 +40,7 @@ class PackedPicture:
 
 
 class Resources:
-    """Numbers of a model's resources, and the pictures among them.
+    """The resource numbers of a model, and its pictures.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Resources:
         self._textures: dict[str, int] = {}
 
     def free(self) -> int:
-        """Return the next number."""
+        """Return the next free number."""
         self._next += 1
         return self._next - 1
 
@@ -64,13 +64,13 @@ class Resources:
         return list(self._pictures.values())
 
     def picture(self, name: str, material: Material) -> PackedPicture:
-        """Return the picture of a material; the same of the same name is one part."""
+        """Return the picture of a material; equal pictures of equal names share one part."""
         data, media = material.texture or b"", material.media or ""
         path = _path(len(self._pictures) + 1, name, media)
         return self._pictures.setdefault((name, data), PackedPicture(path, media, data))
 
     def texture(self, picture: PackedPicture) -> tuple[int, list[str]]:
-        """Return the number of a picture's texture, and what says so unless that was said."""
+        """Return the number of a picture's texture, and its element if not written before."""
         if picture.path in self._textures:
             return self._textures[picture.path], []
         number = self._textures[picture.path] = self.free()
@@ -79,18 +79,18 @@ class Resources:
 
 
 def _path(number: int, name: str, media: str) -> str:
-    # Parts whose names differ by case alone are the same, so each has a folder.
+    # Part names are not case-sensitive, so each picture has a folder of its own.
     return f"/3D/Textures/{number}/{quote(name, safe='')}.{_SUFFIXES[media]}"
 
 
 def named_after(path: str) -> str:
-    """Return the name of the material whose picture is a part."""
+    """Return the name of the material of a picture part."""
     last = path.rpartition("/")[2]
     return unquote(last.rpartition(".")[0] or last)
 
 
 def fit_for_parts(names: list[str], others: list[str]) -> dict[str, str]:
-    """Return what materials with pictures are called in files beside others, by their names."""
+    """Return distinct names, valid as names of parts, for materials with pictures."""
     found: dict[str, str] = {}
     for name in names:
         rest = name.lstrip(".").translate(_SLASHES)
@@ -102,12 +102,12 @@ def fit_for_parts(names: list[str], others: list[str]) -> dict[str, str]:
 
 
 def content_types(pictures: Iterable[PackedPicture]) -> str:
-    """Return what the types of a package say about its pictures."""
+    """Return the content types of a package's pictures."""
     media = sorted({one.media for one in pictures})
     return "".join(f'<Default Extension="{_SUFFIXES[one]}" ContentType="{one}"/>' for one in media)
 
 
 def relations(pictures: Iterable[PackedPicture]) -> Iterator[str]:
-    """Yield what relates the model to its pictures."""
+    """Yield the relationships of the model to its pictures."""
     for number, one in enumerate(pictures):
         yield f'<Relationship Id="rel{number}" Target="{one.path}" Type="{_TEXTURE}"/>\n'

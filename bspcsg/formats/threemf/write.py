@@ -56,7 +56,7 @@ def binary(mesh: Mesh | RawMesh) -> Iterator[bytes]:
 
 
 def packed(model: Iterator[str], pictures: Sequence[PackedPicture]) -> bytes:
-    """Return the package of a model, with the pictures that it names."""
+    """Return the package of a model, with the pictures that it refers to."""
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, text in (
@@ -81,7 +81,7 @@ def _pack(archive: zipfile.ZipFile, name: str, chunks: Iterator[bytes]) -> None:
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
-    """Return what the format has no room for: repeated corners, colours behind pictures."""
+    """Return the findings about losses: triangles with repeated corners, colours under pictures."""
     found = []
     count = int(_repeats_corner(mesh.faces).sum())
     if count:
@@ -129,7 +129,7 @@ _GROUP = 1 << 30
 
 
 def beginning(said: Iterable[Attributes]) -> str:
-    """Return how a model begins in which things are said."""
+    """Return the beginning of a model part, with the namespaces that its attributes need."""
     needs_more = any(not {"color", "uv"}.isdisjoint(one.names) for one in said)
     more = f' xmlns:m="{_MATERIALS}"' if needs_more else ""
     return f'{_HEAD}<model unit="millimeter" xml:lang="en-US" xmlns="{_CORE}"{more}>\n'
@@ -138,7 +138,7 @@ def beginning(said: Iterable[Attributes]) -> str:
 def mesh_object(
     number: int, name: str, mesh: RawMesh, painted: str, words: Values | None
 ) -> Iterator[str]:
-    """Yield an object that is a mesh; `painted` names its property, `words` those of triangles."""
+    """Yield a mesh object; `painted` is its own property, `words` are those of its triangles."""
     is_proper = ~_repeats_corner(mesh.faces)
     own = None if words is None else words[is_proper]
     lines = _object(number, name, mesh.vertices, mesh.faces[is_proper], own)
@@ -147,12 +147,12 @@ def mesh_object(
 
 
 def hex_of(color: Sequence[float]) -> str:
-    """Return a colour as 3MF writes it."""
+    """Return a colour in the notation of 3MF."""
     return hexadecimal(color).upper()
 
 
 def properties(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
-    """Return the groups of properties, and what each triangle says of them."""
+    """Return the property groups, and the property attributes of each triangle."""
     if "material" in said.face:
         return _materials(said, resources)
     corners = said.at_corners("color").reshape(-1, 4)
@@ -164,7 +164,7 @@ def properties(said: Attributes, resources: Resources) -> tuple[list[str], Value
 
 
 def _materials(said: Attributes, resources: Resources) -> tuple[list[str], Values]:
-    """Return base materials and groups of texture coordinates, and what triangles say of them."""
+    """Return base materials and texture coordinate groups, and the attributes of triangles."""
     names = said.face["material"]
     plain = {name: one for name, one in said.materials.items() if one.texture is None}
     lines, words = _bases(names, plain, resources)
@@ -185,7 +185,7 @@ def _materials(said: Attributes, resources: Resources) -> tuple[list[str], Value
 def _bases(
     names: Values, plain: Mapping[str, Material], resources: Resources
 ) -> tuple[list[str], Values]:
-    """Return the group of materials without a picture, and what triangles say of them."""
+    """Return the group of materials without pictures, and the attributes of triangles."""
     if not plain:
         return [], np.full(len(names), "", dtype=object)
     group = resources.free()
@@ -199,7 +199,7 @@ def _bases(
 
 
 def _corner_words(group: int, numbers: IndexArray) -> Values:
-    """Return what triangles say that have these numbers of a group at their corners."""
+    """Return the attributes of triangles, given the property numbers at their corners."""
     words: list[str] = []
     for first, second, third in listed(numbers.reshape(-1, 3)):
         same = first == second == third

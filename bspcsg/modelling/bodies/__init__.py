@@ -1,1 +1,1 @@
-"""Solids from solids: hulls, sums, cuts, gaps, refinement, functions of points."""
+"""Operations on solids: hulls, sums, cuts, gaps, refinement, level sets."""

@@ -1,4 +1,4 @@
-"""The distance of solids, and the points where they are nearest."""
+"""The distance of solids, and their nearest points."""
 
 import math
 from fractions import Fraction
@@ -31,7 +31,7 @@ _PAIRS_PER_BATCH = 1 << 16
 
 @uncounted
 def min_gap(solid: Solid, other: Solid) -> float:
-    """Return the least distance of two points, one of each (see `Solid.min_gap`)."""
+    """Return the least distance between two solids (see `Solid.min_gap`)."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return math.inf
     found = _nearest(solid, other)
@@ -40,7 +40,7 @@ def min_gap(solid: Solid, other: Solid) -> float:
 
 @uncounted
 def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
-    """Return a point of each at their least distance (see `Solid.closest_points`)."""
+    """Return the nearest points of two solids (see `Solid.closest_points`)."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         raise invalid_parameter("The empty set has no points, and no closest one.")
     found = _nearest(solid, other)
@@ -53,7 +53,7 @@ def closest_points(solid: Solid, other: Solid) -> tuple[FloatArray, FloatArray]:
 def _common_point(common: Solid) -> FloatArray:
     vertices = common.vertices
     if len(vertices) == 0:
-        message = "What the solids have in common is too thin for points in doubles."
+        message = "The common part of the solids is too thin to hold a point in doubles."
         raise LimitError(message, "too_large")
     return np.array(vertices[0])
 
@@ -67,7 +67,7 @@ def intersects(solid: Solid, other: Solid) -> bool:
 
 
 def _apart(solid: Solid, other: Solid) -> bool:
-    """Say whether the boxes around two bounded solids are apart, by more than rounding can be."""
+    """Say whether the boxes of two bounded solids are disjoint, by more than rounding errors."""
     (low, high), (low_b, high_b) = (_box(one) for one in (solid, other))
     doubt = _ROUNDING * max(float(np.abs(box).max()) for box in (low, high, low_b, high_b))
     return bool((low > high_b + doubt).any() or (low_b > high + doubt).any())
@@ -89,7 +89,7 @@ def _nearest(solid: Solid, other: Solid) -> tuple[Fraction, FloatArray, FloatArr
     best = min(range(len(gaps)), key=lambda k: (gaps[k], k))
     scale = max(float(np.abs(one).max()) for one in triangles)
     if 0 < gaps[best] <= _bounded(0.0, scale) and surfaces_meet(solid, other):
-        # They touch in points that are no doubles.
+        # They touch at points that doubles cannot represent.
         return Fraction(0), p[best], p[best]
     return gaps[best], p[best], q[best]
 
@@ -101,7 +101,7 @@ def _corners(solid: Solid) -> FloatArray:
 
 
 def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, IndexArray]:
-    """Return the pairs of triangles that may be nearest, as far as doubles tell."""
+    """Return the pairs of triangles that may be nearest, within the precision of doubles."""
     scale = max(float(np.abs(first).max()), float(np.abs(second).max()))
     trees = BoxTree.over(first), BoxTree.over(second)
     search = Nearness(*trees, _bounded(_some_gap(first, second), scale))
@@ -129,12 +129,12 @@ def _candidates(first: FloatArray, second: FloatArray) -> tuple[IndexArray, Inde
 
 
 def _bounded(gap: float, scale: float) -> float:
-    """Return the square that distances which doubles cannot tell from a squared one may have."""
+    """Return the largest squared distance that rounding errors cannot distinguish from `gap`."""
     return (math.sqrt(gap) + _NOISE * scale) ** 2
 
 
 def _some_gap(first: FloatArray, second: FloatArray) -> float:
-    """Return the squared distance of two corners that are near each other."""
+    """Return an upper bound of the squared gap: the squared distance of two near corners."""
     points, others = first.reshape(-1, 3), second.reshape(-1, 3)
     point = others.mean(axis=0)
     gap = np.inf
@@ -145,7 +145,7 @@ def _some_gap(first: FloatArray, second: FloatArray) -> float:
 
 
 def _pairs(trees: tuple[BoxTree, BoxTree], leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the triangles of pairs of leaves, all with all."""
+    """Return all pairs of triangles of pairs of leaves."""
     members, rows = trees[0].members(leaves[:, 0])
     others, other_rows = trees[1].members(leaves[:, 1])
     counts = np.bincount(other_rows, minlength=len(leaves))
@@ -156,7 +156,7 @@ def _pairs(trees: tuple[BoxTree, BoxTree], leaves: IndexArray) -> tuple[IndexArr
 
 
 def _exact(corners: FloatArray) -> FloatArray:
-    """Return coordinates as the decimals that they stand for."""
+    """Return coordinates as fractions, by the decimals that they stand for."""
     numbers = [exact_number(x) for x in corners.ravel().tolist()]
     return np.array(numbers, dtype=object).reshape(corners.shape)
 

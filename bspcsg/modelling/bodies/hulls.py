@@ -1,4 +1,4 @@
-"""Convex hulls, those in space by the core."""
+"""Convex hulls; the core computes those in space."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, overload
@@ -28,23 +28,23 @@ def hull(*solids_or_points: Region) -> Region: ...
 @overload
 def hull(*solids_or_points: Any) -> Any: ...
 def hull(*solids_or_points: Any) -> Solid | Region:
-    """Return the convex hull: the least convex set that holds all that is given.
+    """Return the convex hull: the smallest convex set that contains all arguments.
 
-    Each corner of the result is a corner of a solid or one of the points, in the coordinates that
-    were given, unless faces are so thin that they would look inwards between these: then it is on
-    the lattice. No face has a point before it but for rounding.
+    Each corner of the result is a corner of a solid or one of the points, with unchanged
+    coordinates; but if a face is so thin that it would face inwards, its corners are on the
+    lattice. No point lies outside a face, except by rounding.
 
     Parameters
     ----------
     *solids_or_points : Solid, (n, 3) or (3,) array_like of float, or iterable of such
-        In model units. Points, and corners that cuts have made between lattice points, are snapped
-        to the finest lattice of the solids. Or, in the plane,
-        regions and (n, 2) points.
+        In model units. Points, and corners that cuts made off the lattice, are snapped to the
+        finest lattice of the solids. In the plane: regions and (n, 2) points.
 
     Returns
     -------
     Solid or Region
-        Empty if all that is given lies in one plane, or on one line; in space, but for rounding.
+        Empty if all arguments lie in one plane (in the plane: on one line); in space, up to
+        rounding.
 
     Raises
     ------
@@ -57,11 +57,11 @@ def hull(*solids_or_points: Any) -> Solid | Region:
 
     Notes
     -----
-    The hull is that of the points' places on the lattice, exactly. If all are there, each is a
-    corner that is none of the hull of the others, however near it lies. Else points are off their
-    places by rounding, each by less than a step or some spacings of its doubles. Then, points that
-    lie no farther from the hull of the others than twice the most of this are no corners: what was
-    turned keeps the sides that it had. What is left out lies outside by no more than that.
+    The hull of the snapped points is exact. If no point was moved by snapping, every point outside
+    the hull of the others is a corner, however close it lies. Otherwise snapping moves each point
+    by less than a step or a few spacings of its doubles, and points within twice the largest such
+    move of the hull of the others are no corners; so rotated bodies keep their sides. Points left
+    out lie outside by no more than that.
 
     Examples
     --------
@@ -87,14 +87,15 @@ def _hull(given: list[Any]) -> Solid | Region:
 
 
 def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
-    """Return the convex hull of points, empty if they lie in a plane but for rounding.
+    """Return the convex hull of points, empty if they lie in a plane up to rounding.
 
     Parameters
     ----------
     points : (n, 3) float64
         Finite, in model units.
     pitch : int or None
-        Exponent of the lattice step, if the points fit on that lattice; else what suits them.
+        Exponent of the lattice step, if the points fit on that lattice; else one that fits is
+        chosen.
     """
     if len(points) < 4:
         return Solid.empty()
@@ -108,7 +109,7 @@ def hull_of(points: FloatArray, pitch: int | None = None) -> Solid:
 
 
 def lattice_for(points: FloatArray, pitch: int | None) -> int:
-    """Return the pitch of a lattice that holds points: this one, if that does."""
+    """Return the pitch of a lattice that holds all points: the given one if possible."""
     largest = float(np.abs(points).max())
     if pitch is not None and largest < (_REACH - 1) * 10.0**pitch:
         return pitch
@@ -121,13 +122,13 @@ def _is_flat(given: Any) -> bool:
 
 
 def _entries(given: Iterable[Any]) -> Iterator[Any]:
-    """Yield solids and arrays of points; those in a list with solids one by one."""
+    """Yield solids and arrays of points; flatten lists that contain solids."""
     for one in given:
         if isinstance(one, (Solid, Region)):
             yield one
             continue
         if not isinstance(one, Iterable) or isinstance(one, (str, bytes)):
-            raise invalid_parameter(f"A hull is that of solids and points, not of {shown(one)}.")
+            raise invalid_parameter(f"hull takes solids and points, not {shown(one)}.")
         held: Any = one if isinstance(one, np.ndarray) else list(one)
         mixed = any(isinstance(entry, (Solid, Region)) for entry in held)
         yield from held if mixed else [held]

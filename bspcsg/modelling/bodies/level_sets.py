@@ -1,4 +1,4 @@
-"""Solids where a function of space is positive."""
+"""Solids from level sets of functions."""
 
 from collections.abc import Callable, Iterator
 from itertools import product
@@ -31,11 +31,11 @@ _AROUND = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
 @counted
 def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0) -> Solid:
-    """Return the solid where a function is above a level.
+    """Return the solid of the points at which a function is above a level.
 
-    The function is asked at the corners and the middles of a grid of cubes. Tetrahedra between them
-    divide the box, and in each the surface is a plane where the function, taken as linear along
-    edges, is at the level. So the surface is closed, and the bounds cut it off exactly.
+    The function is evaluated at the corners and centres of a grid of cubes. Tetrahedra between
+    these points divide the box. In each tetrahedron the surface is planar, at the level of the
+    function interpolated along the edges. So the surface is closed, and the bounds cut it exactly.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def level_set(f: Field, bounds: Any, edge_length: Scalar, *, level: Scalar = 0.0
     bounds : (2, 3) array_like of float
         Lowest and highest corner of the box that the solid lies in.
     edge_length : float
-        Of the cubes, at most: they divide the box evenly.
+        The largest edge length of the cubes, which divide the box evenly.
     level : float
 
     Raises
@@ -102,11 +102,11 @@ def _box(bounds: Any) -> tuple[FloatArray, FloatArray]:
 
 
 class _Grid:
-    """Corners of cubes and their middles, two layers more than the box on each side.
+    """The corners and centres of cubes, with two extra layers on each side of the box.
 
-    The outermost layer is outside, so that the surface closes beyond the box, and the layer within
-    it goes on as the box ends. Numbers of points count the corners first, z fastest, then the
-    middles.
+    The outermost layer counts as outside, so the surface closes beyond the box; the layer inside it
+    repeats the values at the border of the box. Points are numbered corners first, z fastest, then
+    centres.
     """
 
     def __init__(self, low: FloatArray, step: FloatArray, counts: IndexArray) -> None:
@@ -117,9 +117,9 @@ class _Grid:
 
     @classmethod
     def of(cls, low: FloatArray, high: FloatArray, edge: float) -> "_Grid":
-        """Return the grid whose cubes divide a box evenly and are no longer than said."""
+        """Return the grid of cubes that divide a box evenly, with edges of at most `edge`."""
         with np.errstate(over="ignore"):
-            # A whole number of cubes stays one where the quotient was rounded up.
+            # If the quotient is a whole number that was rounded up, do not add a cube.
             counts = np.maximum(np.ceil((high - low) / edge * (1 - 1e-12)), 1.0)
             points = 2 * float(np.prod(counts + 5))
         if points > _MAX_SAMPLE_POINTS:
@@ -139,7 +139,7 @@ class _Grid:
         return self._low + self._step * np.where(middle[:, None], middles, corners)
 
     def values(self, f: Field, low: FloatArray, high: FloatArray) -> FloatArray:
-        """Return the function at all points; beyond the box that of the nearest point in it."""
+        """Return the function at all points; points beyond the box take the nearest value in it."""
         total = self._first_middle + int(np.prod(self._middles))
         found = np.empty(total)
         for start in range(0, total, _POINTS_PER_CALL):
@@ -149,7 +149,7 @@ class _Grid:
         return found
 
     def _is_rim(self) -> BoolArray:
-        """Say of each point whether it lies beyond the box."""
+        """Say for each point whether it lies in the outermost layer."""
         rims = []
         for shape in (self._corners, self._middles):
             rim = np.ones(shape, dtype=bool)
@@ -169,7 +169,7 @@ class _Grid:
         start, end = self.points(first), self.points(second)
         vertices, same = welded(start + (end - start) * shares[:, None])
         faces = same[corners.reshape(-1, 3)]
-        # Where the function is 0 at a point, corners of several edges meet there.
+        # If the function is 0 at a point, surface corners of several edges coincide there.
         return vertices, faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
 
     def _tetrahedra(self, inside: BoolArray) -> Iterator[IndexArray]:
@@ -209,12 +209,12 @@ def _asked(f: Field, points: FloatArray) -> FloatArray:
     if len(bad):
         message = f"f returned NaN for {len(bad)} points, the first is {points[bad[0]].tolist()}."
         raise InvalidMeshError(message, "non_finite", bad[:20].tolist())
-    # Infinities have no place between them.
+    # Infinite values cannot be interpolated.
     return np.clip(found, -1e150, 1e150)
 
 
 def _cut(tetrahedra: IndexArray, inside_points: BoolArray) -> IndexArray:
-    """Return triangles across tetrahedra, (n, 3, 2): each corner on the edge between two points."""
+    """Return triangles in tetrahedra, (n, 3, 2): each corner is given as an edge of two points."""
     inside = inside_points[tetrahedra]
     order = np.argsort(~inside, axis=1, kind="stable")
     chosen, is_even = np.take_along_axis(tetrahedra, order, axis=1), _is_even(order)
@@ -223,7 +223,7 @@ def _cut(tetrahedra: IndexArray, inside_points: BoolArray) -> IndexArray:
     for count, triangle in _TRIANGLES:
         rows = counts == count
         found = np.stack([chosen[rows][:, edge] for edge in triangle], axis=1)
-        # An odd order turns the tetrahedron over.
+        # An odd permutation mirrors the tetrahedron.
         pieces.append(np.where(is_even[rows][:, None, None], found, found[:, ::-1]))
     return np.concatenate(pieces)
 

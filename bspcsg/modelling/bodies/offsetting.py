@@ -1,4 +1,4 @@
-"""Solids thickened, made thinner and rounded by a ball."""
+"""Solids grown, shrunk and rounded by a ball."""
 
 from ..._types import Scalar
 from ...errors import invalid_parameter
@@ -31,7 +31,7 @@ def rounded(solid: Solid, r: Scalar, segments: int, inside: bool) -> Solid:
 
 
 def _ball(r: float, around: int) -> Solid:
-    """Return a ball with corners at r along each axis, so that faces across them move by r."""
+    """Return a ball with corners at r on each axis: faces perpendicular to an axis move by r."""
     if r < _SMALLEST:
         message = (
             f"r is {r:g}, less than the finest lattice shows; choose 0, or {_SMALLEST:g} at least."

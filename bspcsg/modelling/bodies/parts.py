@@ -1,4 +1,4 @@
-"""Solids cut in two, and taken apart."""
+"""Splitting of solids by planes and solids, and into connected parts."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ _LEAST = float(np.nextafter(0, 1))
 
 @uncounted
 def split(solid: Solid, normal: str | Vector | Solid, offset: Scalar = 0.0) -> tuple[Solid, Solid]:
-    """Return both sides of a plane or of another solid's surface (see `Solid.split`)."""
+    """Split a solid by a plane or another solid (see `Solid.split`)."""
     if isinstance(normal, Solid):
         return solid & normal, solid - normal
     return sides_of_plane(solid, normal, offset)
@@ -25,7 +25,7 @@ def split(solid: Solid, normal: str | Vector | Solid, offset: Scalar = 0.0) -> t
 
 @counted
 def trim(solid: Solid, normal: str | Vector, offset: Scalar = 0.0) -> Solid:
-    """Return what lies on the side of a plane where its normal points (see `Solid.trim`)."""
+    """Return the part on the side to which a plane's normal points (see `Solid.trim`)."""
     return solid - half_space(normal, offset)
 
 
@@ -41,12 +41,12 @@ def decompose(solid: Solid) -> list[Solid]:
 
 
 def _part(mesh: Mesh, pitch: int) -> Solid | None:
-    """Return the solid of a part's mesh, on a finer lattice if nothing is left of it on this one.
+    """Return the solid of a part's mesh, on a finer lattice if it would vanish on this one.
 
-    None if it is too thin for doubles.
+    Return None if it is too thin for doubles.
     """
     if mesh.volume > mesh.area * 10.0**pitch:
-        # No corner moves by a step, so that something is left.
+        # No corner moves by a whole step, so part of the mesh is left.
         return solid_of_mesh(mesh, pitch=pitch)
     largest = float(np.abs(mesh.vertices).max())
     with core_errors():

@@ -1,4 +1,4 @@
-"""Solids placed beside points and other solids."""
+"""The alignment of solids with points and other solids."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -27,7 +27,7 @@ def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") 
     ----------
     solid : Solid
     places : dict
-        For each of the axes x, y, z what meets what, None for no move.
+        For each of the axes x, y, z the two places that meet, None for no move.
     to : Solid or (3,) float
     """
     named = [_names(axis, place) for axis, place in places.items()]
@@ -35,7 +35,7 @@ def align(solid: Solid, places: dict[str, Anchor | None], to: "Solid | Vector") 
     move = [0.0, 0.0, 0.0]
     for axis, names in enumerate(named):
         if names is not None:
-            # Short decimals have a short difference, which is a whole number of lattice steps.
+            # The difference of short decimals is short, and so a whole number of lattice steps.
             move[axis] = float(_at(other, axis, names[1]) - _at(own, axis, names[0]))
     return solid.translate(move)
 
@@ -66,7 +66,7 @@ def _box(place: "Solid | Vector") -> FloatArray:
         return np.array([vector3(place, "point")] * 2)
     bounds = place.bounds
     if bounds is None:
-        raise invalid_parameter("The empty set is nowhere, so nothing can be aligned with it.")
+        raise invalid_parameter("The empty set has no position, so it cannot be aligned.")
     return bounds
 
 

@@ -1,4 +1,4 @@
-"""Closed meshes in lattice steps, and which way their faces and edges turn, decided exactly."""
+"""Closed meshes in lattice steps, with exact tests of directions of faces and edges."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ _TETRAHEDRON = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
 
 
 class Vectors(NamedTuple):
-    """Vectors, and the same of length 1, rounded."""
+    """Exact vectors, and the same vectors normalized and rounded."""
 
     whole: LongArray
     units: FloatArray
@@ -40,7 +40,7 @@ class Vectors(NamedTuple):
 
 
 class Directions(NamedTuple):
-    """Directions, each once, and for each edge or face which of them it has."""
+    """Distinct directions, and the number of the direction of each edge or face."""
 
     each: Vectors
     of: IndexArray
@@ -64,13 +64,13 @@ class Polyhedron:
 
     @cached_property
     def ends(self) -> tuple[IndexArray, IndexArray]:
-        """For each edge the corners at which it starts and ends."""
+        """The start and end corners of each edge."""
         forth, back = self._sides
         return self.faces.ravel()[forth], self.faces.ravel()[back]
 
     @cached_property
     def beside(self) -> tuple[IndexArray, IndexArray]:
-        """For each edge the faces on its left and right, seen from outside."""
+        """The faces on the left and right of each edge, seen from outside."""
         forth, back = self._sides
         return forth // 3, back // 3
 
@@ -94,19 +94,19 @@ class Polyhedron:
 
     @cached_property
     def _leaving(self) -> tuple[IndexArray, IndexArray, IndexArray]:
-        """The edges, forth and then back, by where they start; the first of each corner; these."""
+        """The order of half-edges by start, the first one of each corner, and the corners."""
         starts = np.concatenate(self.ends)
         order = np.argsort(starts, kind="stable")
         corners, first = np.unique(starts[order], return_index=True)
         return order, first, corners
 
     def holds(self, point: IndexArray) -> bool:
-        """Say whether a point is in the polyhedron, if that is convex, or on its surface."""
+        """Say whether a point is inside a convex polyhedron or on its surface."""
         away = (point - self.points[self.faces[:, 0]]).astype(object)
         return bool((_dots(self.normals.each.whole[self.normals.of], away) <= 0).all())
 
     def tops(self, rises: Marks) -> tuple[IndexArray, IndexArray]:
-        """Return corners from which no edge rises, and in which column: all pairs.
+        """Return all pairs of a corner and a column, such that no edge rises from the corner there.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Polyhedron:
 
 
 def in_steps(points: FloatArray, pitch: int) -> FloatArray:
-    """Return points in steps of a lattice, which rounding makes whole."""
+    """Return points rounded to whole lattice steps."""
     steps: FloatArray = points * 10.0**-pitch if pitch < 0 else points / 10.0**pitch
     return steps
 
@@ -134,9 +134,10 @@ def in_units(steps: IndexArray, pitch: int) -> FloatArray:
 
 
 def polyhedron_of(points: IndexArray, faces: IndexArray) -> Polyhedron:
-    """Return the polyhedron of a closed mesh, without edges of no length.
+    """Return the polyhedron of a closed mesh, without edges of length zero.
 
-    A face without area has the normal of a neighbour. Shells of such faces only are one step wide.
+    A face without area gets the normal of a neighbour. A shell with only such faces becomes one
+    step wide.
     """
     points, faces = _with_wide_shells(points, faces)
     faces = _without_short_edges(points, faces)
@@ -151,7 +152,7 @@ def _normals(points: IndexArray, faces: IndexArray) -> LongArray:
 
 
 def _with_wide_shells(points: IndexArray, faces: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return corners and faces with tetrahedra in place of shells on a line or in a point."""
+    """Return corners and faces, with tetrahedra in place of shells that are a line or a point."""
     has_area = (_normals(points, faces) != 0).any(axis=1)
     if has_area.all():
         return points, faces
@@ -165,7 +166,7 @@ def _with_wide_shells(points: IndexArray, faces: IndexArray) -> tuple[IndexArray
 
 
 def _tetrahedron(points: IndexArray) -> IndexArray:
-    """Return the corners of a tetrahedron along points on a line, a step wide."""
+    """Return the corners of a tetrahedron around collinear points, a step wide."""
     axis = int(np.ptp(points, axis=0).argmax())
     along, *across = np.roll(np.eye(3, dtype=np.int64), -axis, axis=0)
     low, high = points[points[:, axis].argmin()], points[points[:, axis].argmax()]
@@ -174,7 +175,7 @@ def _tetrahedron(points: IndexArray) -> IndexArray:
 
 
 def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
-    """Return the faces that are left if the ends of each edge without length become one corner."""
+    """Return the faces that remain if each edge of length zero is collapsed."""
     ends = np.stack([faces.ravel(), np.roll(faces, -1, axis=1).ravel()], axis=1)
     short = np.unique(ends[(points[ends[:, 0]] == points[ends[:, 1]]).all(axis=1)])
     if not len(short):
@@ -188,7 +189,7 @@ def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
 
 
 def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
-    """Give faces without area the normals of neighbours; mark the faces that have one now."""
+    """Give faces without area the normals of neighbours; return which faces have a normal now."""
     has_normal: Marks = (normals != 0).any(axis=1)
     if has_normal.all():
         return has_normal
@@ -201,7 +202,7 @@ def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
 
 
 def _directions(vectors: LongArray) -> Directions:
-    """Return the directions of vectors of which none is zero."""
+    """Return the directions of nonzero vectors."""
     shortest = vectors // np.gcd.reduce(vectors, axis=1)[:, None]
     numbers: dict[tuple[int, ...], int] = {}
     of = [numbers.setdefault(tuple(row), len(numbers)) for row in shortest.tolist()]
@@ -210,10 +211,10 @@ def _directions(vectors: LongArray) -> Directions:
 
 
 def rising(first: Vectors, second: Vectors) -> Marks:
-    """Return for each of some vectors with which of others it has a positive product.
+    """Return for each pair of vectors of two lists whether their product is positive.
 
-    The others are turned by an infinitesimal angle, so that no product is zero. The same turn
-    decides in all calls.
+    The second vectors are rotated by an infinitesimal angle, the same in all calls, so that no
+    product is zero.
     """
     products = first.units @ second.units.T
     signs: Marks = products > 0
@@ -224,7 +225,7 @@ def rising(first: Vectors, second: Vectors) -> Marks:
 
 
 def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
-    """As `rising`, for each vector and the one in the same place of the others."""
+    """Do as `rising`, but only for vectors at the same position of both lists."""
     products = np.einsum("ij,ij->i", first.units, second.units)
     signs: Marks = products > 0
     doubtful = np.flatnonzero(np.abs(products) <= _DOUBT)
@@ -234,10 +235,10 @@ def rising_in_pairs(first: Vectors, second: Vectors) -> Marks:
 
 
 def _is_positive(first: LongArray, second: LongArray) -> Marks:
-    """Return whether vectors have positive products with others that are turned a little.
+    """Return whether vectors have positive products with slightly rotated ones.
 
-    The axis has a large x, a smaller y and a much smaller z: the first of the changes along the
-    axes that is not zero decides.
+    The rotation axis has a large x, a smaller y and a much smaller z: of the changes along these
+    axes, the first nonzero one decides.
     """
     sign = _dots(first, second)
     for change in _cross(second, first).T:
@@ -247,7 +248,7 @@ def _is_positive(first: LongArray, second: LongArray) -> Marks:
 
 
 def blocks(count: int, width: int) -> Iterator[slice]:
-    """Yield parts of a range of rows of some width, of which each is done at once."""
+    """Yield ranges that divide rows of some width into batches."""
     step = max(1, _SIGNS_PER_BATCH // max(width, 1))
     return (slice(start, start + step) for start in range(0, count, step))
 

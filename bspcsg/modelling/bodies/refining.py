@@ -1,4 +1,4 @@
-"""Surfaces in smaller triangles, the same set of points."""
+"""Refinement of surfaces into smaller triangles."""
 
 from typing import Any, TypeAlias
 
@@ -50,7 +50,7 @@ def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
 def attributes_on(
     mesh: Mesh, vertices: FloatArray, faces: IndexArray, origins: IndexArray
 ) -> Attributes:
-    """Return the attributes of triangles that lie in those of a mesh, whose numbers are given."""
+    """Return the attributes of triangles that lie in the given triangles of a mesh."""
     source = np.stack([np.zeros_like(origins), origins], axis=1)
     surface = Surface(vertices, faces, source, np.zeros(len(faces), dtype=bool))
     known = mesh.vertices, mesh.vertices, mesh.faces, np.arange(len(mesh.faces))
@@ -58,7 +58,7 @@ def attributes_on(
 
 
 def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:
-    """Return each triangle in parts² alike, new corners evenly along edges and inside."""
+    """Divide each triangle into parts² similar ones, with evenly spaced new corners."""
     edges, sides = _edges(faces, len(vertices))
     shares = np.arange(1, parts) / parts
     along = _between(vertices[edges[:, 0]], vertices[edges[:, 1]], shares)
@@ -78,7 +78,7 @@ def divided(vertices: FloatArray, faces: IndexArray, parts: int) -> Finer:
 
 
 def small_triangles(parts: int) -> list[list[tuple[int, int]]]:
-    """Return the triangles that one falls into, each corner by its steps to corners 1 and 2."""
+    """Return the parts of one triangle, with corners as steps towards corners 1 and 2."""
     low = [(i, j) for i in range(parts) for j in range(parts - i)]
     high = [(i, j) for i, j in low if i + j < parts - 1]
     upright = [[(i, j), (i + 1, j), (i, j + 1)] for i, j in low]
@@ -88,7 +88,7 @@ def small_triangles(parts: int) -> list[list[tuple[int, int]]]:
 def _grid(
     faces: IndexArray, edges: IndexArray, sides: IndexArray, parts: int, first: int
 ) -> dict[tuple[int, int], IndexArray]:
-    """Return the corners of all triangles' parts on their edges, by steps to corners 1 and 2."""
+    """Return the numbers of corners on triangle sides, by steps towards corners 1 and 2."""
     grid = {(0, 0): faces[:, 0], (parts, 0): faces[:, 1], (0, parts): faces[:, 2]}
     for k in range(1, parts):
         ways = ((k, 0), (parts - k, k), (0, parts - k))
@@ -100,7 +100,7 @@ def _grid(
 
 
 def _between(low: FloatArray, high: FloatArray, shares: FloatArray) -> FloatArray:
-    """Return points between others, (n, shares, 3)."""
+    """Return points interpolated between two lists of points, (n, shares, 3)."""
     weights = shares[:, None]
     points: FloatArray = low[:, None] + (high - low)[:, None] * weights
     return points
@@ -109,8 +109,8 @@ def _between(low: FloatArray, high: FloatArray, shares: FloatArray) -> FloatArra
 def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
     """Return the mesh with edges halved until none is longer.
 
-    Triangles fall into two, three or four, as many of their edges as are halved, so that no corner
-    lies within an edge.
+    A triangle is divided into two, three or four, depending on how many of its edges are halved, so
+    no corner lies inside an edge.
     """
     refuse_many(least_halved(vertices, faces, longest), "at least ")
     origins = np.arange(len(faces))
@@ -118,7 +118,7 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
         edges, sides = _edges(faces, len(vertices))
         ends = vertices[edges]
         long = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > longest
-        # What the lattice cannot halve stays.
+        # Edges that the lattice cannot halve stay.
         middles = (ends[:, 0] + ends[:, 1]) / 2
         long &= (middles != ends[:, 0]).any(axis=1) & (middles != ends[:, 1]).any(axis=1)
         if not long.any():
@@ -132,14 +132,15 @@ def halved(vertices: FloatArray, faces: IndexArray, longest: float) -> Finer:
 
 
 def least_halved(vertices: FloatArray, faces: IndexArray, longest: float) -> int:
-    """Return a number of triangles that halving makes at least.
+    """Return a lower bound of the number of triangles after halving.
 
-    Each falls into four like it until its shortest side is short enough. Then each longer side is
-    cut, and each part of it is a side of a triangle, of which each has three.
+    Each triangle is divided into four similar ones until its shortest side is short enough. Then
+    longer sides are cut; each part of a side belongs to a triangle, and each triangle has three
+    sides.
     """
     corners = vertices[faces]
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
-    # Edges of a few roundings cannot be halved.
+    # Edges as short as a few rounding errors cannot be halved.
     length = max(longest * _ROUNDED, 4 * float(np.spacing(np.abs(vertices).max(initial=0.0))))
     halvings = np.ceil(np.log2(np.maximum(sides.min(axis=1) / length, 1.0)))
     lengths = sides / length / 2 ** halvings[:, None]
@@ -150,9 +151,9 @@ def least_halved(vertices: FloatArray, faces: IndexArray, longest: float) -> int
 def _cut_at(
     vertices: FloatArray, faces: IndexArray, middles: IndexArray
 ) -> tuple[IndexArray, IndexArray]:
-    """Return triangles cut at the middles of their edges, -1 where an edge is whole.
+    """Return triangles cut at the middles of their edges; -1 stands for an uncut edge.
 
-    Also returns which triangle each lies in.
+    Also return the original triangle of each part.
     """
     count = (middles >= 0).sum(axis=1)
     pieces = [(np.flatnonzero(count == 0), faces[count == 0])]
@@ -174,7 +175,7 @@ def _quartered(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list
 
 
 def _cut_once(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list[_Piece]:
-    """Return the halves of triangles whose first edge is cut."""
+    """Return the halves of triangles with only the first edge cut."""
     (a, b, c), m = faces[rows].T, middles[rows, 0]
     return [(rows, np.stack([a, m, c], axis=1)), (rows, np.stack([m, b, c], axis=1))]
 
@@ -182,9 +183,9 @@ def _cut_once(faces: IndexArray, middles: IndexArray, rows: IndexArray) -> list[
 def _cut_twice(
     vertices: FloatArray, faces: IndexArray, middles: IndexArray, rows: IndexArray
 ) -> list[_Piece]:
-    """Return three parts of triangles whose first edge is whole."""
+    """Return three parts of triangles with only the first edge uncut."""
     (a, b, c), (_, m, n) = faces[rows].T, middles[rows].T
-    # The shorter diagonal of the quadrilateral that is left.
+    # Use the shorter diagonal of the remaining quadrilateral.
     first = _lengths(vertices, a, m) <= _lengths(vertices, b, n)
     fourth, far = np.where(first, m, n), np.where(first, a, b)
     parts = ([n, m, c], [a, b, fourth], [far, m, n])
@@ -197,7 +198,7 @@ def _lengths(vertices: FloatArray, start: IndexArray, end: IndexArray) -> FloatA
 
 
 def _edges(faces: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
-    """Return the edges, (e, 2), lower corner first, and which are the sides of each triangle."""
+    """Return the edges, (e, 2), lower corner first, and the edges of each triangle's sides."""
     ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     keys, sides = np.unique(ends[:, 0] * np.int64(count) + ends[:, 1], return_inverse=True)
     return np.stack([keys // count, keys % count], axis=1), sides.reshape(-1, 3)

@@ -52,13 +52,13 @@ def curvature(solid: Solid) -> tuple[FloatArray, FloatArray]:
 
 
 def _areas(mesh: Mesh) -> FloatArray:
-    """Return the normal of each triangle, twice as long as its area."""
+    """Return the normal of each triangle, with length twice its area."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     return np.cross(b - a, c - a)
 
 
 def unit(vectors: FloatArray) -> FloatArray:
-    """Return vectors of length 1; zero stays zero."""
+    """Return normalized vectors; zero stays zero."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     units: FloatArray = np.divide(vectors, lengths, np.zeros_like(vectors), where=lengths > 0)
     return units
@@ -76,9 +76,9 @@ def _angles(mesh: Mesh) -> FloatArray:
 
 
 def half_edges(faces: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return for each edge of a closed mesh the two sides of triangles along it, forth and back.
+    """Return the two half-edges of each edge of a closed mesh.
 
-    Side 3 f + k is that of face f from its corner k to the next.
+    Half-edge 3 f + k runs from corner k of face f to the next corner.
     """
     start, end = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
     count = faces.max(initial=0) + 1
@@ -96,20 +96,20 @@ def _signed_bends(one: FloatArray, other: FloatArray, along: FloatArray) -> Floa
 
 
 def _fans(mesh: Mesh, own: FloatArray, limit: float) -> IndexArray:
-    """Return a number for each corner, the same for those that no sharp edge parts."""
+    """Return a number for each triangle corner, equal for corners that no sharp edge separates."""
     forth, back = half_edges(mesh.faces)
     cosines = np.einsum("ij,ij->i", own[forth // 3], own[back // 3])
     flat = cosines >= math.cos(math.radians(limit)) - _ROUNDING
     forth, back = forth[flat], back[flat]
     count = mesh.faces.size
     alone = np.arange(count)
-    # The corner where one side starts is that where the other ends.
+    # One half-edge starts at the corner where the other ends.
     pairs = [(alone, alone), (forth, next_side(back)), (next_side(forth), back)]
     linked = [np.stack([here, there, there], axis=1) for here, there in pairs]
     return surfaces_of(np.concatenate(linked), count)[:count]
 
 
 def next_side(side: IndexArray) -> IndexArray:
-    """Return the side after another one of the same triangle."""
+    """Return the next half-edge of the same triangle."""
     following: IndexArray = side - side % 3 + (side + 1) % 3
     return following

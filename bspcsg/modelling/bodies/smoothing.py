@@ -1,4 +1,4 @@
-"""Solids whose faces bend smoothly through their corners."""
+"""Smoothing of solids by curved faces through their corners."""
 
 import numpy as np
 
@@ -29,7 +29,7 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
     flat, faces, origins = divided(mesh.vertices, mesh.faces, parts)
     vertices = flat.copy()
     weights = _weights(parts)
-    # Corners that triangles share are at one place for all of them, so that nothing gapes.
+    # Triangles compute shared corners identically, so no gaps arise.
     patches = _points(mesh, _handles(mesh, at_corners), weights)
     vertices[faces.reshape(len(mesh.faces), -1)] = patches
     refuse_crossings(vertices, faces, "Bent smoothly")
@@ -41,10 +41,10 @@ def smooth(solid: Solid, n: int, sharp_angle: Scalar = 60.0) -> Solid:
 
 
 def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:
-    """Return the inner points of the cubic curve over each side of each triangle, (m, 3, 2, 3).
+    """Return the inner control points of the cubic curves over triangle sides, (m, 3, 2, 3).
 
-    A curve starts in the plane across the normal, and where faces meet in a sharp edge in those
-    across both.
+    A curve starts in the plane perpendicular to the normal; at a sharp edge, in the planes
+    perpendicular to both normals.
     """
     forth, back = half_edges(mesh.faces)
     start, end = mesh.faces.ravel()[forth], mesh.faces.ravel()[back]
@@ -58,7 +58,7 @@ def _handles(mesh: Mesh, at_corners: FloatArray) -> FloatArray:
 
 
 def _along(ways: FloatArray, one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return the parts of ways that are across two normals each."""
+    """Return the components of vectors that are perpendicular to two normals each."""
     mean, edge = unit(one + other), np.cross(one, other)
     is_sharp = np.linalg.norm(edge, axis=1, keepdims=True) > _SHARP
     along = unit(edge)
@@ -83,6 +83,6 @@ def _points(mesh: Mesh, handles: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def _weights(parts: int) -> FloatArray:
-    """Return the weights of the corners of all parts of a triangle, as `divided` has them."""
+    """Return barycentric weights of the corners of a triangle's parts, as in `divided`."""
     places = np.array(small_triangles(parts), dtype=np.float64).reshape(-1, 2) / parts
     return np.column_stack([1 - places.sum(axis=1), places])

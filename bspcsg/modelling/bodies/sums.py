@@ -1,4 +1,4 @@
-"""Minkowski sums, those of solids."""
+"""Minkowski sums of solids."""
 
 from fractions import Fraction
 from itertools import islice
@@ -41,18 +41,18 @@ def minkowski(a: Solid, b: Solid) -> Solid: ...
 def minkowski(a: Region, b: Region) -> Region: ...
 @counted
 def minkowski(a: Any, b: Any) -> Solid | Region:
-    """Return the Minkowski sum: all points that are a point of one solid plus one of the other.
+    """Return the Minkowski sum: all sums of a point of one solid and a point of the other.
 
     It is the first solid thickened by the second. The sum of convex solids is the hull of the sums
-    of their corners. If one is convex, the sum is the other one and all that the convex one touches
-    while it moves along the surface. Of two that are not, the one with fewer faces is divided into
+    of their corners. If one is convex, the sum is the other one plus all that the convex one sweeps
+    while it moves along the surface. If neither is convex, the one with fewer faces is divided into
     convex parts, and the sums of the parts are united.
 
     Parameters
     ----------
     a, b : Solid, or Region both
-        The complement of a bounded solid may stand for `a`. So ``~minkowski(~a, b)`` is `a` made
-        thinner: all points at which the mirror image of `b` in the origin fits into `a`.
+        `a` may be the complement of a bounded solid. So ``~minkowski(~a, b)`` erodes `a`: it
+        consists of all points at which `b`, mirrored at the origin, fits into `a`.
 
     Returns
     -------
@@ -66,13 +66,13 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
     UnboundedError
         If `b` reaches to infinity, or `a` and its complement do.
     LimitError
-        If more than 10 million faces bound what the convex solid touches, or neither is convex and
-        the product of their numbers of faces is more than 4 million ("too_large"). Of regions,
-        if there are more than 20 000 pairs of convex parts.
+        If the convex solid sweeps a body with more than 10 million faces, or if neither is convex
+        and the product of their numbers of faces exceeds 4 million ("too_large"). For regions, if
+        there are more than 20 000 pairs of convex parts.
 
     Notes
     -----
-    Corners that are no lattice points are rounded to it before they are added.
+    Corners off the lattice are rounded to it before they are added.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
     if isinstance(a, Region) and isinstance(b, Region):
         return sum_of_regions(a, b)
     if not isinstance(a, Solid) or not isinstance(b, Solid):
-        raise invalid_parameter("A Minkowski sum is that of two solids, or of two regions.")
+        raise invalid_parameter("minkowski takes two solids or two regions.")
     if a.is_empty or b.is_empty:
         return Solid.empty()
     if not a.is_bounded:
@@ -97,7 +97,7 @@ def minkowski(a: Any, b: Any) -> Solid | Region:
 
 
 def convex_parts(solid: Solid) -> ConvexParts:
-    """Return the corners of convex parts that make up a solid.
+    """Return the corners of convex parts whose union is the solid.
 
     Raises
     ------
@@ -115,7 +115,7 @@ def convex_parts(solid: Solid) -> ConvexParts:
 
 
 def is_convex(solid: Solid) -> bool:
-    """Say whether the hull is no larger, but for the rounding of its corners."""
+    """Say whether a solid equals its hull, up to rounding of corners."""
     mesh = solid.normalized().to_mesh()
     largest = mesh.volume * (1 + _LARGER)
     # Small holes in a large body hardly change its volume.
@@ -125,11 +125,11 @@ def is_convex(solid: Solid) -> bool:
 
 
 def _bends_inwards(mesh: Mesh, step: float) -> bool:
-    """Say whether an edge is concave by more than rounding can make it.
+    """Say whether an edge is concave by more than rounding errors.
 
-    Corners move by some steps. At the far corner of the smaller triangle the plane of the larger
-    one moves as many times more as that corner is farther away than the edge is long, or the
-    larger triangle high.
+    Rounding moves corners by some steps. At the far corner of the smaller triangle, the plane of
+    the larger one moves more, by the ratio of that corner's distance to the length of the edge or
+    the height of the larger triangle.
     """
     first, second = half_edges(mesh.faces)
     points = mesh.vertices[mesh.faces].reshape(-1, 3)
@@ -148,7 +148,7 @@ def _bends_inwards(mesh: Mesh, step: float) -> bool:
 
 
 def _solid_and_tool(a: Solid, b: Solid) -> tuple[Solid, Solid]:
-    """Return two solids, the second one that is convex or has fewer faces."""
+    """Return two solids such that the second is convex or has fewer faces."""
     first, second = (0 if is_convex(solid) else _face_count(solid) for solid in (a, b))
     return (b, a) if first < second else (a, b)
 
@@ -188,7 +188,7 @@ def _corners(solid: Solid) -> FloatArray:
 
 
 def _eroded(solid: Solid, tool: Solid) -> Solid:
-    """Return the points at which the mirror image of a tool in the origin fits into a solid."""
+    """Return the points at which a tool, mirrored at the origin, fits into a solid."""
     if not solid.is_bounded:
         raise UnboundedError(
             "This solid and its complement both reach to infinity, so it has no sum.", "unbounded"
@@ -203,8 +203,7 @@ def _eroded(solid: Solid, tool: Solid) -> Solid:
 def _between_planes(solid: Solid, tool: Solid) -> Solid:
     """Return a convex solid with each face moved in as far as the tool reaches.
 
-    The planes are those of the inputs' faces, exactly: corners of what cuts left of them are
-    rounded.
+    The exact planes of the input faces are used, since the corners of cut faces are rounded.
     """
     reach = _steps(tool)
     tree = solid.normalized().tree
@@ -217,9 +216,9 @@ def _between_planes(solid: Solid, tool: Solid) -> Solid:
 
 
 def _supporting(rows: list[list[int]], points: FloatArray) -> list[list[int]]:
-    """Return planes, normal and offset, moved outwards to where they hold all points.
+    """Return planes, normal and offset, moved outwards until they contain all points.
 
-    Rounded bodies are convex but for some steps. Faces narrower than that may face anywhere.
+    Rounded bodies are convex only up to some steps. Narrower faces may have any direction.
     """
     planes = np.array(rows, dtype=np.float64)
     planes /= np.linalg.norm(planes[:, :3], axis=1)[:, None]
@@ -241,7 +240,7 @@ def _in_steps(solid: Solid) -> FloatArray:
 
 
 def _steps(tool: Solid) -> LongArray:
-    """Return the corners in whole lattice steps, as numbers without limits."""
+    """Return the corners in whole lattice steps, as Python integers."""
     whole: LongArray = np.rint(_in_steps(tool)).astype(np.int64).astype(object)
     return whole
 
@@ -249,7 +248,7 @@ def _steps(tool: Solid) -> LongArray:
 def _plane_inside(
     normal: list[int], offset: int, reach: LongArray, step: Fraction, tool_step: Fraction
 ) -> Hyperplane:
-    """Return a plane moved by the least reach of the tool along its normal, each in its steps."""
+    """Return a plane moved by the tool's least reach along its normal, each in own steps."""
     least = np.dot(reach, np.array(normal, dtype=object)).min()
     return Hyperplane.of(list(map(Fraction, normal)), offset * step + least * tool_step)
 

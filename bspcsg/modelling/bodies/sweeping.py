@@ -1,4 +1,4 @@
-"""Solids with all that a convex tool touches while it moves along their surface."""
+"""Minkowski sums of a solid and a convex tool that moves along its surface."""
 
 import numpy as np
 
@@ -13,12 +13,12 @@ from .touching import swept_mesh
 def swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
     """Return the sum of a bounded solid and a convex one.
 
-    If `is_inside`, the complement of the sum of the complement: what the tool leaves of the solid.
+    If `is_inside`, return the complement of the sum of the complement: the eroded solid.
 
     Raises
     ------
     LimitError
-        If what the tool touches has too many faces.
+        If the swept body has too many faces.
     """
     pitch = _common_pitch(solid, tool)
     points, faces = _swept_mesh(solid, tool, pitch, is_inside)
@@ -27,7 +27,7 @@ def swept(solid: Solid, tool: Solid, is_inside: bool = False) -> Solid:
 
 
 def sum_of_convex(first: Solid, second: Solid) -> Solid:
-    """Return the sum of two convex solids; errors are those of `swept`."""
+    """Return the sum of two convex solids; errors as for `swept`."""
     pitch = _common_pitch(first, second)
     return hull_of(_swept_mesh(first, second, pitch, False)[0], pitch)
 
@@ -43,7 +43,7 @@ def _swept_mesh(
 
 
 def _common_pitch(solid: Solid, tool: Solid) -> int:
-    """Return the pitch of the finer lattice of two solids, or of one that holds their sum."""
+    """Return the pitch of the finer lattice of two solids, or one whose lattice holds their sum."""
     boxes = [_box(one) for one in (solid, tool)]
     return lattice_for(np.concatenate([*boxes, boxes[0] + boxes[1]]), min(solid.pitch, tool.pitch))
 
@@ -64,10 +64,10 @@ def _turned(faces: IndexArray, is_turned: bool) -> IndexArray:
 
 
 def _point_within(tool: Polyhedron) -> IndexArray:
-    """Return the middle of a convex body, or a corner if no lattice point is so near to it.
+    """Return the middle of a convex body, or a corner if no lattice point inside is near it.
 
-    Where a tool that holds the origin touches no surface, it is inside if the origin is. From the
-    middle it reaches equally far to all sides, so pieces overlap least.
+    If a tool that contains the origin touches no surface, it is inside if the origin is. With the
+    origin in its middle it reaches equally far to all sides, so pieces overlap least.
     """
     middle: IndexArray = np.rint(tool.points.mean(axis=0)).astype(np.int64)
     if tool.holds(middle):

@@ -1,10 +1,10 @@
-"""What a convex tool touches while it moves along the surface of a solid, as one mesh.
+"""The sweep of a convex tool along the surface of a solid, as one mesh.
 
-Where the tool, grown from nothing about the origin, first touches the surface, a corner of it
-touches a face, an edge an edge, or a face a corner. So what it reaches outside consists of prisms
-on faces, wedges along edges that are convex and pyramids at corners. Walls between two of them
-cancel, and so do the faces of the solid. The mesh that is left winds around each point as many
-times as there are pieces that hold it, and once more within the solid.
+Let the tool grow from the origin. Where it first touches the surface, a corner of the tool touches
+a face, an edge touches an edge, or a face touches a corner. So the body swept outside consists of
+prisms on faces, wedges along convex edges and pyramids at corners. Walls between two pieces cancel,
+and so do the faces of the solid. The remaining mesh winds around each point once for each piece
+that contains it, and once more inside the solid.
 """
 
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ _ORIGIN = -1
 
 
 class _Sums:
-    """Numbers for the sums of a corner of a solid and one of a tool, or the origin."""
+    """Numbering of the sums of a corner of a solid and a corner of a tool or the origin."""
 
     def __init__(self, solid: Polyhedron, tool: Polyhedron) -> None:
         self._points = solid.points
@@ -36,7 +36,7 @@ class _Sums:
         return numbers
 
     def points(self, numbers: IndexArray) -> IndexArray:
-        """Return where sums are."""
+        """Return the positions of sums."""
         corners, ends = np.divmod(numbers, len(self._ends))
         points: IndexArray = self._points[corners] + self._ends[ends]
         return points
@@ -49,7 +49,7 @@ def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexAr
     ----------
     solid : Polyhedron
     tool : Polyhedron
-        Convex; it holds the origin.
+        Convex; it contains the origin.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def swept_mesh(solid: Polyhedron, tool: Polyhedron) -> tuple[IndexArray, IndexAr
         if count > _MAX_PIECE_FACES:
             message = (
                 f"what a tool of {len(tool.faces):,} faces touches at a solid of"
-                f" {len(solid.faces):,} has more than {_MAX_PIECE_FACES:,}; give coarser ones."
+                f" {len(solid.faces):,} has more than {_MAX_PIECE_FACES:,}; choose coarser solids."
             )
             raise LimitError(message, "too_large")
     left = _cancelled(np.concatenate(parts))
@@ -96,7 +96,7 @@ def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
 
 
 def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the walls of the prism on each face; those along flat edges would cancel."""
+    """Yield the walls of the prism on each face, except those along flat edges, which cancel."""
     start, end = (part[solid.sharp] for part in solid.ends)
     left, right = (side[solid.sharp] for side in solid.beside)
     yield from _wall(start, end, tops[left], sums)
@@ -106,7 +106,7 @@ def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterato
 def _steps_around(
     solid: Polyhedron, tool: Polyhedron
 ) -> Iterator[tuple[IndexArray, IndexArray, IndexArray]]:
-    """Yield edges at which the solid is convex, each with edges of the tool that touch it.
+    """Yield the convex edges of the solid, each with the edges of the tool that touch it.
 
     A plane that turns around an edge, from one face to the other, touches the tool at one corner
     after another. Each step leads along an edge of the tool, from its start to its end.
@@ -129,7 +129,7 @@ def _steps_around(
 
 
 def _along_tool(solid: Polyhedron, faces: IndexArray, tool: Polyhedron) -> Marks:
-    """Return for faces of the solid which sharp edges of the tool rise along the normal."""
+    """Return for each face of the solid which sharp edges of the tool rise along the normal."""
     normals, row = np.unique(solid.normals.of[faces], return_inverse=True)
     edges, column = np.unique(tool.along.of[tool.sharp], return_inverse=True)
     return rising(solid.normals.each.at(normals), tool.along.each.at(edges))[row][:, column]
@@ -169,7 +169,7 @@ def _pyramids(corners: IndexArray, bases: IndexArray, sums: _Sums) -> Iterator[I
 
 
 def _wall(p: IndexArray, q: IndexArray, top: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the faces of edges swept from the origin to a corner, divided alike from both sides."""
+    """Yield the faces that edges sweep from the origin to a corner, alike on both sides."""
     low, high = np.minimum(p, q), np.maximum(p, q)
     start, end = sums.of(low, _ORIGIN), sums.of(high, top)
     for faces in (
@@ -184,7 +184,7 @@ def _triangles(*corners: IndexArray) -> IndexArray:
 
 
 def _cancelled(triangles: IndexArray) -> IndexArray:
-    """Return what is left of triangles of which each cancels one that is turned the other way."""
+    """Return the triangles that remain after pairs of opposite triangles cancel."""
     a, b, c = triangles.T
     turn = np.where((a > b) ^ (b > c) ^ (a > c), -1, 1)
     rows = np.sort(triangles, axis=1)

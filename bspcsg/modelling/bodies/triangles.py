@@ -11,7 +11,7 @@ Numbers: TypeAlias = np.ndarray[Any, np.dtype[Any]]
 
 
 def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return squared distances of triangles that do not cross, and where they are nearest.
+    """Return squared distances of triangles that do not cross, and their nearest points.
 
     Parameters
     ----------
@@ -21,12 +21,12 @@ def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, N
     Returns
     -------
     (k,), (k, 3), (k, 3)
-        Numbers of the same kind; a point of each first and of each second triangle.
+        Numbers of the same kind: squared distances, and points of first and second triangles.
 
     Notes
     -----
-    Where triangles do not cross, the nearest points are those of two edges, or a corner and its
-    foot in the other triangle.
+    If triangles do not cross, the nearest points are those of two edges, or a corner and its
+    projection onto the other triangle.
     """
     best, p, q = _of_edges(first, second, 0, 0)
     for edge in range(1, 9):
@@ -42,7 +42,7 @@ def nearest_points(first: Numbers, second: Numbers) -> tuple[Numbers, Numbers, N
 
 
 def least_gaps(first: FloatArray, second: FloatArray) -> FloatArray:
-    """Return squares that no squared distance of two triangles is below, but for rounding.
+    """Return lower bounds of the squared distances of triangles, up to rounding.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _quotient(a: Numbers, b: Numbers) -> Numbers:
 
 
 def _of_edges(first: Numbers, second: Numbers, i: int, j: int) -> tuple[Numbers, Numbers, Numbers]:
-    """Return squared distances and nearest points of an edge each (Ericson 2005, 5.1.9)."""
+    """Return squared distances and nearest points of pairs of edges (Ericson 2005, 5.1.9)."""
     p, u = first[:, i], first[:, i - 2] - first[:, i]
     q, v = second[:, j], second[:, j - 2] - second[:, j]
     r = p - q
@@ -103,7 +103,7 @@ def _of_edges(first: Numbers, second: Numbers, i: int, j: int) -> tuple[Numbers,
 
 
 def _feet(points: Numbers, triangles: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the feet of points in the triangles' planes, how far, and whether they are inside."""
+    """Return projections onto the triangles' planes, squared distances, and which are inside."""
     a = triangles[:, 0]
     u, v, w = triangles[:, 1] - a, triangles[:, 2] - a, points - a
     n = _cross(u, v)

@@ -1,4 +1,4 @@
-"""Solids whose corners a function moves."""
+"""Solids with corners moved by a function."""
 
 from collections.abc import Callable
 from typing import Any, TypeAlias
@@ -45,9 +45,9 @@ def warp(solid: Solid, f: PointMap, winding: WindingRule | None = None) -> Solid
 
 
 def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> AttributedMesh:
-    """Return a mesh that does not cross itself, given its vertices before they were moved.
+    """Return a moved mesh that does not cross itself, given its vertices before the move.
 
-    Surfaces that touched are mended where rounding makes them cross; more is refused.
+    Touching surfaces that cross by rounding are mended; other crossings raise an error.
     """
     held = moved.held_pitch(given)
     pitch = moved.suited_pitch() if held is None else held
@@ -61,13 +61,13 @@ def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> 
 
 
 def _farthest(vertices: FloatArray, pitch: int | None) -> float:
-    """Return a distance that mending moves no vertex by: far more than rounding, and a step."""
+    """Return a distance that exceeds all moves by mending, rounding and a lattice step."""
     step = 0.0 if pitch is None else 10.0**pitch
     return float(np.abs(vertices).max()) * _ROUNDING + step
 
 
 def _moved(f: PointMap, points: FloatArray) -> FloatArray:
-    """Return what a function makes of points: finite and of the same shape."""
+    """Return the moved points, checked for shape and finite numbers."""
     moved = points_array(f(points.copy()))
     if moved.shape != points.shape:
         raise invalid_parameter(
@@ -97,7 +97,7 @@ def _refusal(
     least = "" if found.are_all else "at least "
     message = (
         f"{when}, pairs of faces cross or overlap ({least}{len(found.pairs)}), one near {first}."
-        " Refine the solid first; warp can let winding numbers decide what is inside."
+        " Refine the solid first, or choose a winding rule for warp."
     )
     return InvalidMeshError(
         message, "self_crossing", np.unique(found.pairs[:_MAX_PLACES_LISTED]).tolist()

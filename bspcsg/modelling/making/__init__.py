@@ -1,1 +1,1 @@
-"""Making solids: sweeps, lofts, boxes with round edges, patterns, chamfers and fillets."""
+"""Construction of solids: sweeps, lofts, rounded boxes, patterns, chamfers and fillets."""

@@ -1,8 +1,9 @@
 """Chamfers and fillets of edges between planes.
 
-Each edge has a cutter: what lies in the wedge of its two planes beyond the new surface, up to the
-planes at its ends. Concave edges are convex ones of the complement, and their cutters are filled
-in. Round corners of three edges have a cutter of their own, between the three planes and a ball.
+Each edge has a cutter: the part of the wedge of its two planes beyond the new surface, up to the
+planes at its ends. Concave edges are convex edges of the complement; their cutters are added
+instead of removed. Round corners of three edges have a separate cutter, between the three planes
+and a ball.
 """
 
 import math
@@ -57,7 +58,7 @@ _OVERLAP = 0.01
 
 @dataclass(frozen=True, eq=False)
 class _Profile:
-    """The new surface along an edge, as seen along it.
+    """The cross-section of the new surface along an edge.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ class _Blend:
 
     @cached_property
     def widths(self) -> FloatArray:
-        """The distance of the new surface from each edge on its faces, (e,), 0 where not asked."""
+        """The distance of the new surface from each edge on its faces, (e,), 0 if not selected."""
         own = sorted(self.chosen)
         widths = np.zeros(len(self.skeleton.ends))
         widths[own] = self.profile.size
@@ -101,7 +102,7 @@ class _Blend:
 
     @cached_property
     def caps(self) -> list[int]:
-        """The faces all of whose edges are chosen, and have no room side by side."""
+        """The faces with all edges selected and no room for their strips side by side."""
         faces = np.unique(self.skeleton.sides[sorted(self.chosen)]).tolist()
         return [
             face
@@ -111,18 +112,18 @@ class _Blend:
         ]
 
     def cap_tool(self, face: int, sign: int) -> Solid:
-        """Return what is taken off all along the outline of a face."""
+        """Return the tool that cuts along the whole outline of a face."""
         angles = np.arange(self.profile.steps + 1) / self.profile.steps
         cosines, sines = np.array([cos_sin(90 * angle) for angle in angles]).T
         profile = self.profile.size * np.column_stack([1 - cosines, sines])
         return cap_tool(self.skeleton, face, sign, profile, self.pitch)
 
     def sign(self, edge: int) -> int:
-        """Return 1 for a convex edge, -1 for one that is convex in the complement."""
+        """Return 1 for a convex edge, -1 for a concave one."""
         return 1 if self.skeleton.is_convex[edge] else -1
 
     def cutter(self, edge: int) -> Solid:
-        """Return what is taken off along a convex edge, or filled in along a concave one."""
+        """Return the cutter of an edge: removed from a convex one, added to a concave one."""
         sign = self.sign(edge)
         parts = [self.prism(edge)]
         parts += [self.planes.inside(face, sign) for face in self.skeleton.sides[edge].tolist()]
@@ -131,14 +132,14 @@ class _Blend:
         return _evaluated(intersection(parts))
 
     def _ends(self, edge: int, place: int) -> list[Solid]:
-        """Return what the cutter is cut off by at one end of an edge."""
+        """Return the half-spaces that limit the cutter at one end of an edge."""
         vertex, sign = int(self.skeleton.ends[edge, place]), self.sign(edge)
         others = sorted(self.skeleton.faces_at(vertex) - set(self.skeleton.sides[edge].tolist()))
         along = self.skeleton.directions[edge] * (1 - 2 * place)
         leans = [sign * float(self.skeleton.normals[face] @ along) for face in others]
         if all(lean < 0 for lean in leans):
             return [self.planes.inside(face, sign) for face in others]
-        # The edge ends on the outside of a plane: there it stops, or turns with its neighbour.
+        # The edge ends outside a plane: the cutter stops there, or meets its neighbour's.
         (face,) = others
         outside = ~self.planes.inside(face, sign, beyond=False)
         partners = [
@@ -149,11 +150,11 @@ class _Blend:
         return [outside | self.prism(partners[0]) if partners else outside]
 
     def _mitres(self, edge: int, place: int) -> list[Solid]:
-        """Return half-spaces of what an edge's own cutter has to take off at a corner of three.
+        """Return half-spaces that limit an edge's cutter at a corner of three edges.
 
-        Where the corner is symmetrical, or its third edge of the other kind, a neighbour takes off
-        all beyond the plane halfway that holds the third edge. Without this cutters would reach
-        past short neighbours.
+        If the corner is symmetrical, or its third edge is of the other kind, the bisecting plane
+        through the third edge separates the cutters of the two neighbours. Otherwise cutters would
+        reach past short neighbours.
         """
         vertex = int(self.skeleton.ends[edge, place])
         around = self.skeleton.edges_at(vertex)
@@ -174,12 +175,12 @@ class _Blend:
         return found
 
     def _away(self, edge: int, vertex: int) -> FloatArray:
-        """Return the unit vector along an edge away from one of its ends."""
+        """Return the unit vector along an edge, away from one of its ends."""
         along: FloatArray = self.skeleton.directions[edge]
         return along if self.skeleton.ends[edge, 0] == vertex else -along
 
     def refuse_corners(self) -> None:
-        """Raise an error where chosen edges meet in a way that has no cutter."""
+        """Raise an error if selected edges meet in a way for which there is no cutter."""
         vertices = np.unique(self.skeleton.ends[sorted(self.chosen)])
         for vertex in vertices.tolist():
             edges = self.skeleton.edges_at(vertex)
@@ -190,13 +191,15 @@ class _Blend:
                 raise refused(self.skeleton, vertex, "the faces around a corner are not one fan")
             if len(edges) > 3 and (len(signs) > 1 or not self._is_cone(vertex)):
                 raise refused(
-                    self.skeleton, vertex, "more than three faces meet that are no convex corner"
+                    self.skeleton,
+                    vertex,
+                    "more than three faces meet in a corner that is not convex",
                 )
             if len(edges) > 3 and len(chosen) > 2 and self.profile.is_round:
                 raise refused(self.skeleton, vertex, "more than three round edges would meet")
 
     def _is_cone(self, vertex: int) -> bool:
-        """Say whether all edges at a vertex run behind all planes there, or all before them."""
+        """Say whether all edges at a vertex are behind all planes there, or all in front."""
         normals = self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
         edges = self.skeleton.edges_at(vertex)
         away = np.where(self.skeleton.ends[edges, 0] == vertex, 1, -1)[:, None]
@@ -205,18 +208,18 @@ class _Blend:
         return bool((leans < _FLATTEST).all())
 
     def is_round_corner(self, vertex: int) -> bool:
-        """Say whether three edges meet whose fillets leave a ball between them."""
+        """Say whether three edges meet at a vertex whose fillets need a ball between them."""
         edges = self.skeleton.edges_at(vertex)
         is_full = len(edges) == 3 and all(edge in self.chosen for edge in edges)
         return self.profile.is_round and is_full
 
     def corners(self) -> list[int]:
-        """Return the vertices that become parts of a ball."""
+        """Return the vertices that become part of a ball."""
         vertices = np.unique(self.skeleton.ends[sorted(self.chosen)]).tolist()
         return [vertex for vertex in vertices if self.is_round_corner(vertex)]
 
     def corner_cutter(self, vertex: int) -> Solid:
-        """Return what lies between three planes and the ball that touches them."""
+        """Return the body between three planes and the ball that touches them."""
         faces = self.corner_faces(vertex)
         sign = self.sign(self.skeleton.edges_at(vertex)[0])
         middle = self._ball(vertex)
@@ -238,14 +241,14 @@ class _Blend:
         return _evaluated(intersection(shell, planes))
 
     def corner_faces(self, vertex: int) -> list[int]:
-        """Return the three faces at a vertex, counter-clockwise as the ball is seen."""
+        """Return the three faces at a vertex, counter-clockwise on the ball seen from outside."""
         faces = sorted(self.skeleton.faces_at(vertex))
         sign = self.sign(self.skeleton.edges_at(vertex)[0])
         turned = np.linalg.det(sign * self.skeleton.normals[faces]) < 0
         return faces[::-1] if turned else faces
 
     def _ball(self, vertex: int) -> FloatArray:
-        """Return the middle of the ball that touches three planes."""
+        """Return the centre of the ball that touches three planes."""
         sign = self.sign(self.skeleton.edges_at(vertex)[0])
         normals = sign * self.skeleton.normals[sorted(self.skeleton.faces_at(vertex))]
         away = np.linalg.solve(normals, np.full(3, -self.profile.size))
@@ -255,7 +258,7 @@ class _Blend:
         return np.round(points, -self.pitch) if self.pitch < 0 else points
 
     def prism(self, edge: int) -> Solid:
-        """Return what lies beyond the new surface of an edge, far past both ends."""
+        """Return the prism that is cut away along an edge; it reaches far past both ends."""
         if edge not in self._prisms:
             self._prisms[edge] = self._prism(edge)
         return self._prisms[edge]
@@ -264,7 +267,7 @@ class _Blend:
         arcs = [self._snapped(self._station(edge, place)) for place in (0, 1)]
         rings = np.array([self._ring(edge, arc) for arc in arcs])
         if np.linalg.norm(rings[1] - rings[0], axis=1).min() < _MIN_STATION_GAP * self.profile.size:
-            # Nothing is left between the balls at both ends.
+            # There is no room between the balls at both ends.
             rings[1] = rings[0] + self.profile.size * self.skeleton.directions[edge]
         step = rings[1] - rings[0]
         times = max(self._reach(edge, rings, place) for place in (0, 1))
@@ -280,23 +283,23 @@ class _Blend:
         return self._body(points, triangles)
 
     def _body(self, points: FloatArray, triangles: IndexArray) -> Solid:
-        """Return a solid, on a coarser lattice if it reaches beyond the end of this one."""
+        """Return a solid, on a coarser lattice if it does not fit on this one."""
         try:
             return Solid(points, triangles, pitch=self.pitch)
         except LimitError:
             return Solid(points, triangles)
 
     def _station(self, edge: int, place: int) -> FloatArray:
-        """Return the new surface across one end of an edge, from the left face to the right one."""
+        """Return the cross-section of the new surface at one end, from left to right face."""
         vertex = int(self.skeleton.ends[edge, place])
         if self.is_round_corner(vertex):
             return self._ball(vertex) + self._arc(edge)
         return np.asarray(self.skeleton.vertices[vertex] + self.section(edge))
 
     def section(self, edge: int) -> FloatArray:
-        """Return the new surface across an edge, from the left face to the right one.
+        """Return the cross-section of the new surface of an edge, from the left to the right face.
 
-        It is seen from a point of the edge.
+        Coordinates are relative to a point of the edge.
         """
         if edge not in self._sections:
             self._sections[edge] = self._section(edge)
@@ -311,12 +314,12 @@ class _Blend:
         return np.asarray(middle + self._arc(edge))
 
     def _arc(self, edge: int) -> FloatArray:
-        """Return the round surface across an edge, as seen from its axis."""
+        """Return the arc across an edge, relative to the axis of the fillet."""
         normals = self.sign(edge) * self.skeleton.normals[self.skeleton.sides[edge]]
         return self.profile.size * arc_directions(normals[0], normals[1], self.profile.steps)
 
     def _ring(self, edge: int, arc: FloatArray) -> FloatArray:
-        """Return the prism's section, whose first and last chord run on past the faces."""
+        """Return the prism's section, with the first and last chord extended past the faces."""
         first, last = 2 * arc[0] - arc[1], 2 * arc[-1] - arc[-2]
         foot = (arc[0] + arc[-1]) / 2
         along = self.skeleton.directions[edge]
@@ -326,7 +329,7 @@ class _Blend:
         return np.array([first, *arc[1:-1], last, self._snapped(tip)])
 
     def _reach(self, edge: int, rings: FloatArray, place: int) -> int:
-        """Return how many times its length the prism must go on to be past the end's planes."""
+        """Return how many of its lengths the prism must grow to pass the planes at an end."""
         vertex, along = int(self.skeleton.ends[edge, place]), self.skeleton.directions[edge]
         others = self.skeleton.faces_at(vertex) - set(self.skeleton.sides[edge].tolist())
         sines = np.abs(self.skeleton.normals[sorted(others)] @ along)
@@ -340,33 +343,33 @@ class _Blend:
 
 
 def _evaluated(cutter: Solid) -> Solid:
-    """Return a cutter as a body of its own.
+    """Return a cutter as an evaluated body.
 
-    Else all prisms and planes, which reach far beyond it, would meet in one expression.
+    Otherwise all prisms and planes, which reach far beyond it, would meet in one expression.
     """
     return from_leaf(TreeLeaf(cutter.tree))
 
 
 def _across(direction: FloatArray, axis: FloatArray) -> FloatArray:
-    """Return the unit vector of the part of a direction that is square to a unit axis."""
+    """Return the unit vector of a direction's component perpendicular to a unit axis."""
     across = direction - (direction @ axis) * axis
     return np.asarray(across / np.linalg.norm(across))
 
 
 def _rim(steps: int) -> IndexArray:
-    """Return the points around a patch, in the order of its corners."""
+    """Return the numbers of the points around a patch, in the order of its corners."""
     rows = np.arange(steps + 1)
     first = rows * (rows + 1) // 2
     return np.concatenate([first[:-1], (first[-1] + rows)[:-1], (first + rows)[:0:-1]])
 
 
 def chamfer(solid: Solid, edges: EdgeSelection, size: Scalar) -> Solid:
-    """Return the solid with flat surfaces instead of edges; see `Solid.chamfer`."""
+    """Return the solid with chamfered edges; see `Solid.chamfer`."""
     return _blended(solid, edges, _Profile(positive(size, "size"), 1, False))
 
 
 def fillet(solid: Solid, edges: EdgeSelection, radius: Scalar, segments: int) -> Solid:
-    """Return the solid with round surfaces instead of edges; see `Solid.fillet`."""
+    """Return the solid with rounded edges; see `Solid.fillet`."""
     around = sides_around(4, segments, "segments")
     size = positive(radius, "radius")
     skeleton, chosen = _selected(edges)
@@ -378,7 +381,7 @@ def fillet(solid: Solid, edges: EdgeSelection, radius: Scalar, segments: int) ->
 
 def _selected(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
     if not isinstance(edges, EdgeSelection):
-        raise invalid_parameter("Edges are those of a selection: solid.edges().")
+        raise invalid_parameter("edges must be a selection, such as solid.edges().")
     skeleton, chosen = selection(edges)
     if len(chosen) > _MAX_EDGES:
         message = f"{len(chosen)} edges are chosen, and {_MAX_EDGES} are the most."
@@ -392,7 +395,9 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
     if skeleton.vertices is not mesh.vertices and not np.array_equal(
         skeleton.vertices, mesh.vertices
     ):
-        raise invalid_parameter("These are edges of another solid; ask this one for its edges().")
+        raise invalid_parameter(
+            "These are edges of another solid; select from edges() of this one."
+        )
     while len(chosen):
         pitch = _pitch_for(skeleton, solid.pitch)
         blend = _Blend(skeleton, ready(skeleton, chosen), profile, pitch)
@@ -402,7 +407,7 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
             break
         tidy = _tidy(solid, blend)
         after = skeleton_of(tidy.normalized().to_mesh())
-        # What is tidied has no attributes any more.
+        # Tidying drops attributes.
         solid = solid if mesh.carried is not None else tidy
         reach = float(blend.widths.max())
         chosen = carried(skeleton, rest, after, _new_ends(blend, rest), reach)
@@ -411,7 +416,7 @@ def _blended(solid: Solid, edges: EdgeSelection, profile: _Profile) -> Solid:
 
 
 def _pitch_for(skeleton: Skeleton, pitch: int) -> int:
-    """Return the pitch of cutters: the solid's, or the next where doubles are as coarse as that."""
+    """Return the pitch of cutters: the solid's, or a coarser one if doubles are that coarse."""
     steps = float(np.abs(skeleton.vertices).max()) / 10.0**pitch
     return pitch + int(steps > LATTICE_REACH / 10)
 
@@ -425,7 +430,7 @@ def _once(solid: Solid, blend: _Blend) -> Solid:
 
 
 def _tidy(solid: Solid, blend: _Blend) -> Solid:
-    """Return a solid without the steps that rounded faces and new surfaces leave between them."""
+    """Return a solid without the tiny steps between rounded faces and new surfaces."""
     ends = np.unique(blend.skeleton.ends[sorted(blend.chosen)])
     around = {face for vertex in ends.tolist() for face in blend.skeleton.faces_at(vertex)}
     if all(blend.planes.is_exact(face) for face in around):
@@ -434,7 +439,7 @@ def _tidy(solid: Solid, blend: _Blend) -> Solid:
 
 
 def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
-    """Return where new surfaces end between two edges that are both still to be blended."""
+    """Return the ends of new surfaces between two edges that are still to be blended."""
     skeleton, waiting = blend.skeleton, set(rest.tolist())
     found: dict[int, FloatArray] = {}
     for edge in sorted(blend.chosen):
@@ -448,7 +453,7 @@ def _new_ends(blend: _Blend, rest: IndexArray) -> dict[int, FloatArray]:
 
 
 def _parts(blend: _Blend) -> tuple[Sequence[Solid], Sequence[Solid]]:
-    """Return what is taken off, and what is filled in."""
+    """Return the bodies to remove, and the bodies to add."""
     cutters: tuple[list[Solid], list[Solid]] = ([], [])
     near = _SYMMETRICAL * blend.profile.size
     tools = ChainTools(blend.skeleton, blend.section, near, blend.pitch)

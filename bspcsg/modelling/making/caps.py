@@ -1,7 +1,7 @@
-"""Faces all of whose edges are blended, where some of these edges vanish on the way inwards.
+"""Blends along all edges of a face, where some of the edges vanish on the way inwards.
 
-What stays of the material below such a face is a roof over its outline, whose sides meet above the
-straight skeleton; bent, for a fillet, to the profile of the new surface.
+The material that remains below such a face is a roof over its outline, whose sides meet above the
+straight skeleton. For a fillet, the roof is bent to the profile of the new surface.
 """
 
 from collections.abc import Set
@@ -30,7 +30,7 @@ _SAME = 1e-6
 
 
 def is_cap(skeleton: Skeleton, face: int, chosen: Set[int]) -> bool:
-    """Say whether all edges of a face are chosen, none at their ends, and its walls are square."""
+    """Say whether just the edges of a face are selected, and its walls are perpendicular to it."""
     own = np.flatnonzero((skeleton.sides == face).any(axis=1))
     if not set(own.tolist()) <= chosen or len(set(skeleton.is_convex[own].tolist())) > 1:
         return False
@@ -40,22 +40,22 @@ def is_cap(skeleton: Skeleton, face: int, chosen: Set[int]) -> bool:
 
 
 def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitch: int) -> Solid:
-    """Return what is taken off below a face, or filled in above it if the sign is -1.
+    """Return the body to remove below a face, or to add above it if the sign is -1.
 
     Parameters
     ----------
     skeleton : Skeleton
     face, sign : int
     profile : (k, 2) float64
-        The new surface from a wall to the face: how far inside the wall, and how far above where
-        it begins; both ascend from 0 to the size.
+        The new surface from a wall to the face: the distance inside the wall, and the height above
+        its start; both ascend from 0 to the size.
     pitch : int
         Of the solid's lattice.
 
     Raises
     ------
     InvalidParameterError
-        If nothing would be left of a part of the face, or it has more than a thousand corners.
+        If a part of the face would vanish, or it has more than a thousand corners.
     """
     frame = _frame(skeleton.normals[face] * sign)
     loops = [points @ frame.T for points in face_loops(skeleton, face)]
@@ -69,12 +69,13 @@ def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitc
             place = np.append(part.to_polygons()[0][0], level) @ frame
             raise no_room(skeleton, place, [face])
         roofs.append(above)
-    # Evaluated, so that it is moved as one; on feet, so that its floor is not that of the blocks.
+    # Evaluate it, so that it is moved as one mesh. Raise it on feet, so that its floor differs from
+    # that of the blocks.
     whole = union([*roofs, figure.extrude(size).translate(0, 0, -size)]).normalized()
     grown = offset_region(figure, beyond, "miter")
     tools = []
     for (inner, low), (outer, high) in pairwise(profile.tolist()):
-        # The profile is that of a convex body, below each of its lines.
+        # The profile bounds a convex body, the intersection of the half-spaces below its lines.
         steep = (high - low) / (outer - inner)
         base = low - steep * inner
         block = grown.extrude(size + beyond - base)
@@ -84,7 +85,7 @@ def cap_tool(skeleton: Skeleton, face: int, sign: int, profile: FloatArray, pitc
 
 
 def _placed(frame: FloatArray, height: float, steep: float) -> FloatArray:
-    """Return the map that puts what stands on a plane on another one, higher or lower by a part."""
+    """Return the map of z = 0 onto a plane at a height of the frame, with heights scaled."""
     matrix = np.eye(4)
     matrix[:3, :3] = frame.T * (1, 1, steep)
     matrix[:3, 3] = frame[2] * height
@@ -92,7 +93,7 @@ def _placed(frame: FloatArray, height: float, steep: float) -> FloatArray:
 
 
 def _roof_or_none(figure: Region) -> Solid | None:
-    """Return the roof over a figure, or None if it has too many corners or unclear ones."""
+    """Return the roof over a figure, or None if it has too many or ambiguous corners."""
     try:
         return roof(figure)
     except LimitError:
@@ -100,7 +101,7 @@ def _roof_or_none(figure: Region) -> Solid | None:
 
 
 def _frame(normal: FloatArray) -> FloatArray:
-    """Return two axes across a normal, and the normal, (3, 3); exact if it is along an axis."""
+    """Return two axes perpendicular to a normal, and it, (3, 3); exact along coordinate axes."""
     level = np.eye(3)[(int(np.abs(normal).argmax()) + 1) % 3]
     first = level - (level @ normal) * normal
     first /= np.linalg.norm(first)

@@ -1,7 +1,7 @@
 """Closed chains of edges that are blended as one, such as the rim of a bore.
 
-Two edges of a corner that are mirror images meet in the plane between them. Their sections there
-are one ring, so that what is taken off along a whole chain is one mesh through such rings.
+Two edges of a corner that are mirror images meet in the bisecting plane, where their sections form
+one ring. So the tool along a whole chain is one mesh through such rings.
 """
 
 from collections.abc import Callable, Set
@@ -28,7 +28,7 @@ _BEYOND = 20
 
 
 def closed_chains(skeleton: Skeleton, chosen: Set[int]) -> list[Chain]:
-    """Return the loops of edges of one kind that meet by twos, and one more edge at each corner."""
+    """Return the loops of edges of one kind that meet in pairs at corners of three edges."""
     chains, seen = [], set[int]()
     for first in sorted(chosen):
         if first not in seen:
@@ -40,7 +40,7 @@ def closed_chains(skeleton: Skeleton, chosen: Set[int]) -> list[Chain]:
 
 
 def _walked(skeleton: Skeleton, chosen: Set[int], first: int) -> tuple[Chain, bool]:
-    """Return the edges from one on up to where none or more than one follows."""
+    """Return the edges from one on, until no edge or more than one follows."""
     edge, end = first, int(skeleton.ends[first, 1])
     chain = [(edge, end)]
     while True:
@@ -59,7 +59,7 @@ def _walked(skeleton: Skeleton, chosen: Set[int], first: int) -> tuple[Chain, bo
 
 @dataclass(frozen=True, eq=False)
 class ChainTools:
-    """What is taken off along closed chains, or filled in.
+    """Tools along closed chains, to be removed or added.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ class ChainTools:
         Returns, for an edge, the corners of the new surface across it from the left face to the
         right one, (k, 3), seen from a point of the edge.
     near : float
-        The most that sections of two edges may differ in the plane between them.
+        The largest difference of the sections of two edges in their bisecting plane.
     pitch : int
-        Of the lattice of the result.
+        The pitch of the result.
     """
 
     skeleton: Skeleton
@@ -79,7 +79,7 @@ class ChainTools:
     pitch: int
 
     def tool(self, chain: Chain) -> Solid | None:
-        """Return the tool for a chain; None if its edges are no mirror images of each other."""
+        """Return the tool for a chain; None if neighbouring edges are no mirror images."""
         rings = []
         for (edge, vertex), (after, _) in zip(chain, chain[1:] + chain[:1], strict=True):
             ring = self._ring(edge, after, vertex)
@@ -92,7 +92,7 @@ class ChainTools:
         return _through(np.round(rings, -self.pitch) if self.pitch < 0 else np.array(rings))
 
     def _ring(self, edge: int, after: int, vertex: int) -> FloatArray | None:
-        """Return the section of two edges in the plane between them, if it is the same."""
+        """Return the common section of two edges in their bisecting plane, if they agree."""
         (third,) = set(self.skeleton.edges_at(vertex)) - {edge, after}
         axis = self.skeleton.directions[third]
         along = np.array([self._along(edge, vertex, -1), self._along(after, vertex, 1)])
@@ -108,7 +108,7 @@ class ChainTools:
         rings = []
         for one, direction, lean in zip((edge, after), along, leans, strict=True):
             corners = self.section(one)
-            # The left of an edge that runs against the chain is the chain's right.
+            # If an edge runs against the chain, its left is the chain's right.
             if direction @ self.skeleton.directions[one] < 0:
                 corners = corners[::-1]
             rings.append(corners - np.outer(corners @ normal / lean, direction))
@@ -125,10 +125,10 @@ class ChainTools:
     def _whole_ring(
         self, edge: int, after: int, vertex: int, ring: FloatArray
     ) -> FloatArray | None:
-        """Return a ring with a corner at the edge, and both ends a little beyond their faces.
+        """Return a ring with a corner at the edge, and both ends slightly beyond their faces.
 
-        Where corners may miss faces by a step of the lattice, the mesh reaches beyond them, so that
-        no skin of these is left. None if that takes it far.
+        Where corners may miss faces by a lattice step, the mesh reaches beyond the faces, so that
+        no thin skin is left. Return None if it would reach far.
         """
         sides = np.array([self._sides(edge, vertex, -1), self._sides(after, vertex, 1)])
         ends = []
@@ -153,7 +153,7 @@ class ChainTools:
     def _outward(
         self, edge: int, after: int, vertex: int, faces: IndexArray, corner: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return normals away from the material, and how far to reach beyond each of two faces."""
+        """Return normals away from the material, and the reach beyond each of two faces."""
         normals = self.skeleton.normals[faces]
         if faces[0] == faces[1]:
             is_exact = self._is_level(faces[0], vertex)
@@ -164,14 +164,14 @@ class ChainTools:
         return normals * (1 if self.skeleton.is_convex[edge] else -1), np.full(2, beyond)
 
     def _is_level(self, face: int, vertex: int) -> bool:
-        """Say whether a face is square to an axis, at a height of the lattice."""
+        """Say whether a face is perpendicular to an axis, at a lattice coordinate."""
         axis = int(np.abs(self.skeleton.normals[face]).argmax())
         height = float(self.skeleton.vertices[vertex, axis])
         is_square = bool(np.abs(self.skeleton.normals[face, axis]) == 1)
         return is_square and whole_steps(height, self.pitch) is not None
 
     def _is_on(self, edge: int, corner: FloatArray) -> bool:
-        """Say whether a corner, once on the lattice, is exactly on an edge between two of it."""
+        """Say whether a snapped corner lies exactly on an edge between two lattice points."""
         ends = self.skeleton.vertices[self.skeleton.ends[edge]]
         snapped = np.round(corner, -self.pitch) if self.pitch < 0 else corner
         rows = [*ends.tolist(), snapped.tolist()]
@@ -185,7 +185,7 @@ class ChainTools:
 
 
 def _through(rings: FloatArray) -> Solid:
-    """Return the solid of the mesh through rings, the first of which follows the last."""
+    """Return the solid of the closed mesh through rings, the last joined to the first."""
     closed = np.concatenate([rings, rings[:1]])
     count = rings.shape[1]
     around = np.column_stack([np.arange(count), np.roll(np.arange(count), -1)])

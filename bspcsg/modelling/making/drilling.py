@@ -1,7 +1,7 @@
-"""Round holes in plane faces: plain ones, and such as are wider where they begin.
+"""Round holes in plane faces: plain holes, counterbores and countersinks.
 
-Each is a profile of distances from the axis and depths below the face, turned about a line that is
-square to the face.
+Each is a profile of distances from the axis and depths below the face, rotated about a line
+perpendicular to the face.
 """
 
 import math
@@ -52,7 +52,7 @@ def counterbore(
     depth: Scalar | None,
     segments: int,
 ) -> Solid:
-    """Return the solid with holes with a wide part; see `Solid.counterbore`."""
+    """Return the solid with counterbored holes; see `Solid.counterbore`."""
     bore, deep = _bore(r, d), positive(head_depth, "head_depth")
     head = _head(head_r, head_d, bore)
     return _drilled(solid, face, at, [(bore, deep), (head, deep), (head, 0)], bore, depth, segments)
@@ -71,7 +71,7 @@ def countersink(
     depth: Scalar | None,
     segments: int,
 ) -> Solid:
-    """Return the solid with holes with a cone; see `Solid.countersink`."""
+    """Return the solid with countersunk holes; see `Solid.countersink`."""
     bore, opening = _bore(r, d), number(angle, "angle")
     if not 0 < opening < 180:
         raise invalid_parameter(f"angle must be between 0 and 180 degrees, not {opening:g}.")
@@ -104,7 +104,7 @@ def _drilled(
     depth: Scalar | None,
     segments: int,
 ) -> Solid:
-    """Return the solid without holes of a bore and a head, the latter from its bottom up."""
+    """Return the solid minus holes of a bore and a head, given as a profile from its bottom up."""
     around = sides_around(3, segments, "segments")
     normal, offset = flat_face(face)
     skeleton = skeleton_of(solid.normalized().to_mesh())
@@ -122,12 +122,12 @@ def _drilled(
 
 
 def _bottom(skeleton: Skeleton, normal: FloatArray, points: FloatArray, bore: float) -> float:
-    """Return a depth that is below all of the solid."""
+    """Return a depth below the whole solid."""
     return float((points @ normal).max(initial=0) - (skeleton.vertices @ normal).min()) + bore
 
 
 def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -> FloatArray:
-    """Return points as (n, 3), all of them on faces of a solid in one plane."""
+    """Return points as (n, 3), checked to lie on faces of the solid in one plane."""
     refusal = invalid_parameter("at must be a point of three finite numbers, or a list of such.")
     points = np.atleast_2d(doubles(at, refusal))
     if points.size == 0:
@@ -146,7 +146,7 @@ def _points_on(skeleton: Skeleton, normal: FloatArray, offset: float, at: Any) -
 
 
 def _hold(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: float) -> bool:
-    """Say whether one of the triangles of a plane has a point of it, but for rounding."""
+    """Say whether one of the triangles of a plane contains a point, up to rounding."""
     along = np.roll(triangles, -1, axis=1) - triangles
     left = np.cross(along, point - triangles) @ normal
     return bool((left >= -near * np.linalg.norm(along, axis=2)).all(axis=1).any())
@@ -155,7 +155,7 @@ def _hold(triangles: FloatArray, normal: FloatArray, point: FloatArray, near: fl
 def _turned(
     profile: FloatArray, around: int, normal: FloatArray, points: FloatArray
 ) -> list[Solid]:
-    """Return a profile turned about the line along a normal through each point."""
+    """Return the union of a profile rotated about the normal through each point."""
     vertices, faces = surface_of_revolution(profile, around, closed=False)
     level = np.eye(3)[np.abs(normal).argmin()]
     first = level - (level @ normal) * normal

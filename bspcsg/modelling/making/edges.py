@@ -14,9 +14,9 @@ from .skeleton import Skeleton, skeleton_of
 
 @owning
 class EdgeSelection(Selection):
-    """Edges of a solid, each between two plane faces, from corner to corner.
+    """Edges of a solid, each between two plane faces and from corner to corner.
 
-    All properties are arrays over the edges, so that conditions are made of them.
+    All properties are arrays over the edges, for use in conditions.
 
     Examples
     --------
@@ -33,7 +33,7 @@ class EdgeSelection(Selection):
 
     @property
     def ends(self) -> FloatArray:
-        """The beginning and end of each edge, (n, 2, 3), in model units."""
+        """The start and end of each edge, (n, 2, 3), in model units."""
         ends: FloatArray = self._skeleton.vertices[self._skeleton.ends[self._numbers]]
         return ends
 
@@ -44,7 +44,7 @@ class EdgeSelection(Selection):
 
     @property
     def direction(self) -> FloatArray:
-        """Unit vectors from beginning to end, (n, 3)."""
+        """Unit vectors from start to end, (n, 3)."""
         directions: FloatArray = self._skeleton.directions[self._numbers]
         return directions
 
@@ -61,7 +61,7 @@ class EdgeSelection(Selection):
 
     @property
     def angle(self) -> FloatArray:
-        """Degrees from face to face through the material, (n,): below 180 convex, above concave."""
+        """Degrees between the faces through the material, (n,): below 180 convex, above concave."""
         angles: FloatArray = self._skeleton.angles[self._numbers]
         return angles
 
@@ -91,5 +91,5 @@ def edges_of(solid: Solid, *, all: bool, angle: Scalar) -> EdgeSelection:  # noq
 
 
 def selection(edges: EdgeSelection) -> tuple[Skeleton, IndexArray]:
-    """Return what a selection is made of, for the modules of this package."""
+    """Return the skeleton and the numbers of a selection, for the modules of this package."""
     return edges._skeleton, edges._numbers

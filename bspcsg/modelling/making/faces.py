@@ -23,17 +23,17 @@ _CORNERS_PER_BATCH = 1_000_000
 
 @owning
 class FaceSelection(Selection):
-    """Faces of a solid: flat ones, and round ones made of flat facets.
+    """Faces of a solid: flat ones, and round ones that consist of flat facets.
 
-    Facets that bend little and are much alike are one face, such as the wall of a bore. All
-    properties are arrays over the faces, so that conditions are made of them.
+    Neighbouring facets that bend little and have similar widths form one face, such as the wall of
+    a bore. All properties are arrays over the faces, for use in conditions.
 
     Parameters
     ----------
     skeleton : Skeleton
     numbers : (n,) int64
     surface : (f,) int64
-        The face that each flat face of the skeleton is part of.
+        The face to which each flat face of the skeleton belongs.
 
     Examples
     --------
@@ -60,7 +60,7 @@ class FaceSelection(Selection):
 
     @property
     def middle(self) -> FloatArray:
-        """The centres of area, (n, 3), in model units; that of a round face is off it."""
+        """The centres of area, (n, 3), in model units; for a round face, it is not on the face."""
         skeleton = self._skeleton
         weights = np.linalg.norm(skeleton.areas, axis=1)
         middles = skeleton.vertices[skeleton.triangles].mean(axis=1)
@@ -75,7 +75,7 @@ class FaceSelection(Selection):
 
     @property
     def normal(self) -> FloatArray:
-        """Unit normals outwards of flat faces, (n, 3); zero for round ones."""
+        """Outward unit normals of flat faces, (n, 3); zero for round ones."""
         first = np.zeros(self._total(), dtype=np.int64)
         first[self._surface] = np.arange(len(self._surface))
         normals = self._skeleton.normals[first[self._numbers]]
@@ -123,25 +123,25 @@ def faces_of(solid: Solid, *, all: bool, angle: Scalar) -> FaceSelection:  # noq
 
 
 def flat_face(faces: FaceSelection) -> tuple[FloatArray, float]:
-    """Return the normal of a selection of one flat face, and the product of its points with it.
+    """Return normal and offset of the plane of a selection of one flat face.
 
     Raises
     ------
     InvalidParameterError
-        If it is not one, or not flat.
+        If the selection is not a single face, or the face is not flat.
     """
     if not isinstance(faces, FaceSelection):
-        raise invalid_parameter("A face is a selection of one: solid.faces().sort_by('z')[-1].")
+        raise invalid_parameter("face must be a selection, such as solid.faces().sort_by('z')[-1].")
     if len(faces) != 1:
-        raise invalid_parameter(f"One face is needed, and {len(faces)} are selected.")
+        raise invalid_parameter(f"Select one face; these are {len(faces)}.")
     if not faces.is_flat[0]:
-        raise invalid_parameter("The face is round, and a flat one is needed.")
+        raise invalid_parameter("The face is round; select a flat one.")
     normal: FloatArray = faces.normal[0]
     return normal, float(faces.middle[0] @ normal)
 
 
 def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
-    """Return the face of each flat face of a skeleton, once facets that bend little are one."""
+    """Return the face of each flat face of a skeleton, after facets that bend little are joined."""
     smooth = np.flatnonzero(~bends(skeleton, least))
     wide = [_widths(skeleton, smooth, side) for side in (0, 1)]
     alike = np.maximum(*wide) <= _AS_WIDE * np.minimum(*wide)
@@ -149,7 +149,7 @@ def _surfaces(skeleton: Skeleton, least: float) -> IndexArray:
 
 
 def _widths(skeleton: Skeleton, edges: IndexArray, side: int) -> FloatArray:
-    """Return how far the face on one side of each edge reaches from it."""
+    """Return the width of the face on one side of each edge, measured from the edge."""
     widths = np.zeros(len(edges))
     counts = np.bincount(skeleton.face, minlength=len(skeleton.normals))
     sizes = counts[skeleton.sides[edges, side]]

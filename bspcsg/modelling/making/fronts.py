@@ -1,9 +1,9 @@
-"""Fronts that move inwards from all sides of a figure: what makes straight skeletons and roofs.
+"""Fronts that move inwards from all sides of a figure, for straight skeletons and roofs.
 
-Each side of the outlines moves at speed one, and stays parallel to itself. A front changes where
-one of its sides vanishes, or a corner that points inwards runs into another side; then what has met
-is joined anew (Aichholzer et al., A Novel Type of Skeleton for Polygons, 1995). What meets within
-`nearness` meets at once, so that symmetric figures need no special care.
+Each side of the outlines moves at speed one, parallel to itself. A front changes when a side
+vanishes, or when a reflex corner hits another side; then the sides at that spot are reconnected
+(Aichholzer et al., A Novel Type of Skeleton for Polygons, 1995). Events within `nearness` count as
+simultaneous, so symmetric figures need no special cases.
 """
 
 import math
@@ -23,39 +23,39 @@ _STRAIGHT = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Walls:
-    """The sides that move.
+    """The moving sides.
 
     Parameters
     ----------
     directions, normals : (n, 2) float64
-        Unit vectors along them and inwards, to the left of these.
+        Unit vectors along the sides, and inwards, which is to their left.
     """
 
     directions: FloatArray
     normals: FloatArray
 
     def speeds(self, before: IndexArray, after: IndexArray) -> FloatArray:
-        """Return how corners move between walls, each ahead of its corner and behind it."""
+        """Return the velocities of corners, given the walls before and after each."""
         sums = self.normals[before] + self.normals[after]
         return np.asarray(2 * sums / np.square(sums).sum(axis=1)[:, None])
 
     def are_reflex(self, before: IndexArray, after: IndexArray) -> BoolArray:
-        """Say which corners point inwards."""
+        """Say which corners are reflex."""
         a, b = self.directions[before], self.directions[after]
         return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0] < -_STRAIGHT)
 
 
 @dataclass(frozen=True, eq=False)
 class Front:
-    """The corners of a front; each is followed by the next one of its outline.
+    """The corners of a front, linked along their outlines.
 
     Parameters
     ----------
     node : (n,) int64
-        The node that each corner comes from.
+        The node from which each corner started.
     place : (n, 2) float64
     since : (n,) float64
-        Where that is, and when it was there.
+        The position and time of that start.
     before, after : (n,) int64
         The walls that meet there: the one that ends and the one that begins.
     following : (n,) int64
@@ -76,30 +76,30 @@ class Front:
         return len(self.node)
 
     def at(self, time: float) -> FloatArray:
-        """Return where the corners are at a time."""
+        """Return the positions of the corners at a time."""
         return np.asarray(self.place + self.speeds() * (time - self.since)[:, None])
 
     def speeds(self) -> FloatArray:
-        """Return how the corners move."""
+        """Return the velocities of the corners."""
         return self.walls.speeds(self.before, self.after)
 
     def next_time(self, now: float, nearness: float) -> float:
-        """Return when the front changes next; infinity if it never does."""
+        """Return the time of the next change of the front; infinity if there is none."""
         places, speeds = self.at(now), self.speeds()
         sides = self._next_vanishing(places, speeds)
         return now + min(sides, self._next_hit(places, speeds, nearness))
 
     def _lengths(self, places: FloatArray, speeds: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return how long the sides are, below 0 for one that is turned over, and how they grow."""
+        """Return the lengths of the sides, negative for inverted ones, and their growth rates."""
         along = self.walls.directions[self.after]
         return tuple(
             ((ends[self.following] - ends) * along).sum(axis=1) for ends in (places, speeds)
         )
 
     def vanished(self, places: FloatArray, nearness: float) -> IndexArray:
-        """Return the sides of which nothing is left.
+        """Return the sides that have vanished.
 
-        One may even be turned over by rounding, where others vanished at the same time.
+        A side may even be inverted by rounding, if others vanished at the same time.
         """
         lengths, growth = self._lengths(places, self.speeds())
         return np.flatnonzero((lengths <= nearness) & (growth < 0))
@@ -111,7 +111,7 @@ class Front:
         return max(float(times.min(initial=math.inf)), 0.0)
 
     def _next_hit(self, places: FloatArray, speeds: FloatArray, nearness: float) -> float:
-        """Return in what time a corner that points inwards hits a side first."""
+        """Return the time until a reflex corner first hits a side."""
         reflex = np.flatnonzero(self.walls.are_reflex(self.before, self.after))
         normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
         levels = (places * normals).sum(axis=1)
@@ -129,7 +129,7 @@ class Front:
         return float(times[is_hit].min(initial=math.inf))
 
     def touching(self, places: FloatArray, nearness: float) -> tuple[IndexArray, IndexArray]:
-        """Return corners, and the sides that they lie on between the ends of these."""
+        """Return corners, and the sides in whose interior they lie."""
         normals, along = self.walls.normals[self.after], self.walls.directions[self.after]
         away = _products(places, normals) - (places * normals).sum(axis=1)
         corner, side = np.nonzero(np.abs(away) <= nearness)
@@ -145,21 +145,21 @@ Piece: TypeAlias = tuple[int, int, int]
 
 @dataclass(frozen=True, eq=False)
 class Meeting:
-    """What has met at a time.
+    """The contacts at a time.
 
     Parameters
     ----------
     time : float
     places : (n, 2) float64
-        Where the corners of the front are.
+        Positions of the corners of the front.
     corners : list of list of int
-        The corners at each spot: those that have met.
+        The corners that have met at each spot.
     pieces : list of Piece
-        The sides that go on, divided where corners lie on them, between numbers of spots.
+        The sides that continue, divided at corners on them; ends are numbers of spots.
     ridges : list of (Piece, Piece)
-        Pieces that have met over their whole length.
+        Pairs of pieces that have met over their whole length.
     pairs : list of list of (int, int)
-        At each spot, which piece follows which: their numbers.
+        At each spot, pairs of numbers of pieces of which one follows the other.
     """
 
     time: float
@@ -171,7 +171,7 @@ class Meeting:
 
     @property
     def is_clear(self) -> bool:
-        """True if each piece that goes on is followed by one."""
+        """True if each continuing piece has a successor."""
         return sum(map(len, self.pairs)) == len(self.pieces)
 
     def walls_of(self, pair: tuple[int, int]) -> tuple[int, int]:
@@ -180,14 +180,14 @@ class Meeting:
         return self.pieces[ending][2], self.pieces[beginning][2]
 
     def is_calm(self, spot: int, front: Front) -> bool:
-        """Say whether a spot has a corner alone that goes on as it is."""
+        """Say whether a spot has a single corner that continues unchanged."""
         [corner, *others] = self.corners[spot]
         walls = int(front.before[corner]), int(front.after[corner])
         return not others and [walls] == [self.walls_of(pair) for pair in self.pairs[spot]]
 
 
 def meeting(front: Front, time: float, nearness: float) -> Meeting:
-    """Return what has met at a time."""
+    """Return the contacts of a front at a time."""
     places = front.at(time)
     ended = front.vanished(places, nearness)
     spots = _met(places, np.column_stack([ended, front.following[ended]]), nearness)
@@ -201,17 +201,17 @@ def meeting(front: Front, time: float, nearness: float) -> Meeting:
 
 
 def _products(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return the scalar product of each vector of one list with each of the other.
+    """Return the dot products of all pairs of vectors of two lists.
 
-    Two columns are too few for a library of linear algebra, whose threads would wait for others.
+    For two columns a BLAS library is slower, since its threads would wait for each other.
     """
     return np.asarray(one[:, :1] * other[:, 0] + one[:, 1:] * other[:, 1])
 
 
 def _met(places: FloatArray, pairs: IndexArray, nearness: float) -> IndexArray:
-    """Return a number for each place, the same for places that are near each other, and for pairs.
+    """Return a number for each place, equal for places that are near each other or paired.
 
-    So have places met that are not near each other, but each near to a third.
+    This is transitive: places that are both near to a third get the same number.
     """
     parent = list(range(len(places)))
 
@@ -240,7 +240,7 @@ def _near_pairs(places: FloatArray, nearness: float) -> Iterator[tuple[int, int]
 def _pieces_of(
     front: Front, places: FloatArray, numbers: IndexArray, nearness: float
 ) -> list[Piece]:
-    """Return the sides of a front, divided where corners lie on them."""
+    """Return the sides of a front, divided at the corners on them."""
     on_side: dict[int, list[tuple[float, int]]] = defaultdict(list)
     for corner, side in zip(*map(np.ndarray.tolist, front.touching(places, nearness)), strict=True):
         along = float((places[corner] - places[side]) @ front.walls.directions[front.after[side]])
@@ -254,7 +254,7 @@ def _pieces_of(
 
 
 def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Piece, Piece]]]:
-    """Return the pieces that go on, and the pairs that have met over their whole length."""
+    """Return the continuing pieces, and the pairs that have met over their whole length."""
     left: dict[tuple[int, int], list[Piece]] = defaultdict(list)
     ridges = []
     for piece in pieces:
@@ -267,10 +267,10 @@ def _without_ridges(pieces: Sequence[Piece]) -> tuple[list[Piece], list[tuple[Pi
 
 
 def _joined(pieces: Sequence[Piece], walls: Walls) -> dict[int, list[tuple[int, int]]]:
-    """Return how pieces follow each other at each place: pairs of their numbers in the list.
+    """Return the pairs of consecutive pieces at each place, as numbers in the list.
 
-    What is inside lies to the left of pieces. Counter-clockwise from each one that begins at a
-    place the next one is its partner, which ends there: between both is a sector of the inside.
+    The inside is to the left of pieces. The partner of a piece that begins at a place is the next
+    piece counter-clockwise, which ends there: between both is a sector of the inside.
     """
     rays: dict[int, list[tuple[float, int, int]]] = defaultdict(list)
     for number, (start, end, wall) in enumerate(pieces):

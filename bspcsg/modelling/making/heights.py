@@ -1,4 +1,4 @@
-"""Bodies below tables of heights."""
+"""Bodies below tables of heights (height maps)."""
 
 import io
 import os
@@ -32,9 +32,9 @@ class Heights(NamedTuple):
     Parameters
     ----------
     table : (m, n) float64
-        Rows that are shorter than others are filled with zeros.
+        Shorter rows are filled with zeros.
     floor : float
-        One below the least height in the file, or 0; what fills rows up does not count.
+        One below the least height in the file, or 0; filled zeros do not count.
     """
 
     table: FloatArray
@@ -49,7 +49,7 @@ def surface(
     floor: Scalar | None = None,
     center: bool = False,
 ) -> Solid:
-    """Return the body below a table of heights.
+    """Return the body under a table of heights.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def surface(
         Columns along x and rows along y, at least two of each; a text file of such rows; or a PNG
         picture, from 0 where it is black to 100 where it is white, its last row at y = 0.
     cell : float or (2,) float
-        From one column, and one row, to the next.
+        Distance between columns, and between rows.
     floor : float, optional
         Height of the flat underside, below all heights. By default 0, or one below the least height
         where that is lower, as in OpenSCAD.
@@ -67,7 +67,8 @@ def surface(
     Raises
     ------
     InvalidParameterError
-        If the table has another shape, a number is not finite, or the floor is not below.
+        If the table has another shape, a number is not finite, or the floor is not below all
+        heights.
     FormatError
         If a file is no such table.
     LimitError
@@ -96,7 +97,7 @@ def surface(
 
 
 def heights_of(table: FloatArray) -> Heights:
-    """Return a table with the floor that OpenSCAD gives it."""
+    """Return a table with OpenSCAD's default floor."""
     return Heights(table, min(float(table.min()) - 1, 0.0))
 
 
@@ -130,9 +131,9 @@ def read_heights(path: Path) -> Heights:
 
 
 def read_picture(path: Path) -> Heights:
-    """Return the brightness of a PNG picture, rows from below, black 0 and white 100.
+    """Return the brightness of a PNG picture, bottom row first, from black 0 to white 100.
 
-    Colours count as their luminance (ITU-R BT.709), as in OpenSCAD; how opaque they are does not.
+    The brightness of a colour is its luminance (ITU-R BT.709), as in OpenSCAD; opacity is ignored.
 
     Raises
     ------
@@ -145,7 +146,7 @@ def read_picture(path: Path) -> Heights:
     """
     pillow = optional("PIL.Image", "pillow")
     with format_errors(str(path), "PNG"), warnings.catch_warnings():
-        # Pictures too large are refused below.
+        # The check for too large pictures is below.
         warnings.simplefilter("ignore", pillow.DecompressionBombWarning)
         picture = pillow.open(io.BytesIO(limited_content(path)), formats=["PNG"])
         refuse_many_corners(2 * picture.width * picture.height, "This surface")
@@ -159,7 +160,7 @@ def _colours(picture: Any) -> FloatArray:
     """Return red, green and blue of each pixel, from 0 to 255."""
     if not picture.mode.startswith("I"):
         return np.asarray(picture.convert("RGB"), dtype=np.float64)
-    # Of 16 bits the upper ones count.
+    # Use the upper 8 of 16 bits.
     upper = np.asarray(picture).astype(np.int64) >> 8
     return np.repeat(upper[:, :, None].astype(np.float64), 3, axis=2)
 
@@ -172,7 +173,7 @@ def _row(path: Path, number: int, line: str) -> list[float]:
     try:
         row = [float(word) for word in line.split()]
     except ValueError:
-        # What stands there is not repeated: the file may hold what its reader must not see.
+        # Do not quote the content: the file may be one that the user must not see.
         raise FormatError(f"{path}:{number}: a word is no number.", "syntax", [number]) from None
     if not np.isfinite(row).all():
         raise FormatError(f"{path}:{number}: heights must be finite.", "non_finite", [number])

@@ -1,4 +1,4 @@
-"""Extrusions whose walls lean so far that some of them vanish on the way up."""
+"""Extrusions with slanted walls, some of which vanish on the way up."""
 
 from collections.abc import Sequence
 
@@ -12,25 +12,25 @@ from .roofs import corner_speeds, roof
 
 
 def leaning(contours: Sequence[FloatArray], height: float, inset: float) -> Solid:
-    """Return what contours sweep on the way up while all walls move inwards.
+    """Return the extrusion of contours whose walls move inwards on the way up.
 
-    It is the roof over the figure, as steep as the walls, up to the height. Walls that move
-    outwards leave the roof over what is around.
+    It is the roof over the figure, as steep as the walls, cut off at the height. If walls move
+    outwards, it is the space beside the roof over the surroundings.
 
     Parameters
     ----------
     contours : sequence of (n, 2) float64
-        The inside on their left.
+        Outlines with the inside on their left.
     height : float
     inset : float
-        How far the walls have moved at this height; below 0 outwards.
+        The distance that walls have moved inwards at this height; negative for outwards.
     """
     figure = Region(list(contours))
     if inset > 0:
         return _steep(figure, height / inset) & half_space((0, 0, 1), height)
     corners = np.concatenate(figure.to_polygons())
     reach = -inset * max(1.0, float(np.linalg.norm(corner_speeds(figure), axis=1).max()))
-    # The walls of what is around move inwards, too, and must not come to where it is looked at.
+    # The outer walls of the surroundings move inwards, too, and must not reach the result.
     low, high = corners.min(axis=0), corners.max(axis=0)
     around = Region.rectangle(*(high - low + 6 * reach)).translate(low - 3 * reach)
     wide, deep = high - low + 3 * reach
@@ -39,5 +39,5 @@ def leaning(contours: Sequence[FloatArray], height: float, inset: float) -> Soli
 
 
 def _steep(figure: Region, slope: float) -> Solid:
-    """Return the roof over a figure, so steep."""
+    """Return the roof over a figure with this slope."""
     return roof(figure).scale((1, 1, slope))

@@ -1,4 +1,4 @@
-"""Solids through profiles that stand one after another."""
+"""Lofts: solids through a sequence of profiles."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -17,32 +17,32 @@ from .sections import Section, aligned, section_of, shortest_band
 
 @counted
 def loft(profiles: Sequence[Any], *, closed: bool = False) -> Solid:
-    """Return the solid through profiles, with straight walls between each one and the next.
+    """Return the solid through profiles, with straight walls between consecutive ones.
 
     Parameters
     ----------
     profiles : sequence
-        At least two (three of a closed loft), of which each is a pair of a profile, a `Region` or
-        what `extrude` takes, and the height z or the (4, 4) matrix that places it; or (n, 3) points
-        of a loop in space, or one such point, a tip, as the first or the last.
+        At least two (three for a closed loft). Each is a pair of a profile (a `Region` or what
+        `extrude` takes) and its height z or (4, 4) matrix; or (n, 3) points of a loop in space. The
+        first or last may be a single point, a tip.
     closed : bool
         True if the last profile is joined to the first.
 
     Raises
     ------
     InvalidParameterError
-        If a profile is none, is empty, or has other outlines and holes than the one before (`where`
-        is its number); if there are too few; or if they enclose nothing.
+        If a profile is invalid or empty, or has other numbers of outlines or holes than the one
+        before (`where` is its number); if there are too few profiles; or if they enclose nothing.
     LimitError
         If the solid would have too many corners.
 
     Notes
     -----
-    Outlines go to those of their kind whose middles are nearest. Outlines with as many corners are
-    joined corner by corner in their order, which must run the same way round; those of regions
-    begin where they fit the ones before. Outlines with other numbers of corners are joined by the
-    band whose edges are shortest in sum, beginning at their first corners. Inside is where the
-    surface winds around more than zero times.
+    Each outline or hole is joined to the one of its kind with the nearest middle. Outlines with
+    equal numbers of corners are joined corner by corner, and must run in the same direction;
+    outlines of regions start at the corner that fits best. Outlines with different numbers of
+    corners are joined by the band with the least total edge length, from their first corners on.
+    Points with a positive winding number are inside.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def _refuse_inner_tips(sections: Sequence[Section], closed: bool) -> None:
 
 
 def _between(low: Section, high: Section, below: int, above: int) -> IndexArray:
-    """Return the walls between two sections, whose corners are counted from two numbers on."""
+    """Return the walls between two sections, with the given first corner numbers."""
     faces = []
     for a, c in zip(low.loops, high.loops, strict=True):
         if len(a) == len(c):
@@ -101,7 +101,7 @@ def _between(low: Section, high: Section, below: int, above: int) -> IndexArray:
 
 
 def _outward(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid, whichever way the profiles ran round."""
+    """Return the solid, for either direction of the profiles."""
     a, b, c = (vertices[faces[:, corner]] - vertices.mean(axis=0) for corner in range(3))
     volume = float(np.einsum("ij,ij->", np.cross(a, b), c))
     if volume == 0:

@@ -1,4 +1,4 @@
-"""Arcs and patches of the unit sphere between directions, as edges and corners round them."""
+"""Arcs and patches of the unit sphere, for rounded edges and corners."""
 
 import math
 
@@ -9,7 +9,7 @@ from ...geometry.transform import cos_sin
 
 
 def arc_directions(start: FloatArray, end: FloatArray, steps: int) -> FloatArray:
-    """Return (steps + 1, 3) unit vectors from one to another, evenly along the great circle."""
+    """Return (steps + 1, 3) unit vectors from start to end, evenly along the great circle."""
     degrees = _degrees(start, end)
     rows = [
         _blended([(start, degrees * (1 - k / steps)), (end, degrees * (k / steps))])
@@ -19,9 +19,9 @@ def arc_directions(start: FloatArray, end: FloatArray, steps: int) -> FloatArray
 
 
 def patch_directions(corners: FloatArray, steps: int) -> FloatArray:
-    """Return unit vectors all over a spherical triangle, row by row from its first corner.
+    """Return unit vectors in a grid over a spherical triangle, row by row from its first corner.
 
-    Row i has i + 1 of them; the rows' ends and the last row are those of `arc_directions`.
+    Row i has i + 1 vectors; the ends of rows and the last row equal those of `arc_directions`.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def patch_directions(corners: FloatArray, steps: int) -> FloatArray:
 
 
 def patch_faces(steps: int) -> IndexArray:
-    """Return the triangles of a patch, which run as its corners do."""
+    """Return the triangles of a patch, with the orientation of its corners."""
     faces = []
     for i in range(steps):
         low, high = i * (i + 1) // 2, (i + 1) * (i + 2) // 2
@@ -52,10 +52,10 @@ def patch_faces(steps: int) -> IndexArray:
 def _on_patch(
     corners: FloatArray, sides: list[float], shares: tuple[float, float, float]
 ) -> FloatArray:
-    """Return the direction with these shares of the corners.
+    """Return the directions with these shares of the corners.
 
-    Each corner counts by the sine of its share of an angle, which is the side's where the two other
-    shares are one's: there this is the even division of the side.
+    The weight of each corner is the sine of its share of an angle. On a side of the patch this
+    angle is that of the side, which gives the even division of the side.
     """
     weighted = []
     for k in range(3):

@@ -21,7 +21,7 @@ def helix(
     segments: int = SEGMENTS,
     pitch: Scalar | None = None,
 ) -> FloatArray:
-    """Return points of a helix about the z axis, from (r, 0, 0) on upwards.
+    """Return points of a helix about the z axis, from (r, 0, 0) upwards.
 
     Parameters
     ----------
@@ -30,13 +30,14 @@ def helix(
     lead : float
         Height of one turn; 0 makes a circle or a flat spiral.
     turns : float
-        Above 0 counter-clockwise seen from above, a right-handed thread; below 0 clockwise.
+        Number of turns. Positive: counter-clockwise seen from above, a right-handed thread;
+        negative: clockwise.
     r2 : float, optional
         Radius at the end, for a helix on a cone.
     segments : int
         Points in each turn, at least 3.
     pitch : float, optional
-        The old name of `lead`; deprecated, for elsewhere it is the step of the lattice.
+        The old name of `lead`; deprecated, since elsewhere a pitch is that of the lattice.
 
     Returns
     -------
@@ -72,7 +73,7 @@ def helix(
 
 
 def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArray:
-    """Return points of a smooth curve through given ones.
+    """Return points of a smooth curve through given points.
 
     Parameters
     ----------
@@ -81,7 +82,8 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     segments : int
         Chords between one given point and the next.
     closed : bool
-        True if the curve returns to its first point, smoothly; the result ends with it then.
+        True if the curve returns smoothly to its first point, which is then also the last of the
+        result.
 
     Returns
     -------
@@ -90,15 +92,15 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
     Raises
     ------
     InvalidParameterError
-        If there are too few points, or two in one place one after another (`where` names them).
+        If there are too few points, or two consecutive points are equal (`where` names them).
     LimitError
-        If there would be too many points, or doubles cannot measure the distances between them.
+        If there would be too many points, or their distances overflow or underflow doubles.
 
     Notes
     -----
-    Catmull and Rom's curve with centripetal parameters: it makes no loops between points, and each
-    given point changes it nearby only. Yuksel, Schaefer, Keyser 2011, "Parameterization and
-    applications of Catmull-Rom curves".
+    A centripetal Catmull-Rom curve: it has no loops between points, and each point affects it only
+    nearby. Yuksel, Schaefer, Keyser 2011, "Parameterization and applications of Catmull-Rom
+    curves".
 
     Examples
     --------
@@ -122,7 +124,7 @@ def spline(points: Any, *, segments: int = 16, closed: bool = False) -> FloatArr
 
 
 def _with_neighbours(given: FloatArray, closed: bool) -> FloatArray:
-    """Return the points with one more before and one more after them."""
+    """Return the points with one additional point before and one after them."""
     ring = np.concatenate([given, given[:1]]) if closed else given
     same = np.flatnonzero((ring[1:] == ring[:-1]).all(axis=1))
     if len(same):

@@ -143,7 +143,7 @@ def grid(shape: _Shape, counts: Sequence[int], steps: Vector, *, center: bool = 
 
 def _of_shape(shape: _Shape) -> _Shape:
     if not isinstance(shape, (Solid, Region)):
-        raise invalid_parameter(f"A pattern is that of a Solid or a Region, not of {shown(shape)}.")
+        raise invalid_parameter(f"A pattern needs a Solid or a Region, not {shown(shape)}.")
     return shape
 
 
@@ -151,7 +151,9 @@ def _entries(given: Any) -> list[Any]:
     try:
         return list(given)
     except TypeError as error:
-        raise invalid_parameter("counts and steps of a grid are given axis by axis.") from error
+        raise invalid_parameter(
+            "counts and steps of a grid must be lists of a number for each axis."
+        ) from error
 
 
 def _row(shape: _Shape, copies: int, step: Vector) -> _Shape:
@@ -165,7 +167,9 @@ def _times(step: Sequence[float], factor: int | Fraction) -> list[float]:
     try:
         return [float(exact_number(entry) * factor) for entry in step]
     except OverflowError as error:
-        raise LimitError("The copies would lie beyond all doubles.", "too_large") from error
+        raise LimitError(
+            "The copies would lie outside the range of doubles.", "too_large"
+        ) from error
 
 
 def _turned(shape: Any, angle: float, axis: str | Vector) -> Any:
@@ -188,7 +192,7 @@ def _halves(regions: Sequence[Any]) -> Any:
 def _vector(shape: Solid | Region, given: Any, name: str) -> list[float]:
     if isinstance(shape, Solid):
         return [float(entry) for entry in vector3(given, name)]
-    refusal = invalid_parameter(f"The {name} of a region's pattern is two numbers.")
+    refusal = invalid_parameter(f"The {name} of a region's pattern must be two numbers.")
     both = doubles(given, refusal).ravel()
     if len(both) == 3 and both[2] == 0:
         both = both[:2]

@@ -1,4 +1,4 @@
-"""Half-spaces of plane faces, exact where the lattice allows it."""
+"""Half-spaces of plane faces, exact if the lattice allows it."""
 
 import math
 from fractions import Fraction
@@ -18,13 +18,13 @@ _BEYOND = 20
 
 
 class Planes:
-    """The half-spaces of a solid's faces, made when they are asked for.
+    """The half-spaces of a solid's faces, made on demand.
 
     Parameters
     ----------
     skeleton : Skeleton
     pitch : int
-        The solid's.
+        The pitch of the solid.
     """
 
     def __init__(self, skeleton: Skeleton, pitch: int) -> None:
@@ -34,13 +34,13 @@ class Planes:
         self._exact: dict[int, Hyperplane | None] = {}
 
     def inside(self, face: int, sign: int, *, beyond: bool = True) -> Solid:
-        """Return the half-space behind a face, or before it if the sign is -1.
+        """Return the half-space behind a face, or in front of it if the sign is -1.
 
         Parameters
         ----------
         face, sign : int
         beyond : bool
-            True if it reaches a little beyond a face that is no plane of the lattice.
+            True to reach slightly beyond a face whose plane is not exact on the lattice.
         """
         key = face, sign, beyond
         if key not in self._made:
@@ -48,7 +48,7 @@ class Planes:
         return self._made[key]
 
     def is_exact(self, face: int) -> bool:
-        """Say whether a face is a plane of the lattice."""
+        """Say whether the plane of a face is exact on the lattice."""
         return self._known(face) is not None
 
     def _known(self, face: int) -> Hyperplane | None:
@@ -72,7 +72,7 @@ class Planes:
         return corners
 
     def _lattice_plane(self, face: int) -> Hyperplane | None:
-        """Return the plane through all corners of a face that lie on the lattice, if it is one."""
+        """Return the plane of the face's lattice corners, if they all lie in one plane."""
         corners = self._corners(face)
         for axis in range(3):
             if np.ptp(corners[:, axis]) == 0:

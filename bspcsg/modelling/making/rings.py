@@ -1,4 +1,4 @@
-"""Walls between rings of corners, and the solid that they close."""
+"""Walls between rings of corners, and solids of such walls."""
 
 import numpy as np
 
@@ -11,13 +11,13 @@ _EQUAL = 1e-5
 
 
 def walls(rings: FloatArray, edges: IndexArray) -> IndexArray:
-    """Return the triangles between each ring and the next, quadrilaterals cut the shorter way.
+    """Return the triangles between consecutive rings, split along shorter diagonals.
 
     Parameters
     ----------
     rings : (m, k, 3) float64
     edges : (e, 2) int64
-        Corners of a ring that are joined, the inside on the left seen from the last ring.
+        Edges of a ring, as corners, with the inside on the left seen from the last ring.
 
     Returns
     -------
@@ -38,7 +38,7 @@ def walls(rings: FloatArray, edges: IndexArray) -> IndexArray:
 
 
 def solid_of(vertices: FloatArray, faces: IndexArray) -> Solid:
-    """Return the solid of a closed mesh in which corners may coincide and faces cross."""
+    """Return the solid of a closed mesh with possibly coincident corners and crossing faces."""
     points, same = welded(np.ascontiguousarray(vertices))
     triangles = same[faces]
     proper = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)

@@ -24,16 +24,16 @@ _OFF = 1e-6
 
 
 def roof(figure: Region) -> Solid:
-    """Return the roof over a bounded figure, as high everywhere as its front takes to come there.
+    """Return the roof over a bounded figure; its height is the arrival time of the front.
 
-    From each side of the outline rises a plane of 45 degrees; they meet above the straight skeleton
-    of the figure.
+    A plane of 45 degrees rises from each side of the outline; the planes meet above the straight
+    skeleton of the figure.
 
     Raises
     ------
     LimitError
-        If a part of the figure has more than 1,000 corners, or its sides meet in ways that doubles
-        do not tell apart.
+        If a part of the figure has more than 1,000 corners, or doubles cannot decide how its sides
+        meet.
 
     Examples
     --------
@@ -46,7 +46,7 @@ def roof(figure: Region) -> Solid:
 
 
 def is_convex(figure: Region) -> bool:
-    """Say whether no corner of a figure points inwards, so that no hole is in it."""
+    """Say whether a figure has no reflex corner and hence no hole."""
     for loop in figure.to_polygons():
         front = _first_front([loop])
         if front.walls.are_reflex(front.before, front.after).any():
@@ -55,7 +55,7 @@ def is_convex(figure: Region) -> bool:
 
 
 def corner_speeds(figure: Region) -> FloatArray:
-    """Return how far the corners of a figure move while its sides move inwards by one, (n, 2)."""
+    """Return the moves of the corners of a figure when its sides move inwards by one, (n, 2)."""
     return np.concatenate([_first_front([loop]).speeds() for loop in figure.to_polygons()])
 
 
@@ -83,7 +83,7 @@ def _first_front(loops: Sequence[FloatArray]) -> Front:
 
 
 class _Building:
-    """A roof that grows: its nodes, and what bounds each of its sides."""
+    """A roof under construction: its nodes, and the edges of each side."""
 
     def __init__(self, loops: Sequence[FloatArray]) -> None:
         self._front = _first_front(loops)
@@ -95,7 +95,7 @@ class _Building:
         self._base: list[Piece] = []
 
     def raise_sides(self) -> None:
-        """Move the front until nothing is left of it."""
+        """Move the front until it vanishes."""
         now = 0.0
         self._change(now)
         for _ in range(8 * len(self._points)):
@@ -108,7 +108,7 @@ class _Building:
         raise _unclear()
 
     def _change(self, now: float) -> None:
-        """Join anew what has met at a time."""
+        """Reconnect the front after the contacts at a time."""
         met = meeting(self._front, now, self._nearness)
         if not met.is_clear:
             raise _unclear()
@@ -123,7 +123,7 @@ class _Building:
         self._front = self._next_front(met, nodes)
 
     def _nodes_of(self, met: Meeting) -> dict[int, int]:
-        """Return a new node for each spot where something happens, to which its corners came."""
+        """Return a new node for each spot with a change, and connect its corners to it."""
         front, nodes = self._front, {}
         for spot, corners in enumerate(met.corners):
             if met.time > 0 and met.is_calm(spot, front):
@@ -131,20 +131,20 @@ class _Building:
             x, y = met.places[corners].mean(axis=0).tolist()
             nodes[spot] = len(self._nodes)
             self._nodes.append((x, y, met.time))
-            # On the ground corners come from nowhere.
+            # Corners on the ground have no previous node.
             for corner in corners if met.time > 0 else ():
                 ahead, behind = int(front.before[corner]), int(front.after[corner])
                 self._trace(int(front.node[corner]), nodes[spot], ahead, behind)
         return nodes
 
     def _trace(self, low: int, high: int, ahead: int, behind: int) -> None:
-        """Record that a corner between two walls has come from one node to another."""
+        """Record the edge between two nodes that a corner between two walls has traced."""
         if ahead != behind:
             self._bounds[ahead].append((low, high))
             self._bounds[behind].append((high, low))
 
     def _next_front(self, met: Meeting, nodes: dict[int, int]) -> Front:
-        """Return the front that goes on: corners as they are, or new ones at nodes."""
+        """Return the next front, with unchanged corners and new corners at nodes."""
         rows: list[tuple[int, int, int, int]] = []
         origins: list[tuple[float, float, float]] = []
         begun: dict[int, int] = {}
@@ -162,12 +162,12 @@ class _Building:
         return Front(node_of, where, since, before, after, following, self._walls)
 
     def solid(self, area: float) -> Solid:
-        """Return the finished roof over a floor of some area.
+        """Return the finished roof over a floor of the given area.
 
         Raises
         ------
         LimitError
-            If its sides do not cover the floor, or a node is beside its plane.
+            If its sides do not cover the floor, or a node does not lie in its plane.
         """
         nodes = np.array(self._nodes)
         rings = [(wall, ring) for wall, edges in enumerate(self._bounds) for ring in _rings(edges)]
@@ -181,7 +181,7 @@ class _Building:
             triangles.append(np.array(ring)[triangulate([corners[:, :2]])])
             a, b, c = (nodes[triangles[-1][:, k], :2] for k in range(3))
             across = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
-            # What is covered twice, or from below, is too much.
+            # Parts covered twice or from below exceed the area.
             covered += float(np.abs(across).sum()) / 2
         if abs(covered - area) > _OFF * area:
             raise _unclear()
@@ -191,7 +191,7 @@ class _Building:
 
 
 def _rings(edges: Sequence[tuple[int, int]]) -> list[list[int]]:
-    """Return directed edges as closed rings that visit no node twice."""
+    """Return closed rings of directed edges that visit no node twice."""
     leaving = defaultdict(list)
     for start, end in edges:
         leaving[start].append(end)
@@ -210,5 +210,5 @@ def _rings(edges: Sequence[tuple[int, int]]) -> list[list[int]]:
 
 
 def _unclear() -> LimitError:
-    message = "the sides of this roof meet in ways that cannot be told apart in doubles."
+    message = "doubles are too coarse to decide how the sides of this roof meet."
     return LimitError(message, "not_told_apart")

@@ -1,4 +1,4 @@
-"""The test whether faces have room for what is taken off along their edges."""
+"""The test whether faces have room for blends along their edges."""
 
 from collections.abc import Iterable, Sequence
 
@@ -17,13 +17,13 @@ _SAME = 1e-6
 
 
 def refuse_no_room(skeleton: Skeleton, widths: FloatArray, apart: Iterable[int] = ()) -> None:
-    """Raise an error where strips along edges do not fit on their faces side by side.
+    """Raise an error if strips along edges do not fit side by side on their faces.
 
     Parameters
     ----------
     skeleton : Skeleton
     widths : (e,) float64
-        Of the strips on both faces of each edge, 0 where there is none.
+        The width of the strips on both faces of each edge, 0 for no strip.
     apart : iterable of int
         Faces that need no room.
 
@@ -60,7 +60,7 @@ def face_loops(skeleton: Skeleton, face: int) -> list[FloatArray]:
 
 
 def no_room(skeleton: Skeleton, place: FloatArray, faces: Iterable[int]) -> InvalidParameterError:
-    """Return the error for a place where something does not fit."""
+    """Return the error for a place without enough room."""
     point = ", ".join(f"{value:.6g}" for value in place)
     triangles = np.flatnonzero(np.isin(skeleton.face, list(faces)))
     message = f"The faces leave no room at ({point}). Choose a smaller size, or fewer edges."
@@ -90,7 +90,7 @@ def _loops(skeleton: Skeleton, face: int) -> list[IndexArray]:
 
 
 def _inset(skeleton: Skeleton, face: int, loop: IndexArray, widths: FloatArray) -> FloatArray:
-    """Return where each edge of a loop begins and ends once the strips are gone, (n, 2, 3)."""
+    """Return start and end of each edge of a loop after the strips are removed, (n, 2, 3)."""
     inward = _inward(skeleton, face, loop)
     begins = skeleton.vertices[_ends(skeleton, face, loop)[:, 0]]
     corners = np.empty((len(loop), 2, 3))
@@ -134,7 +134,7 @@ def _refuse_overlapping(
     inner: Sequence[FloatArray],
     widths: FloatArray,
 ) -> None:
-    """Raise an error if what is left of a face crosses itself."""
+    """Raise an error if the rest of a face crosses itself."""
     whole, left = (_flat(skeleton.normals[face], loops) for loops in (outer, inner))
     signed = sum(map(_area, left))
     if abs(Region(left).area - signed) > _SAME * sum(abs(_area(points)) for points in whole):
@@ -144,7 +144,7 @@ def _refuse_overlapping(
 
 
 def _flat(normal: FloatArray, loops: Sequence[FloatArray]) -> list[FloatArray]:
-    """Return loops of a plane without the axis that its normal is nearest to, counter-clockwise."""
+    """Project loops of a plane along the axis nearest to its normal, counter-clockwise."""
     axis = int(np.abs(normal).argmax())
     plane = [(1, 2), (2, 0), (0, 1)][axis]
     flat = [corners.reshape(-1, 3)[:, plane] for corners in loops]

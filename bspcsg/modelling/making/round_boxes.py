@@ -75,7 +75,7 @@ def rounded_box(
 
 
 def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray, IndexArray]:
-    """Return a mesh about the origin, its triangles turned any way."""
+    """Return a mesh about the origin, with triangles of any orientation."""
     unit = patch_directions(np.eye(3), steps)
     signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
     vertices = np.concatenate([sign * (lengths / 2 - radius + radius * unit) for sign in signs])
@@ -94,7 +94,7 @@ def _rounded(lengths: FloatArray, radius: float, steps: int) -> tuple[FloatArray
 
 
 def _sides(steps: int) -> list[IndexArray]:
-    """Return for each axis the points of a patch that an edge along it begins with.
+    """Return for each axis the points of a patch at which an edge along the axis begins.
 
     The side of axis k runs from axis k + 1 to axis k + 2.
     """
@@ -109,9 +109,9 @@ def _quads(start: IndexArray, end: IndexArray) -> IndexArray:
 
 
 def _proper(vertices: FloatArray, faces: IndexArray) -> tuple[FloatArray, IndexArray]:
-    """Return the mesh without what a radius of half an edge flattens, seen from outside.
+    """Return the mesh without triangles flattened by a radius of half an edge, facing outwards.
 
-    The body is convex about its middle, so that each triangle says by itself how it must run.
+    The body is convex about its middle, so each triangle alone determines its orientation.
     """
     points, same = welded(vertices)
     faces = same[faces]

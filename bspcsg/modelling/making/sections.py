@@ -1,4 +1,4 @@
-"""Sections of a loft: closed loops in space, and which corner of one goes to which of the next."""
+"""Sections of a loft: closed loops in space, and the matching of their corners."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,9 +25,9 @@ class Section:
     ----------
     loops : list of (n, 3) float64
     flat : list of (n, 2) float64, or None
-        The same in the profile's plane; None of loops that were given in space.
+        The same loops in the profile's plane; None for loops given in space.
     is_region : bool
-        True if nobody has chosen where its outlines begin.
+        True if the first corners of its outlines are arbitrary.
     """
 
     loops: list[FloatArray]
@@ -36,18 +36,18 @@ class Section:
 
     @property
     def is_tip(self) -> bool:
-        """True if this is one point."""
+        """True if the section is a single point."""
         return len(self.loops[0]) == 1
 
     def cap(self) -> IndexArray:
-        """Return the triangles inside the loops, seen against the loft's direction."""
+        """Return the triangles inside the loops, facing against the loft's direction."""
         if self.is_tip:
             return np.zeros((0, 3), np.int64)
         return triangulate_face(self.loops[0]) if self.flat is None else triangulate(self.flat)
 
 
 def section_of(given: Any, place: int) -> Section:
-    """Return a section from a profile and where it stands, or from points in space.
+    """Return a section from a placed profile, or from points in space.
 
     Raises
     ------
@@ -87,12 +87,12 @@ def _loop(given: Any, place: int) -> FloatArray:
 def aligned(low: Section, high: Section, place: int) -> Section:
     """Return the upper section with its outlines in the order of the lower one's.
 
-    Outlines of regions begin anywhere, so that they are rolled to where they fit best, too.
+    Outlines of regions have arbitrary first corners, so they are also rotated to fit best.
 
     Raises
     ------
     InvalidParameterError
-        If the sections have not as many outlines, and as many holes; `where` is the upper one's
+        If the sections differ in the number of outlines or holes; `where` is the upper one's
         number.
     """
     if low.flat is None or high.flat is None:
@@ -110,7 +110,7 @@ def aligned(low: Section, high: Section, place: int) -> Section:
 
 
 def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) -> list[int]:
-    """Return for each lower outline the upper one of its kind whose middle is nearest to it."""
+    """Return for each lower outline the upper outline of its kind with the nearest middle."""
     holes = [[runs_clockwise(c) for c in contours] for contours in (low, high)]
     if sorted(holes[0]) != sorted(holes[1]):
         raise _other_outlines(place)
@@ -127,12 +127,12 @@ def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) ->
 
 
 def _other_outlines(place: int) -> Exception:
-    message = f"Profile {place} of the loft has not as many outlines and holes as the one before."
+    message = f"Profile {place} of the loft must have as many outlines and holes as the last."
     return invalid_parameter(message, [place])
 
 
 def _best_roll(low: FloatArray, high: FloatArray) -> int:
-    """Return the corner of the upper outline that goes to the first of the lower one."""
+    """Return the corner of the upper outline that matches the first corner of the lower one."""
     low, high = low - low.mean(axis=0), high - high.mean(axis=0)
     if len(low) == len(high):
         # The sum of squared distances of all pairs, for all rolls at once.
@@ -145,7 +145,7 @@ def _best_roll(low: FloatArray, high: FloatArray) -> int:
 
 
 def shortest_band(low: FloatArray, high: FloatArray) -> IndexArray:
-    """Return the triangles between two loops whose edges across are shortest in sum.
+    """Return the triangles between two loops with the least total length of cross edges.
 
     The first corners of both are joined. Fuchs, Kedem, Uselton 1977, "Optimal surface
     reconstruction from planar contours".
@@ -172,7 +172,7 @@ def shortest_band(low: FloatArray, high: FloatArray) -> IndexArray:
 
 
 def _add_up(cost: FloatArray) -> None:
-    """Add to each pair of corners the least sum on the way to it, one diagonal after another."""
+    """Add to each pair of corners the least cost of a path to it, diagonal by diagonal."""
     n, m = cost.shape
     cost[0], cost[:, 0] = np.cumsum(cost[0]), np.cumsum(cost[:, 0])
     for total in range(2, n + m - 1):

@@ -1,4 +1,4 @@
-"""`Selection`: some of a solid's edges or faces, and how they are chosen."""
+"""`Selection`: some of a solid's edges or faces, and methods to choose them."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
@@ -27,8 +27,8 @@ Key: TypeAlias = "str | Vector | Callable[[Any], Any]"
 class Selection(ABC):
     """Some of a solid's edges or faces, in an order.
 
-    All properties are arrays over them, so that conditions are made of them. A number in brackets
-    gives a selection of one, a slice some in a row.
+    All properties are arrays over the edges or faces, for use in conditions. Indexing with a number
+    gives a selection of one, a slice gives several.
     """
 
     #: What a message calls them, and the properties by which they can be sorted; the first of these
@@ -48,35 +48,35 @@ class Selection(ABC):
     @property
     @abstractmethod
     def direction(self) -> FloatArray:
-        """Unit vectors, (n, 3), or zero where there is no one direction."""
+        """Unit vectors, (n, 3), or zero if there is no single direction."""
 
     @abstractmethod
     def _flat_faces(self) -> tuple[IndexArray, IndexArray]:
-        """Return flat faces of the skeleton, and the thing of this selection that has each."""
+        """Return flat faces of the skeleton, and the item of the selection with each of them."""
 
     @abstractmethod
     def _between(self, heights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the least and the greatest value at each one's corners, given all corners'."""
+        """Return the least and greatest value at the corners of each item, given all values."""
 
     @abstractmethod
     def _total(self) -> int:
-        """Return how many there are to choose from."""
+        """Return the total number of items in the solid."""
 
     def _with(self, numbers: IndexArray) -> Self:
         return type(self)(self._skeleton, numbers)
 
     def filter(self, condition: "Callable[[Self], Any] | Any") -> Self:
-        """Return those for which a condition holds.
+        """Return the items for which a condition holds.
 
         Parameters
         ----------
         condition : function or (n,) bool
-            The function is given this selection and returns a truth value for each.
+            The function takes this selection and returns a truth value for each item.
 
         Raises
         ------
         InvalidParameterError
-            If there are not as many truth values.
+            If the number of truth values is wrong.
         """
         found = condition(self) if callable(condition) else condition
         given = np.asarray(None if axes_of(found) is None else found)
@@ -88,11 +88,11 @@ class Selection(ABC):
         return self._with(self._numbers[given])
 
     def where(self, condition: "Callable[[Self], Any] | Any") -> Self:
-        """Return those for which a condition holds: another name for `filter`."""
+        """Return the items for which a condition holds: another name for `filter`."""
         return self.filter(condition)
 
     def parallel(self, axis: str | Vector) -> Self:
-        """Return those along an axis, either way: edges, or flat faces by their normals.
+        """Return edges, or flat faces by their normals, along an axis in either direction.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class Selection(ABC):
         return self.filter(np.abs(self.direction @ axis_vector(axis)) >= _PARALLEL)
 
     def on(self, place: "str | Vector | Selection", offset: Scalar | None = None) -> Self:
-        """Return those that lie in a plane, or have to do with another selection.
+        """Return the items that lie in a plane, or are adjacent to another selection.
 
         Parameters
         ----------
@@ -109,7 +109,7 @@ class Selection(ABC):
             The plane's normal, which need not have unit length. Or a selection of the same solid:
             edges lie on the faces that they bound, faces on the edges that bound them.
         offset : float, optional
-            Of a plane: it holds the points p with ``normal . p == offset``.
+            The plane contains the points p with ``normal . p == offset``.
 
         Examples
         --------
@@ -138,14 +138,14 @@ class Selection(ABC):
         return self.filter(found)
 
     def sort_by(self, key: Key) -> Self:
-        """Return the same ones in ascending order, so that ``[-1]`` has the most.
+        """Return the items in ascending order, so that ``[-1]`` has the largest value.
 
         Parameters
         ----------
         key : str, (3,) float or function
-            "x", "y", "z" or a vector: how far the middle is along it. Else the name of a property,
-            such as "length" or "area"; or a function that is given this selection and returns a
-            number for each.
+            "x", "y", "z" or a vector sorts by the position of the middle along it. Otherwise the
+            name of a property, such as "length" or "area"; or a function that takes this selection
+            and returns a number for each item.
 
         Examples
         --------
@@ -156,13 +156,13 @@ class Selection(ABC):
         return self._with(self._numbers[np.argsort(self._values(key)[0], kind="stable")])
 
     def group_by(self, key: Key) -> list[Self]:
-        """Return selections of those that are alike, in ascending order.
+        """Return selections of items with equal values, in ascending order.
 
         Parameters
         ----------
         key : str, (3,) float or function
-            As for `sort_by`. Values count as one that are nearer to the next than a millionth of
-            the largest, or along an axis of the solid's size.
+            As for `sort_by`. Consecutive values are equal if they differ by less than a millionth
+            of the largest value, or along an axis, of the solid's size.
 
         Examples
         --------
@@ -176,7 +176,7 @@ class Selection(ABC):
         return [self._with(self._numbers[part]) for part in np.split(order, starts) if len(part)]
 
     def _values(self, key: Key) -> tuple[FloatArray, float]:
-        """Return a number for each, and how large such numbers are."""
+        """Return a number for each item, and the scale of such numbers."""
         if isinstance(key, str) and key in self._sizes:
             values = getattr(self, key)
         elif callable(key):
@@ -199,19 +199,19 @@ class Selection(ABC):
             raise invalid_parameter("Selections of different solids do not go together.")
 
     def _is_alike(self, other: object) -> bool:
-        """Say whether another selection numbers the same things, if it is of the same solid."""
+        """Say whether another selection of the same solid has the same numbering of items."""
         return type(other) is type(self)
 
     def __or__(self, other: object) -> Self:
-        """Return those of both selections of one solid."""
+        """Return the items in at least one of two selections of one solid."""
         return self._joined(other, lambda theirs: np.union1d(self._numbers, theirs))
 
     def __and__(self, other: object) -> Self:
-        """Return those that both selections of one solid have, in this one's order."""
+        """Return the items in both selections of one solid, in this one's order."""
         return self._joined(other, lambda theirs: self._numbers[np.isin(self._numbers, theirs)])
 
     def __sub__(self, other: object) -> Self:
-        """Return those that the other selection of this solid does not have."""
+        """Return the items that are not in the other selection of this solid."""
         return self._joined(other, lambda theirs: self._numbers[~np.isin(self._numbers, theirs)])
 
     def _joined(self, other: object, join: "Callable[[IndexArray], IndexArray]") -> Self:
@@ -222,19 +222,19 @@ class Selection(ABC):
         return self._with(join(other._numbers))
 
     def __getitem__(self, index: int | slice) -> Self:
-        """Return one, or some in a row, as a selection."""
+        """Return one item, or a slice of items, as a selection."""
         return self._with(np.atleast_1d(self._numbers[index]))
 
     def __iter__(self) -> Iterator[Self]:
-        """Yield each as a selection of one."""
+        """Yield each item as a selection of one."""
         return (self[k] for k in range(len(self)))
 
     def __len__(self) -> int:
-        """Return the number of them."""
+        """Return the number of items."""
         return len(self._numbers)
 
     def __repr__(self) -> str:
-        """Say how many of how many, and how large they are."""
+        """Show the number of items, the total, and the range of sizes."""
         name = self._sizes[0]
         sizes = getattr(self, name)
         told = f", {name} {sizes.min():g} to {sizes.max():g}" if len(self) else ""
@@ -242,7 +242,7 @@ class Selection(ABC):
 
 
 def as_bend(angle: Scalar, every: bool) -> float:
-    """Return the degrees by which faces must bend to have an edge between them, checked."""
+    """Return the checked angle, in degrees, above which faces have an edge between them."""
     bend = number(angle, "angle")
     if not 0 <= bend < 180:
         raise invalid_parameter(f"angle must be from 0 to below 180 degrees, not {bend:g}.")
@@ -250,6 +250,6 @@ def as_bend(angle: Scalar, every: bool) -> float:
 
 
 def bends(skeleton: Skeleton, least: float) -> BoolArray:
-    """Say at which edges of a skeleton the faces bend by more than so many degrees."""
-    # Sides of a circle of twelve bend by 30 degrees, and should do so whatever rounding does.
+    """Say at which edges of a skeleton the faces bend by more than `least` degrees."""
+    # The sides of a regular 12-gon bend by 30 degrees, and must not depend on rounding.
     return np.asarray(np.abs(180 - skeleton.angles) > least + _SAME)

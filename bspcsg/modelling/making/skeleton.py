@@ -29,7 +29,7 @@ class Skeleton:
     normals : (f, 3) float64
         Unit vectors outwards.
     ends : (e, 2) int64
-        The vertices that each edge runs between.
+        The start and end vertices of each edge.
     sides : (e, 2) int64
         The faces on its left and on its right, seen from outside.
     """
@@ -125,17 +125,17 @@ def skeleton_of(mesh: Mesh) -> Skeleton:
 
 
 def flatness(vertices: FloatArray) -> float:
-    """Return how far corners may be from the plane of a face that they belong to."""
+    """Return the largest allowed distance of corners from the plane of their face."""
     return _FLAT * extent(vertices)
 
 
 def extent(vertices: FloatArray) -> float:
-    """Return the longest side of the box around corners, 0 if there are none."""
+    """Return the longest side of the bounding box of corners, 0 without corners."""
     return float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
 
 
 def _segments(triangles: IndexArray, count: int) -> tuple[IndexArray, IndexArray]:
-    """Return each edge of triangles once, and the triangles on its left and its right."""
+    """Return each edge of triangles once, and the triangles on its left and right."""
     starts, ends = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
     owner = np.repeat(np.arange(len(triangles)), 3)
     forth = starts < ends
@@ -157,9 +157,9 @@ def _away(
     segments: IndexArray,
     owners: IndexArray,
 ) -> FloatArray:
-    """Return how far the smaller triangle at each segment is from the plane of the larger one.
+    """Return the distance of the smaller triangle at each segment from the larger one's plane.
 
-    Infinity where they are folded on each other.
+    The distance is infinite if they are folded onto each other.
     """
     size = np.linalg.norm(areas, axis=1)
     first_is_large = size[owners[:, 0]] >= size[owners[:, 1]]
@@ -173,7 +173,7 @@ def _away(
 
 
 def _are_thin(vertices: FloatArray, triangles: IndexArray, areas: FloatArray) -> BoolArray:
-    """Say which triangles are so thin that they lie in planes of several directions."""
+    """Say which triangles are so thin that their plane is ambiguous."""
     around = vertices[triangles] - vertices[np.roll(triangles, 1, axis=1)]
     longest = np.linalg.norm(around, axis=2).max(axis=1)
     thin = np.linalg.norm(areas, axis=1) <= flatness(vertices) / _BENT * longest
@@ -181,9 +181,9 @@ def _are_thin(vertices: FloatArray, triangles: IndexArray, areas: FloatArray) ->
 
 
 def _with_one_plane(flat: IndexArray, away: FloatArray, is_thin: BoolArray) -> IndexArray:
-    """Return pairs of triangles of one plane; thin ones go with the neighbour that fits best.
+    """Return pairs of coplanar triangles; a thin triangle is paired with its best neighbour only.
 
-    Otherwise a thin triangle along an edge would make one face of the two that meet there.
+    Otherwise a thin triangle along an edge would join the two faces that meet there.
     """
     kept = [flat[~is_thin[flat].any(axis=1)]]
     is_placed = ~is_thin
@@ -196,7 +196,7 @@ def _with_one_plane(flat: IndexArray, away: FloatArray, is_thin: BoolArray) -> I
         _, first = np.unique(ready[:, 1], return_index=True)
         kept.append(ready[first])
         is_placed[ready[:, 1]] = True
-    # Faces of nothing but thin triangles.
+    # Faces that consist only of thin triangles.
     kept.append(flat[~is_placed[flat].any(axis=1)])
     return np.concatenate(kept)
 
@@ -217,9 +217,9 @@ def _mended(
     flat: IndexArray,
     is_thin: BoolArray,
 ) -> IndexArray:
-    """Return the face of each triangle once those of one plane are one.
+    """Return the face of each triangle after coplanar faces are joined.
 
-    A thin triangle between two goes with one of them, and keeps them apart.
+    A thin triangle between two coplanar faces belongs to one of them and separates them.
     """
     is_wide = np.bincount(face, ~is_thin) > 0
     pairs = np.unique(face[flat], axis=0)
@@ -241,7 +241,7 @@ def _mended(
 
 
 def members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArray]:
-    """Return the triangles of chosen faces, and the place of each one's face among these."""
+    """Return the triangles of chosen faces, and the position of each one's face there."""
     counts = np.bincount(face)
     starts, sizes = np.cumsum(counts) - counts, counts[chosen]
     place = np.repeat(np.arange(len(chosen)), sizes)
@@ -250,7 +250,7 @@ def members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArra
 
 
 def groups(pairs: IndexArray, count: int) -> IndexArray:
-    """Return the number of the connected group of each of so many things."""
+    """Return the number of the connected group of each of `count` items."""
     loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
     links = np.concatenate([loops, pairs])
     return surfaces_of(links[:, [0, 1, 1]], count)[:count]
@@ -266,7 +266,7 @@ def _ascending(segments: IndexArray, sides: IndexArray) -> tuple[IndexArray, Ind
 def _runs(
     vertices: FloatArray, segments: IndexArray, sides: IndexArray
 ) -> tuple[IndexArray, IndexArray]:
-    """Return segments joined where two of the same faces continue each other."""
+    """Return edges: segments between the same two faces, joined where they continue each other."""
     if not len(segments):
         return segments, sides
     degree = np.bincount(segments.ravel(), minlength=len(vertices))
@@ -290,9 +290,9 @@ def _runs(
 
 
 def _without_loops(pairs: IndexArray, count: int) -> IndexArray:
-    """Return the pairs of segments that continue each other, without those that run in a circle.
+    """Return the pairs of segments that continue each other, without closed loops.
 
-    Planes meet in lines, but faces that are plane only within a tolerance can meet all around.
+    Planes meet in lines, but faces that are plane only within a tolerance can meet in a loop.
     """
     run = groups(pairs, count)
     has_start = np.zeros(count, dtype=np.bool_)

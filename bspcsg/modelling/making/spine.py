@@ -1,4 +1,4 @@
-"""Frames along a path: where the axes of a swept profile point."""
+"""Frames along a path: the axes of a swept profile."""
 
 import math
 from collections.abc import Callable
@@ -28,20 +28,20 @@ _UPRIGHT = 1e-9
 
 @dataclass(frozen=True)
 class Spine:
-    """The way of the corners of a profile along a path.
+    """A path with the frames that carry a profile along it.
 
     Parameters
     ----------
     points : (n, 3) float64
-        Of a closed path each point once.
+        Each point once, also for a closed path.
     shares : (n,) float64
-        Of the length up to each point, from 0 to 1.
+        The share of the length up to each point, from 0 to 1.
     right, up : (n, 3) float64
-        Unit vectors to which the profile's axes go, across the path.
+        Unit vectors of the profile's axes, perpendicular to the path.
     bend : (n, 3) float64
-        Unit vector towards which the path turns, or zero.
+        Unit vectors towards which the path turns, or zero.
     stretch : (n,) float64
-        The factor by which a mitre is longer along `bend` than the profile.
+        The factor by which a mitre stretches the profile along `bend`.
     closed : bool
     """
 
@@ -54,7 +54,7 @@ class Spine:
     closed: bool
 
     def ring(self, place: int, profile: FloatArray) -> FloatArray:
-        """Return (k, 3) the corners of a profile, (k, 2), at one point of the path."""
+        """Return the corners of a profile, (k, 2), placed at one point of the path, (k, 3)."""
         across = profile[:, :1] * self.right[place] + profile[:, 1:] * self.up[place]
         along = (across @ self.bend[place])[:, None] * self.bend[place]
         ring: FloatArray = self.points[place] + across + along * (self.stretch[place] - 1)
@@ -62,7 +62,7 @@ class Spine:
 
 
 def path_points(path: Any) -> tuple[FloatArray, bool]:
-    """Return the points of a path, none twice in a row, and whether it is closed.
+    """Return the points of a path without consecutive repeats, and whether it is closed.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def path_points(path: Any) -> tuple[FloatArray, bool]:
 
 
 def divided(points: FloatArray, closed: bool, slices: int) -> FloatArray:
-    """Return the path with so many points more that it has about so many equal parts."""
+    """Return the path with additional points, for about `slices` equal parts."""
     ends = np.roll(points, -1, axis=0) if closed else points[1:]
     starts = points[: len(ends)]
     lengths = np.linalg.norm(ends - starts, axis=1)
@@ -132,7 +132,7 @@ def spine_of(points: FloatArray, closed: bool, frame: Any) -> Spine:
 
 
 def slipped(spine: Spine) -> float:
-    """Return by how many radians the frame of a closed path has turned when it comes round."""
+    """Return the rotation of the frame after one round of a closed path, in radians."""
     if not spine.closed:
         return 0.0
     first = np.cross(spine.right[0], spine.up[0])
@@ -157,7 +157,7 @@ def _refuse_turning_back(points: FloatArray, before: FloatArray, after: FloatArr
 
 
 def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
-    """Return horizontal unit vectors across the path, the z axis on their left."""
+    """Return horizontal unit vectors perpendicular to the path, with the z axis on their left."""
     x, y = -middle[:, 1], middle[:, 0]
     size = np.hypot(x, y)
     upright = np.flatnonzero(size < _UPRIGHT)
@@ -169,7 +169,7 @@ def _level(points: FloatArray, middle: FloatArray) -> FloatArray:
 
 
 def _carried(middle: FloatArray, directions: FloatArray, closed: bool) -> FloatArray:
-    """Return unit vectors across the path that turn no more than it does."""
+    """Return unit vectors perpendicular to the path, carried along with the least rotation."""
     right = np.empty_like(middle)
     right[0] = _first(middle[0])
     for k in range(1, len(middle)):
@@ -188,7 +188,7 @@ def _first(direction: FloatArray) -> FloatArray:
 
 
 def _turned(vector: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return a vector across a direction after the shortest turn of that direction to another."""
+    """Return a vector after the shortest rotation of one direction to another."""
     turned: FloatArray = vector - (vector @ end) / (1 + start @ end) * (start + end)
     return turned
 

@@ -1,8 +1,8 @@
 """The order in which convex and concave edges that meet are blended.
 
-Where one edge of its kind ends between two of the other kind, it comes first: the two then run on
-along the end of its new surface, all of one kind. What is chosen is found again on the solid that
-each stage leaves.
+If an edge ends between two edges of the other kind, it comes first: the two then continue along the
+end of its new surface, all of one kind. After each stage, the remaining selected edges are found
+again on the new solid.
 """
 
 from collections.abc import Mapping
@@ -25,7 +25,7 @@ _SAME = 4
 
 
 def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
-    """Return those of the chosen edges before which no others have to be blended.
+    """Return the selected edges that can be blended now, before all others.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
     Raises
     ------
     InvalidParameterError
-        If edges of both kinds meet otherwise than one between two, or wait for each other.
+        If edges of both kinds meet in another way than one between two, or wait for each other.
     """
     own = set(chosen.tolist())
     before = {
@@ -45,22 +45,25 @@ def ready(skeleton: Skeleton, chosen: IndexArray) -> IndexArray:
         for edge in skeleton.edges_at(vertex)
         if edge in own and edge != first
     }
-    # Corners of one kind come at once, for they are part of a ball; else as few edges as can.
+    # Edges that share a corner of one kind come together, since it becomes part of a ball;
+    # otherwise take as few edges as possible.
     free = own - _with_their_like(skeleton, own, set(before)) or set(before.values()) - set(before)
     if own and not free:
         vertex = int(skeleton.ends[min(before), 0])
-        raise refused(skeleton, vertex, "convex and concave edges wait for each other")
+        raise refused(
+            skeleton, vertex, "convex and concave edges wait for each other; blend one kind first"
+        )
     return np.array(sorted(free), dtype=np.int64)
 
 
 def _between_two(skeleton: Skeleton, chosen: set[int], vertex: int) -> int | None:
-    """Return the chosen edge that ends between two of the other kind, of which one is chosen."""
+    """Return the selected edge that ends between two of the other kind, one of them selected."""
     edges = skeleton.edges_at(vertex)
     kinds = {bool(skeleton.is_convex[edge]) for edge in edges if edge in chosen}
     if len(kinds) < 2:
         return None
     if len(edges) != 3:
-        reason = "convex and concave edges meet, and more than three; take one kind first"
+        reason = "more than three convex and concave edges meet; blend one kind first"
         raise refused(skeleton, vertex, reason)
     convex = [edge for edge in edges if skeleton.is_convex[edge]]
     concave = [edge for edge in edges if not skeleton.is_convex[edge]]
@@ -68,7 +71,7 @@ def _between_two(skeleton: Skeleton, chosen: set[int], vertex: int) -> int | Non
 
 
 def _with_their_like(skeleton: Skeleton, chosen: set[int], waiting: set[int]) -> set[int]:
-    """Return the edges that wait, and all of their kind that they are connected with."""
+    """Return the waiting edges, and all edges of their kind connected with them."""
     found, ahead = set(waiting), list(waiting)
     while ahead:
         edge = ahead.pop()
@@ -88,19 +91,19 @@ def carried(
     ends: Mapping[int, FloatArray],
     reach: float,
 ) -> IndexArray:
-    """Return the edges, after a stage, of those that are still to be blended.
+    """Return the edges of the new solid that correspond to those still to be blended.
 
     Parameters
     ----------
     skeleton : Skeleton
         Before the stage.
     rest : (k,) int64
-        Edges of it.
+        Edges of that skeleton.
     after : Skeleton
     ends : dict of int to (n, 3) float64
-        The corners of the new surface where it ends on each face between two of `rest`.
+        The end corners of the new surfaces on each face between two edges of `rest`.
     reach : float
-        The most that new surfaces make an edge longer.
+        The largest amount by which new surfaces lengthen an edge.
 
     Returns
     -------
@@ -117,7 +120,7 @@ def carried(
         parts = _lie_on(skeleton, edge, after, near, reach)
         if not parts.any():
             vertex = int(skeleton.ends[edge, 0])
-            reason = "an edge is gone once others are blended; take one kind first"
+            reason = "an edge vanishes when others are blended; blend one kind first"
             raise refused(skeleton, vertex, reason)
         is_meant |= parts
     for face, corners in ends.items():
@@ -126,13 +129,13 @@ def carried(
 
 
 def _are_even(skeleton: Skeleton) -> BoolArray:
-    """Say at which edges the two faces go on in one plane, but for what rounding does."""
+    """Say at which edges the two faces are coplanar up to rounding."""
     normals = skeleton.normals[skeleton.sides]
     return np.asarray(np.linalg.norm(normals[:, 1] - normals[:, 0], axis=1) <= _EVEN)
 
 
 def _lie_on(skeleton: Skeleton, edge: int, after: Skeleton, near: float, reach: float) -> BoolArray:
-    """Say which edges have a part in common with one of before."""
+    """Say which edges overlap an edge of the previous solid."""
     start, along = skeleton.vertices[skeleton.ends[edge, 0]], skeleton.directions[edge]
     length = float(np.linalg.norm(skeleton.vectors[edge]))
     away = after.vertices[after.ends] - start
@@ -144,7 +147,7 @@ def _lie_on(skeleton: Skeleton, edge: int, after: Skeleton, near: float, reach: 
 
 
 def _run_along(normal: FloatArray, corners: FloatArray, after: Skeleton, near: float) -> BoolArray:
-    """Say which edges of a face run between some points."""
+    """Say which edges of a face run between given points."""
     on_face = (after.normals[after.sides] @ normal >= _ALONG).any(axis=1)
     gaps = np.linalg.norm(after.vertices[after.ends][:, :, None] - corners, axis=3)
     return np.asarray(on_face & (gaps.min(axis=2, initial=np.inf) <= near).all(axis=1))

@@ -1,4 +1,4 @@
-"""Solids that plane profiles sweep along paths."""
+"""Sweeps of plane profiles along paths."""
 
 import math
 from typing import Any
@@ -45,7 +45,7 @@ def sweep(
     frame: Frame = "parallel",
     segments: int = SEGMENTS,
 ) -> Solid:
-    """Return what a profile sweeps that is carried along a path, standing across it.
+    """Return the solid that a profile sweeps along a path, perpendicular to it.
 
     Parameters
     ----------
@@ -54,32 +54,32 @@ def sweep(
     path : (n, 3) or (n, 2) array_like of float
         Corners of a polyline. It is closed if the last one is the first one; it may cross itself.
     twist : float or function
-        Degrees by which the profile is turned at the end, clockwise seen from there, as by
-        `extrude`; or a function of the share of the length, (k,) from 0 to 1, that returns degrees.
+        Rotation of the profile at the end in degrees, clockwise seen from there, as in `extrude`;
+        or a function that takes shares of the length, (k,) from 0 to 1, and returns degrees.
     scale : float or function
-        Size at the end as a part of that at the start, 0 or more; or a function as for `twist` that
-        returns (k,) sizes.
+        Size at the end relative to the start, 0 or more; or a function as for `twist` that returns
+        (k,) sizes.
     frame : {"parallel", "fixed"}
-        "parallel": the profile turns no more than the path does. "fixed": its x axis stays
-        horizontal, its y axis as upright as it can be. In both it starts so; on a path that starts
-        upwards, with x along x.
+        "parallel": the profile rotates no more than the path. "fixed": its x axis stays horizontal
+        and its y axis as upright as possible. Both start in the latter position; on a path that
+        starts upwards, with x along x.
     segments : int
         Slices of a full turn of `twist`, and of the length under a function, at least 3.
 
     Raises
     ------
     InvalidParameterError
-        If the path has fewer than two different points, turns back on itself by more than 175
-        degrees, or runs upright in a fixed frame (`where` names its points); if a closed one ends
-        with another size or, but for symmetry, another turn of the profile than it began with.
+        If the path has fewer than two different points, turns by more than 175 degrees at a point,
+        or runs upright in a fixed frame (`where` names its points); or if on a closed path the
+        profile ends with another size or, except for symmetry, another rotation than at the start.
     LimitError
         If the solid would have too many corners.
 
     Notes
     -----
-    Corners of the path are mitred, so that straight parts have the profile's section. Inside is
-    where the swept surface winds around more than zero times: what overlaps is united, and in the
-    inside of a bend that is tighter than the profile is wide, parts that run backwards count less.
+    Corners of the path are mitred, so that straight parts have the profile as cross-section. Points
+    with a positive winding number of the swept surface are inside: overlaps are united; in a bend
+    tighter than the profile's width, parts that run backwards lower the winding number.
 
     Examples
     --------
@@ -93,7 +93,7 @@ def sweep(
     around = sides_around(3, segments, "segments")
     points, closed = path_points(path)
     slices = _slices(twist, scale, around)
-    # Before the path is divided, which takes a second for so many.
+    # Check before the path is divided, which takes a second for so many points.
     refuse_many_corners(max(len(points), slices) * max(len(corners), 1), "This sweep")
     points = divided(points, closed, slices)
     refuse_many_corners(len(points) * len(corners), "This sweep")
@@ -130,7 +130,7 @@ def pipe(
     inner_d: Scalar | None = None,
     segments: int = SEGMENTS,
 ) -> Solid:
-    """Return a round bar along a path, or a pipe.
+    """Return a round bar or a pipe along a path.
 
     Parameters
     ----------
@@ -164,14 +164,14 @@ def pipe(
 
 
 def _slices(twist: Along, scale: Along, around: int) -> int:
-    """Return how many parts the path must have at least."""
+    """Return the least number of parts of the path."""
     if callable(twist) or callable(scale):
         return around
     return math.ceil(min(abs(number(twist, "twist")) / 360 * around, MAX_CORNERS)) or 1
 
 
 def _along(given: Along, start: float, spine: Spine, name: str) -> FloatArray:
-    """Return what a parameter is at each point of a path, and at its closing one."""
+    """Return the value of a parameter at each point of a path, and at the closing point."""
     shares = np.append(spine.shares, 1.0) if spine.closed else spine.shares
     if not callable(given):
         return start + (number(given, name) - start) * shares
@@ -193,7 +193,7 @@ def _placed(corners: FloatArray, turn: float, size: float) -> FloatArray:
 
 
 def _same_corners(last: FloatArray, first: FloatArray, edges: IndexArray) -> IndexArray:
-    """Return which corner of the first ring each one of the closing ring is."""
+    """Return for each corner of the closing ring the equal corner of the first ring."""
     tolerance = _SAME * float(np.abs(first - first.mean(axis=0)).max())
     same = np.arange(len(first))
     if np.abs(last - first).max() <= tolerance:

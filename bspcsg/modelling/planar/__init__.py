@@ -1,1 +1,1 @@
-"""Figures of the plane: offsets, hulls, curves, text, shadows of solids."""
+"""Plane figures: offsets, hulls, curves, text, projections of solids."""

@@ -1,4 +1,4 @@
-"""Figures with other corners: rounded, or cut off."""
+"""Figures with rounded or chamfered corners."""
 
 import math
 from collections.abc import Callable
@@ -28,12 +28,12 @@ Corners: TypeAlias = Callable[[FloatArray], Any] | None
 
 @dataclass(frozen=True)
 class _Cut:
-    """What replaces a corner: an arc, or a straight line.
+    """The replacement of a corner: an arc or a straight line.
 
     Parameters
     ----------
     size : float
-        The radius of the arc; of a line, how far from the corner it begins.
+        The radius of the arc, or the distance from the corner to the line's ends.
     around : int
         Sides of a full circle; 0 for a line.
     """
@@ -42,12 +42,12 @@ class _Cut:
     around: int
 
     def setbacks(self, turns: FloatArray) -> FloatArray:
-        """Return how far along its edges the cut of each corner reaches."""
+        """Return the length of each corner's cut along its edges."""
         round_: FloatArray = self.size * np.tan(np.abs(turns) / 2)
         return round_ if self.around else np.full(len(turns), self.size)
 
     def points(self, corner: FloatArray, ahead: FloatArray, turn: float) -> FloatArray:
-        """Return what replaces a corner, given the direction before it."""
+        """Return the points that replace a corner, given the direction before it."""
         if not self.around:
             after = _turned(ahead, np.array([turn]))[0]
             return np.array([corner - self.size * ahead, corner + self.size * after])
@@ -117,10 +117,10 @@ def _selected(corners: Corners, points: FloatArray) -> BoolArray:
 
 
 def _without_crossings(figure: Region, loops: list[FloatArray]) -> Region:
-    """Return the region of new outlines, or raise an error where they cross each other."""
+    """Return the region of new outlines, or raise an error if they cross each other."""
     made = Region(loops, pitch=figure.pitch)
-    # Between outlines that cross, winding numbers other than 0 and 1 occur. Corners that the
-    # lattice moves by a step account for no more than a step along all outlines.
+    # Crossing outlines have winding numbers other than 0 and 1 between them. Snapping of corners
+    # causes such areas of at most a step along all outlines.
     crossed = made ^ Region(loops, winding="even-odd", pitch=figure.pitch)
     length = math.fsum(outline.length for outline in made.outlines)
     if crossed.area > length * 10.0**figure.pitch:

@@ -20,7 +20,7 @@ _MAX_CONTROL_POINTS = 32
 def arc(
     center: Vector, r: Scalar, start: Scalar, stop: Scalar, *, tolerance: Scalar = 0.01
 ) -> FloatArray:
-    """Return points along an arc of a circle, both of its ends among them.
+    """Return points along an arc of a circle, including both ends.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def arc(
         Directions in degrees, from the x axis on counterclockwise. The arc runs clockwise if `stop`
         is below `start`, and may go round more than once.
     tolerance : float
-        The most that chords may be off the arc, in model units.
+        The largest distance between a chord and the arc, in model units.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def arc(
     radius, chord = positive(r, "r"), positive(tolerance, "tolerance")
     first, last = number(start, "start"), number(stop, "stop")
     widest = 2 * math.acos(max(1 - chord / radius, -0.5))
-    # So small a tolerance is lost in the radius.
+    # Relative to the radius, the tolerance is below the precision of doubles.
     turn = abs(math.radians(last - first))
     steps = turn / widest if widest else math.inf
     refuse_many_corners(steps, "This arc")
@@ -74,14 +74,14 @@ def _directions(angles: FloatArray) -> FloatArray:
 
 
 def bezier(points: Any, *, tolerance: Scalar = 0.01) -> FloatArray:
-    """Return points along a Bézier curve, both of its ends among them.
+    """Return points along a Bézier curve, including both ends.
 
     Parameters
     ----------
     points : (k, d) array_like of float
         Control points in the plane or in space: three make a quadratic, four a cubic curve.
     tolerance : float
-        The most that chords may be off the curve, in model units.
+        The largest distance between a chord and the curve, in model units.
 
     Returns
     -------

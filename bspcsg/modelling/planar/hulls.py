@@ -35,7 +35,7 @@ def hull_of_figures(figures: Sequence[Any]) -> Region:
 def _points_of(figure: Any) -> FloatArray:
     if isinstance(figure, Region):
         return np.concatenate([np.zeros((0, 2)), *figure.to_polygons()])
-    refusal = invalid_parameter("A hull is that of shapes and points of one dimension.")
+    refusal = invalid_parameter("hull takes shapes and points of one dimension, not of both.")
     points = doubles(figure, refusal)
     if points.ndim != 2 or points.shape[1] != 2:
         raise refusal
@@ -47,17 +47,17 @@ def _points_of(figure: Any) -> FloatArray:
 
 
 def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
-    """Return the convex hull of points in the plane; empty if they lie on a line but for rounding.
+    """Return the convex hull of points in the plane; empty if they lie on a line up to rounding.
 
-    It is that of the points' places on the lattice, exactly. Points off their places are no corners
-    if that may come from rounding, as in space (see `bspcsg.hull`).
+    The hull of the snapped points is exact. If snapping moves points, those that may lie outside
+    only by rounding are no corners, as in space (see `bspcsg.hull`).
 
     Parameters
     ----------
     points : (n, 2) float64
         Finite, in model units; they are snapped to the lattice first.
     pitch : int, optional
-        Exponent of the lattice step; by default what suits the points.
+        Exponent of the lattice step; by default one that suits the points.
     """
     if len(points) < 3:
         return Region.empty()
@@ -74,16 +74,16 @@ def hull_region(points: FloatArray, pitch: int | None = None) -> Region:
 
 
 def _moved_by(exact: FloatArray, steps: FloatArray) -> float:
-    """Return how far rounding may have moved a point, in steps; 0 if all are on the lattice."""
+    """Return the largest move of a point by rounding, in steps; 0 if all are on the lattice."""
     moved = float(np.hypot(*(exact - steps).T).max())
     largest = float(np.abs(steps).max())
     return moved + _COMPUTED * float(np.finfo(np.float64).eps) * largest if moved else 0.0
 
 
 def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
-    """Return the corners of a convex outline that lie farther than a distance from the rest.
+    """Return the corners of a convex outline that are farther than a distance from the rest.
 
-    Those at which it bends clearly come first; others if they lie farther outside of these.
+    Corners with a clear bend are chosen first; others if they lie farther outside those.
     """
     count = len(outline)
     if most == 0 or count < 3:
@@ -94,7 +94,7 @@ def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
         if _height(outline[k], outline[k - 1], outline[(k + 1) % count]) > most
     ]
     if len(clear) < 2:
-        # The first is the least by its coordinates, so the one farthest from it is far apart.
+        # The first corner is the lexicographically least, so the farthest one is clearly distinct.
         far = max(range(count), key=lambda k: _height(outline[k], outline[0], outline[0]))
         clear = [0, far]
     kept: list[_Corner] = []
@@ -106,7 +106,7 @@ def _sharp(outline: list[_Corner], most: float) -> list[_Corner]:
 
 
 def _bends(chain: list[_Corner], most: float) -> list[_Corner]:
-    """Return the corners between two ends that lie farther outside of the rest than a distance."""
+    """Return the corners between two ends that lie farther outside the rest than a distance."""
     kept: list[_Corner] = []
     waiting = [(0, len(chain) - 1)]
     while waiting:
@@ -121,7 +121,7 @@ def _bends(chain: list[_Corner], most: float) -> list[_Corner]:
 
 
 def _height(point: _Corner, start: _Corner, end: _Corner) -> float:
-    """Return the distance of a point from the line between two others, or from both at once."""
+    """Return the distance of a point from the line through two others, which may coincide."""
     x, y = point[0] - start[0], point[1] - start[1]
     along, up = end[0] - start[0], end[1] - start[1]
     length = hypot(along, up)

@@ -1,4 +1,4 @@
-"""Figures grown and shrunk."""
+"""Offsets of plane figures."""
 
 import math
 from collections.abc import Sequence
@@ -67,7 +67,7 @@ def offset_region(
 
 
 def refuse_far(figure: Region, delta: float) -> None:
-    """Raise `LimitError` if the figure would be lost in the rounding of what it grows to."""
+    """Raise `LimitError` if a figure is too small relative to the offset for the precision."""
     size = max(float(np.abs(loop).max()) for loop in figure.to_polygons())
     if delta > _MAX_GROWTH * size:
         message = f"delta is too many times the size of the region: {delta:g}, and {size:g}."
@@ -77,7 +77,7 @@ def refuse_far(figure: Region, delta: float) -> None:
 def grown(
     figure: Region, delta: float, join: str, sides: int, miter_limit: float = _MITER_LIMIT
 ) -> Region:
-    """Return a figure with its outline moved outwards by `delta`, or inwards if that is negative.
+    """Return a figure with its outline moved outwards by `delta`, or inwards if it is negative.
 
     Parameters
     ----------
@@ -87,15 +87,15 @@ def grown(
     join : {"round", "square", "miter"}
         The form of corners.
     sides : int
-        Of a full circle, for round corners.
+        Sides of a full circle, for round corners.
     miter_limit : float
-        Mitred corners that reach farther, in multiples of `delta`, become square.
+        The limit of mitred corners, in multiples of `delta`; longer ones become square.
     """
     loops = figure.to_polygons()
     if join == "round":
         refuse_many_corners(_arc_corners(loops, delta, sides), "This offset")
     scale = _scale(loops, delta)
-    # This tolerance makes Clipper step by a whole circle's sides.
+    # With this tolerance Clipper steps by the sides of a full circle.
     tolerance = abs(delta) * scale * (1 - np.cos(np.pi / sides))
     pen = pyclipper.PyclipperOffset(miter_limit, tolerance)
     kind = getattr(pyclipper, f"JT_{join.upper()}")
@@ -105,7 +105,7 @@ def grown(
 
 
 def _arc_corners(loops: Sequence[FloatArray], delta: float, sides: int) -> int:
-    """Return how many corners arcs about the corners will have together, at most."""
+    """Return an upper bound of the number of corners of all arcs."""
     turned, count = 0.0, 0
     for loop in loops:
         along = np.diff(loop, axis=0, append=loop[:1])
@@ -117,7 +117,7 @@ def _arc_corners(loops: Sequence[FloatArray], delta: float, sides: int) -> int:
 
 
 def _bevelled(figure: Region, delta: float) -> Region:
-    """Return a figure grown with corners cut off, which pyclipper does not have."""
+    """Return a figure grown with bevelled corners, which pyclipper lacks."""
     loops = figure.to_polygons()
     scale = _scale(loops, delta, _MANIFOLD_REACH)
     scaled = [loop * scale for loop in loops]
@@ -128,17 +128,16 @@ def _bevelled(figure: Region, delta: float) -> Region:
 
 
 def cleaned(figures: Sequence[Region]) -> Region:
-    """Return the union of figures as OpenSCAD has it, without the slits and spikes it cleans away.
+    """Return the union of figures like OpenSCAD, without the slits and spikes that it removes.
 
-    Six digits put the sides of turned shapes a hair apart or across each other. To shrink such a
-    figure widens the hair to a cut, and to grow it with mitres draws it out to a spike. What is
-    left differs from the union by less than a thousandth of a unit. Figures that rounding leaves
-    without an area are left out.
+    With six digits, the sides of rotated shapes may have tiny gaps or overlaps. Shrinking such a
+    figure widens a gap to a slit, and growing it with mitres makes spikes. The result differs from
+    the union by less than a thousandth of a unit. Figures without area after rounding are dropped.
 
     Raises
     ------
     LimitError
-        If a coordinate is beyond what can be counted; code ``"too_large"``.
+        If a coordinate exceeds the integer range; code ``"too_large"``.
     """
     loops = [loop for figure in figures for loop in figure.to_polygons()]
     largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
@@ -157,14 +156,14 @@ def cleaned(figures: Sequence[Region]) -> Region:
 
 
 def _has_area(path: list[list[int]]) -> bool:
-    """Say whether the corners of a path are not all on one line, as Clipper asks of each."""
+    """Say whether the corners of a path are not collinear, which Clipper requires."""
     (x, y), *others = path
     arms = [(u - x, v - y) for u, v in others if (u, v) != (x, y)]
     return any(arms[0][0] * v != arms[0][1] * u for u, v in arms[1:])
 
 
 def stroked(line: FloatArray, width: float, cap: str, join: str = "miter") -> Region:
-    """Return what a pen draws along a line, with the corners that OpenSCAD gives it.
+    """Return the stroke of a line, with corners like OpenSCAD's.
 
     Parameters
     ----------
@@ -190,6 +189,6 @@ def _whole_numbers(loops: list[FloatArray], scale: float) -> list[Any]:
 
 
 def _scale(loops: list[FloatArray], delta: float, reach: float = _REACH) -> float:
-    """Return the power of two that brings coordinates near the reach of a library."""
+    """Return the power of two that scales coordinates to nearly the range of a library."""
     largest = max(float(np.abs(loop).max()) for loop in loops) + abs(delta)
     return float(2.0 ** np.floor(np.log2(reach / largest)))

@@ -1,4 +1,4 @@
-"""Shadows of solids."""
+"""Projections of solids."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from ...solid.solid import Solid
 def shadow(body: Solid) -> Region:
     """Return the projection of a solid along z (see `Solid.project`).
 
-    It is what the triangles cover that face upwards; the edges they share with each other cancel.
+    It is the area of the triangles that face upwards; their common edges cancel.
     """
     mesh = body.normalized().to_mesh()
     a, b, c = (mesh.vertices[mesh.faces[:, k]][:, :2] for k in range(3))

@@ -1,4 +1,4 @@
-"""Outlines with fewer corners."""
+"""Simplification of outlines."""
 
 import numpy as np
 
@@ -19,14 +19,14 @@ def simplify_region(figure: Region, tolerance: Scalar) -> Region:
 
 
 def thinned_loop(loop: FloatArray, tolerance: float) -> FloatArray:
-    """Return the corners of a closed loop that its shape within a tolerance needs.
+    """Return the corners of a closed loop that are necessary for its shape within a tolerance.
 
     Notes
     -----
-    Between its first corner and the one farthest from that, each half of the loop is divided at the
-    corner farthest from its chord, until none is farther than the tolerance (Ramer 1972, Douglas
-    and Peucker 1973). The distances are those to the chord itself, not to its line, so that every
-    point of one loop is as near to the other.
+    The loop is cut at its first corner and the corner farthest from it. Each half is divided at the
+    corner farthest from its chord, until all are within the tolerance (Ramer 1972, Douglas and
+    Peucker 1973). Distances are measured to the chord, not to its line, so the tolerance holds for
+    every point of both loops.
     """
     count = len(loop)
     far = int(np.linalg.norm(loop - loop[0], axis=1).argmax())
@@ -48,7 +48,7 @@ def thinned_loop(loop: FloatArray, tolerance: float) -> FloatArray:
 
 
 def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """Return how far points are from the segment between two."""
+    """Return the distances of points from a segment."""
     along = end - start
     length = float(along @ along)
     part = np.clip((points - start) @ along / length, 0, 1) if length else np.zeros(len(points))

@@ -12,10 +12,10 @@ _MAX_PART_PAIRS = 20_000
 
 
 def sum_of_regions(a: Region, b: Region) -> Region:
-    """Return all points that are a point of one region plus one of the other.
+    """Return the Minkowski sum of two regions.
 
-    Regions that are not convex are divided into convex parts. The sums of parts are the hulls of
-    the sums of their corners, and these are united.
+    Regions that are not convex are divided into convex parts. The sum of two parts is the hull of
+    the sums of their corners; these hulls are united.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The lecture as one page: prose, figures, and the core that the figures call."""
+"""The lecture as one page: text, figures, and the WebAssembly core that the figures call."""
 
 import base64
 import re

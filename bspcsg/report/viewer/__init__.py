@@ -1,1 +1,1 @@
-"""Meshes to turn in a browser."""
+"""Interactive 3D views of meshes in a browser."""

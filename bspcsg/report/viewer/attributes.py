@@ -1,4 +1,4 @@
-"""The look of a mesh's attributes: its materials, colours, labels and numbers as paints."""
+"""Attributes of a mesh as paints: materials, colours, labels and numbers."""
 
 from collections.abc import Iterator
 
@@ -21,7 +21,7 @@ _PLAIN = Material((0.7, 0.76, 0.82, 1.0))
 
 
 def paints_of(said: Attributes | None) -> tuple[Paint, ...]:
-    """Return paints for what is said of a mesh, colours and materials first."""
+    """Return paints for the attributes of a mesh, colours and materials first."""
     if said is None or said.is_empty:
         return ()
     found = [paint for paint in _each(said) if paint is not None]
@@ -56,7 +56,7 @@ def _materials(said: Attributes) -> Labels:
 
 
 def _labels(name: str, values: Values) -> Paint | None:
-    """Return whole numbers, texts and truth values of faces as labels if they are not too many."""
+    """Return integers, texts and truth values of faces as labels, unless there are too many."""
     if values.dtype.kind == "f":
         return _scale(name, values)
     kinds, numbers = np.unique(values, return_inverse=True)

@@ -1,4 +1,4 @@
-"""A mesh with what is wrong with it marked: holes, crossings, thin walls."""
+"""A mesh with marked defects: holes, crossings, thin walls."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -28,13 +28,13 @@ _BEHIND = 0.45
 def marked(
     raw: RawMesh, found: Diagnosis, thin: float | None = None
 ) -> tuple[list[Layer], list[Landmark]]:
-    """Return what shows a mesh and what a check has found in it, and the places to look at.
+    """Return layers of a mesh and of the defects found in it, and landmarks for the defects.
 
     Parameters
     ----------
     raw : RawMesh
     found : Diagnosis
-        Of that mesh.
+        The diagnosis of that mesh.
     thin : float, optional
         Thickness in model units below which a wall is marked.
     """
@@ -55,7 +55,7 @@ def marked(
 
 
 def assembled(whole: Examination) -> tuple[list[Layer], list[Landmark]]:
-    """Return what shows the objects of a file together, and where they have volume in common."""
+    """Return layers of the objects of a file, and landmarks at their overlaps."""
     layers = told_apart(layers_of_file(whole.mesh, whole.mesh.name))
     places = [
         Landmark(f"clash: {one.first}, {one.second}", one.place, 2 * one.volume ** (1 / 3))
@@ -88,7 +88,7 @@ def _marked(marks: Marks) -> Iterator[Layer]:
 
 
 def _outlined(marks: Marks, faces: IndexArray, name: str, colour: str) -> Layer:
-    """Return some of the faces with their edges as lines, for they may have no area."""
+    """Return some faces with their edges as lines, since faces may have no area."""
     used, renumbered = compacted(marks.faces[faces])
     lines = np.stack([renumbered, np.roll(renumbered, -1, axis=1)], axis=-1).reshape(-1, 2)
     return Layer(name, marks.vertices[used], renumbered, colour, lines=lines)
@@ -113,7 +113,7 @@ def _thinnest(marks: Marks, walls: FloatArray) -> list[Landmark]:
 
 
 def _holes(marks: Marks) -> Iterator[Landmark]:
-    """Yield the holes, the longest around first."""
+    """Yield the holes, those with the longest outline first."""
     if not len(marks.open):
         return
     counts = np.bincount(marks.holes)

@@ -1,4 +1,4 @@
-"""The page of two solids over each other, with what only one of them has."""
+"""The page of two superimposed solids and their differences."""
 
 from collections.abc import Sequence
 
@@ -33,7 +33,7 @@ def compared_page(
     notes: Sequence[str] = (),
     unit: str = "",
 ) -> str:
-    """Return a page that shows two solids, and what only one of them has.
+    """Return a page that shows two solids, and the parts that only one of them has.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def _landmarks(found: SetComparison) -> list[Landmark]:
 
 
 def _distances(mesh: Mesh, other: Mesh) -> tuple[Scale, ...]:
-    """Return how far the corners of a mesh are from another, unless there are too many."""
+    """Return the distance of each vertex of a mesh from another mesh, unless there are too many."""
     used = np.unique(mesh.faces)
     if len(used) > _MAX_VERTICES_MEASURED or not len(other.faces):
         return ()

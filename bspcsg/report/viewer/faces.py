@@ -1,4 +1,4 @@
-"""One colour for each face of layers, as pictures take them."""
+"""One colour for each face of layers, for pictures."""
 
 import io
 from collections.abc import Sequence
@@ -35,8 +35,8 @@ def face_colours(layers: Sequence[Layer], name: str | None = None) -> FloatArray
     ----------
     layers : sequence of Layer
     name : str, optional
-        Of a paint, or "part"; by default the materials or colours that layers have. Layers without
-        such a paint have their own colour.
+        The name of a paint, or "part"; by default the materials or colours of the layers. Layers
+        without the paint have their own colour.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def face_colours(layers: Sequence[Layer], name: str | None = None) -> FloatArray
 
 
 def are_textured(layers: Sequence[Layer]) -> bool:
-    """Say whether layers look like pictures, of which each face shows one colour only."""
+    """Say whether a layer has textures, of which each face shows only one colour here."""
     paints = [paint for layer in layers for paint in layer.paints]
     return any(
         isinstance(paint, Labels) and paint.uv is not None and any(paint.images)
@@ -89,7 +89,7 @@ def _of_paint(paint: Paint) -> FloatArray:
 
 
 def _textures(paint: Labels) -> FloatArray:
-    """Return what the pictures show in the middle of each face; white where there is none."""
+    """Return the colour of the picture in the middle of each face; white for faces without one."""
     found = np.ones((len(paint.numbers), 3))
     uv = np.zeros((len(found), 2)) if paint.uv is None else paint.uv.mean(axis=1)
     for label, data in enumerate(paint.images):
@@ -104,7 +104,7 @@ def _textures(paint: Labels) -> FloatArray:
 
 
 def _pixels(data: bytes) -> npt.NDArray[np.uint8] | None:
-    """Return a picture's pixels, (h, w, 3), or None if it cannot be read."""
+    """Return the pixels of a picture, (h, w, 3), or None if it cannot be read."""
     try:
         from PIL import Image
 

@@ -1,4 +1,4 @@
-"""`Landmark`: a point of a model that somebody may want to look at."""
+"""`Landmark`: a point of interest of a model."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ class Landmark:
     at : (3,) float64
         In model units.
     size : float
-        The distance around it that is to be seen, in model units.
+        The radius of the surroundings to show, in model units.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""`Layer`: one mesh of a view, and how it looks there."""
+"""`Layer`: one mesh of a view, with its appearance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -33,7 +33,7 @@ class Layer:
     shown : bool
         True if it is seen at first.
     paints : tuple of Paint
-        Other ways to colour its faces, which the page offers.
+        Other colourings of its faces that the page offers.
     lines : (k, 2) int64
         Pairs of vertices, drawn as thick lines in front of all.
     """
@@ -49,7 +49,7 @@ class Layer:
 
     @property
     def is_closed(self) -> bool:
-        """True if every directed edge has as many opposite ones, so that a section is filled."""
+        """True if every directed edge has equally many opposites, so that a section is filled."""
         start, end = self.faces.ravel(), np.roll(self.faces, -1, axis=1).ravel()
         size = max(len(self.vertices), 1)
         low, high = np.minimum(start, end), np.maximum(start, end)
@@ -57,12 +57,12 @@ class Layer:
         return not np.bincount(edge.ravel(), np.sign(end - start)).any()
 
     def simplified(self, cells: int) -> "Layer":
-        """Return the layer with the vertices in each cell made one, so many cells a side."""
+        """Return the layer with the vertices in each grid cell merged, `cells` along a side."""
         if len(self.faces) == 0:
             return self
         low, high = bounds_of([self])
         step = max(float((high - low).max()), np.finfo(np.float64).tiny) / cells
-        # In the order of the vertices, so that neighbours stay close to each other and pack well.
+        # Keep the order of the vertices, so that neighbours stay close and compress well.
         _, same = welded(np.rint((self.vertices - low) / step))
         counts = np.bincount(same)[:, None]
         sums = [np.bincount(same, axis) for axis in (self.vertices - low).T]
@@ -78,7 +78,7 @@ class Layer:
 
 
 def drawn_points(layers: Sequence[Layer]) -> FloatArray:
-    """Return the vertices that are drawn, (n, 3) float64; of layers without any the origin."""
+    """Return the vertices that are drawn, (n, 3) float64; the origin if there are none."""
     drawn = [np.union1d(layer.faces, layer.lines) for layer in layers]
     used = [layer.vertices[some] for layer, some in zip(layers, drawn, strict=True) if len(some)]
     return np.concatenate(used) if used else np.zeros((1, 3))

@@ -31,9 +31,9 @@ _SIZE = (480, 360)
 
 
 def solid_html(solid: "Solid") -> str | None:
-    """Return the interactive view of a solid, or a sentence where there is nothing to be seen.
+    """Return the interactive view of a solid, or a sentence if there is nothing to see.
 
-    None if Jinja2 is not installed: a notebook then takes the picture.
+    Return None if Jinja2 is not installed: the notebook then shows the picture.
     """
     sentence = _obstacle(solid)
     if sentence:
@@ -50,9 +50,9 @@ def solid_html(solid: "Solid") -> str | None:
 
 
 def framed(layers: Sequence[Layer], title: str) -> str:
-    """Return the interactive view of layers in a frame.
+    """Return the interactive view of layers, in a frame.
 
-    In a notebook all views have one viewer, which comes with the first.
+    All views of a notebook share one viewer, which the first view contains.
     """
     cell = running_cell()
     shared = "" if cell is None else viewer_name()
@@ -65,9 +65,9 @@ def framed(layers: Sequence[Layer], title: str) -> str:
 
 
 def solid_svg(solid: "Solid") -> str | None:
-    """Return a picture of a solid as SVG; above some thousand triangles it shows the shape only.
+    """Return a picture of a solid as SVG; above some thousand triangles it is simplified.
 
-    None in a notebook that has pixels, too: it stores all forms that there are.
+    Return None in a notebook that takes PNG, too, since it would store both forms.
     """
     sentence = _obstacle(solid)
     if sentence:
@@ -76,7 +76,7 @@ def solid_svg(solid: "Solid") -> str | None:
 
 
 def solid_png(solid: "Solid") -> bytes | None:
-    """Return the same picture as PNG; None where there is nothing to be seen, or no Pillow."""
+    """Return the same picture as PNG; None if there is nothing to see, or no Pillow."""
     return None if _obstacle(solid) else _png(_picture(solid))
 
 
@@ -86,7 +86,7 @@ def region_svg(region: "Region") -> str | None:
 
 
 def region_png(region: "Region") -> bytes | None:
-    """Return the same picture as PNG; None without Pillow, too."""
+    """Return the same picture as PNG; None also without Pillow."""
     return None if region.is_empty or not region.is_bounded else _png(_figure(region))
 
 
@@ -95,7 +95,7 @@ def _picture(solid: "Solid") -> "Picture":
 
 
 def slab(region: "Region") -> Layer:
-    """Return a region as a slab, of which it is what one sees from above."""
+    """Return a region as a slab, whose top is the region."""
     low, high = held(region.bounds, "the bounds of a region")
     mesh = region.extrude(float((high - low).max())).to_mesh()
     return Layer("region", mesh.vertices, mesh.faces)
@@ -123,7 +123,7 @@ def _has_pillow() -> bool:
 
 
 def _obstacle(solid: "Solid") -> str:
-    """Return why a solid has no boundary that can be shown, or nothing."""
+    """Return the reason why a solid cannot be shown, or nothing."""
     if not solid.is_bounded:
         return "This solid reaches to infinity; intersect it with a box to see a part of it."
     return "This solid is empty." if len(solid.to_mesh().faces) == 0 else ""

@@ -1,8 +1,8 @@
-"""Models as JSON values that the viewer in a page unpacks: `assets/viewer/unpacking.js` does it.
+"""Models as JSON values for the viewer in a page; `assets/viewer/unpacking.js` unpacks them.
 
-Coordinates are whole numbers of 16 bits in the box of the whole model, so that layers which touch
-still do, or single precision about its middle; whole numbers are stored as steps from one to the
-next. Bytes of equal weight lie together, which lets gzip find more.
+Coordinates are 16-bit numbers in the box of the whole model, so that layers that touch still touch,
+or single precision relative to its middle. Integers are stored as differences. Bytes of equal
+significance lie together, which improves compression by gzip.
 """
 
 import base64
@@ -42,7 +42,7 @@ def packed(
     paint : str
         The name of the paint that is on at first.
     landmarks : iterable of Landmark
-        The places that somebody may want to look at.
+        The points of interest.
     """
     low, high = bounds_of(layers)
     middle, side = low + (high - low) / 2, high - low
@@ -75,7 +75,7 @@ def packed(
 
 
 def compressed(data: bytes) -> str:
-    """Return the text of compressed bytes; the same for the same bytes, whenever it is made."""
+    """Return compressed bytes as text, reproducibly."""
     return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
 
 
@@ -94,7 +94,7 @@ def _looks(layer: Layer) -> dict[str, Any]:
 
 
 def _look(paint: Paint) -> dict[str, Any]:
-    """Return all of a paint but its values."""
+    """Return the description of a paint without its values."""
     if isinstance(paint, Colours):
         return {"name": paint.name, "kind": "colours", "at": paint.at}
     if isinstance(paint, Scale):
@@ -132,9 +132,9 @@ def _painted(paint: Paint) -> list[bytes]:
 
 
 def _steps(placed: FloatArray, half: FloatArray) -> bytes:
-    """Return coordinates from -half to half as differences of whole numbers."""
+    """Return coordinates from -half to half as differences of integers."""
     scale = _STEPS / np.where(half > 0, 2 * half, np.inf)
-    # A side without length has all its points in the middle, wherever that is rounded to.
+    # A side without length has all its points in the middle.
     whole = np.clip(np.rint((placed + half) * scale), 0, _STEPS).astype(np.int64).T
     return _planes(np.diff(whole, axis=1, prepend=0).astype(np.uint16))
 

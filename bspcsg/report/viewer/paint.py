@@ -1,4 +1,4 @@
-"""Ways to colour the faces of a layer: by labels, on a scale, or in colours of their own."""
+"""Paints, which colour the faces of a layer: by labels, on a scale, or with explicit colours."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -36,13 +36,13 @@ class Labels:
     ----------
     name : str
     numbers : (m,) int64
-        Of the label of each face.
+        The number of the label of each face.
     labels, colours : sequence of str
         Colours as ``"#rrggbb"``, or ``"#rrggbbaa"`` with an opacity.
     uv : (m, 3, 2) float64, optional
-        The corners' places in the picture of their label, from its left and from below.
+        Texture coordinates of the corners in the picture of their label, from the lower left.
     images : sequence of bytes or None
-        A PNG or JPEG file for each label, where there is one.
+        The PNG or JPEG file of each label, if it has one.
     """
 
     name: str
@@ -66,7 +66,7 @@ class Scale:
     ----------
     name : str
     values : (m,) or (m, 3) float64
-        NaN where nothing is known.
+        NaN for unknown values.
     stops : sequence of str
         Colours from the lowest to the highest value, evenly spaced.
     """
@@ -87,7 +87,7 @@ class Scale:
 
     @property
     def high(self) -> float:
-        """The value of the last colour; larger ones have it, too."""
+        """The value of the last colour, which larger values have, too."""
         if not len(self._known):
             return 0.0
         largest, typical = float(self._known.max()), float(np.median(self._known))
@@ -103,7 +103,7 @@ class Scale:
         return self.values[np.isfinite(self.values)]
 
     def steps(self, most: int) -> npt.NDArray[np.uint16]:
-        """Return values as whole numbers from 1 to `most`, 0 where nothing is known."""
+        """Return values as integers from 1 to `most`, 0 for unknown ones."""
         low, side = self.low, self.high - self.low
         known = np.isfinite(self.values)
         share = (np.where(known, self.values, low) - low) / (side or 1.0)
@@ -123,7 +123,7 @@ class Colours:
     ----------
     name : str
     values : (m, 4) or (m, 3, 4) uint8
-        Red, green, blue and opacity, as a screen shows them.
+        Red, green, blue and opacity, in sRGB.
     """
 
     name: str

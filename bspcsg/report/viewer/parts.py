@@ -1,4 +1,4 @@
-"""Layers for what is to be seen: objects of a file, and the solid that a script makes."""
+"""Layers of the objects of a file, and of the solid of a script."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,9 +28,9 @@ ORIGIN = "origin"
 
 
 def layers_of_file(raw: RawMesh, name: str) -> list[Layer]:
-    """Return a layer for each object of a file, without colours that tell them apart.
+    """Return a layer for each object of a file, without distinct colours.
 
-    Corners with equal coordinates become one, so that shading and edges see whether faces meet.
+    Vertices with equal coordinates are merged, so that shading and edges find adjacent faces.
     """
     faces, objects = raw.faces, [one for one in raw.objects if one[1]]
     vertices = raw.vertices
@@ -55,7 +55,7 @@ def _taken(said: Attributes, faces: IndexArray) -> Attributes:
 
 
 def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
-    """Return the layer of a solid, which can be coloured by the operand that faces come from."""
+    """Return the layer of a solid, with a paint by the operand that each face comes from."""
     mesh = solid.normalized().to_mesh()
     layers = layers_of_file(replace(saying(mesh, said_of(mesh)), name=name), name)
     found = _operands(solid)
@@ -67,7 +67,7 @@ def layers_of_solid(solid: Solid, name: str) -> list[Layer]:
 
 
 def with_origin(solid: Solid) -> Solid:
-    """Return a solid whose faces say which operand they come from, and go on doing so."""
+    """Return a solid whose faces keep an attribute that names the operand they come from."""
     found = _operands(solid)
     if not found:
         return solid
@@ -84,7 +84,7 @@ def with_origin(solid: Solid) -> Solid:
 
 
 def _operands(solid: Solid) -> list[str]:
-    """Return what to call the operands of the operation that made a solid; none if it was none."""
+    """Return names for the operands of the operation that made a solid, if there was one."""
     last = solid.last_operation
     if last is None or not 1 < len(last.operands) <= _MAX_OPERANDS_COLOURED:
         return []
@@ -99,13 +99,13 @@ def _size(operand: Solid) -> str:
 
 
 def with_thickness(layer: Layer) -> Layer:
-    """Return a layer that can be coloured by thickness."""
+    """Return a layer with a paint by thickness."""
     values = thickness(layer.vertices, layer.faces)
     return replace(layer, paints=(*layer.paints, Scale("thickness", values, THICKNESS)))
 
 
 def told_apart(layers: Sequence[Layer]) -> list[Layer]:
-    """Return layers with a colour each; a single one has that of results."""
+    """Return layers with distinct colours; a single layer has the colour of results."""
     if len(layers) == 1:
         return [replace(layers[0], colour=RESULT)]
     return [

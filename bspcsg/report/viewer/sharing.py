@@ -1,8 +1,8 @@
-"""Views in the cells of a notebook, of which one holds the viewer for all.
+"""Views in the cells of a notebook, where one cell holds the viewer for all.
 
-Each view is a frame with a picture of its own. Its page asks the page around it for the viewer,
-and that answers as soon as the cell is there that holds it, also in a notebook that was saved and
-opened again.
+Each view is a frame with its own picture. Its page asks the enclosing page for the viewer, which
+answers as soon as the cell with the viewer is present, also in a notebook that was saved and
+reopened.
 """
 
 import sys
@@ -24,7 +24,7 @@ class Cell:
     Parameters
     ----------
     place : str
-        What the cell is known by; it stays when the cell runs again.
+        The identity of the cell, which stays when the cell runs again.
     run : str
     """
 
@@ -33,13 +33,13 @@ class Cell:
 
 
 class Notebook:
-    """A notebook, and the cell of it that holds the viewer."""
+    """A notebook, with the cell that holds the viewer."""
 
     def __init__(self) -> None:
         self._holder: Cell | None = None
 
     def script(self, cell: Cell) -> str:
-        """Return the viewer for all frames, where a cell is the first, or has to hold it again."""
+        """Return the viewer for all frames if this cell has to hold it, else nothing."""
         holder = self._holder
         if holder is not None and (holder.place != cell.place or holder.run == cell.run):
             return ""
@@ -53,30 +53,30 @@ NOTEBOOK = Notebook()
 
 
 def viewer_name() -> str:
-    """Return what frames ask for: notebooks may hold viewers of several versions."""
+    """Return the name by which frames ask for the viewer; it differs between versions."""
     return f"bspcsg-{sha256(bundle().encode()).hexdigest()[:12]}"
 
 
 def running_cell() -> Cell | None:
-    """Return the cell that is running, if this is a notebook whose cells are on one page."""
+    """Return the running cell, if this is a notebook with all cells on one page."""
     shell = _shell()
     if shell is None or any(name in sys.modules for name in _APART):
         return None
     parent: Any = getattr(shell, "get_parent", dict)()
     told = parent if isinstance(parent, Mapping) else {}
     place, run = told.get("metadata", {}).get("cellId"), told.get("header", {}).get("msg_id")
-    # Frontends that give cells no names are known by what is written in them.
+    # If a frontend gives cells no names, the code of the cell identifies it.
     written = getattr(shell, "user_ns", {}).get("In") or [""]
     return Cell(str(place or written[-1]), str(run or getattr(shell, "execution_count", "")))
 
 
 def is_notebook() -> bool:
-    """Say whether this is the kernel of a notebook, which shows what it is given."""
+    """Say whether this process is the kernel of a notebook, which displays output."""
     return _shell() is not None
 
 
 def _shell() -> Any:
-    """Return IPython's shell in a kernel; whoever runs one has imported it."""
+    """Return IPython's shell if this is a kernel; a kernel has imported IPython."""
     ipython: Any = sys.modules.get("IPython")
     shell = None if ipython is None else ipython.get_ipython()
     return shell if getattr(shell, "kernel", None) is not None else None

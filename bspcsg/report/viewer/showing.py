@@ -1,4 +1,4 @@
-"""What is shown to whoever runs a program: in a notebook's cell, or on a page in a browser."""
+"""The function `show`: it displays things in a notebook, or on a page in a browser."""
 
 import sys
 from collections.abc import Iterator
@@ -34,7 +34,7 @@ def _seen(thing: Any) -> Solid | Region | Assembly:
 
 
 def _open(layers: list[Layer]) -> None:
-    """Open a page in the browser, or say on standard error where it is."""
+    """Open a page in the browser, or print its path on standard error."""
     path = temporary_page("show")
     page = view_page(told_apart(layers), ", ".join(layer.name for layer in layers))
     write_file(path, [page.encode("utf-8", "replace")])

@@ -1,4 +1,4 @@
-"""Small pictures of layers by the painter's algorithm, as addresses that hold the picture."""
+"""Small pictures of layers by the painter's algorithm, as data URLs."""
 
 import base64
 import io
@@ -34,7 +34,7 @@ _QUALITY, _EFFORT = 66, 3
 
 
 def camera_for(layers: Sequence[Layer], size: tuple[int, int], view: View = "iso") -> Camera:
-    """Return a camera that sees all layers, by default from the right front top."""
+    """Return a camera that sees all layers, by default from the front, right and above."""
     return Camera.named(view, drawn_points(layers), size[0] / size[1])
 
 
@@ -44,7 +44,7 @@ def still(
     size: tuple[int, int] = (320, 240),
     edges: bool = True,
 ) -> str:
-    """Return a picture of opaque layers as the address of an image, or nothing if it is too large.
+    """Return a picture of opaque layers as a data URL, or nothing if it is too large.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def still(
     size : (int, int)
         Width and height in pixels.
     edges : bool
-        True to draw those that show the shape, if they are not too many.
+        True to draw the feature edges, unless there are too many.
     """
     if not any(len(layer.faces) for layer in layers):
         return ""
@@ -70,7 +70,7 @@ def still(
 
 
 def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "iso") -> Picture:
-    """Return a picture; of more than so many triangles it shows the rough shape.
+    """Return a picture; above `most` triangles it shows a simplified shape.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def rough_picture(layer: Layer, size: tuple[int, int], most: int, view: View = "
 def rings(
     places: Sequence[Sequence[float]], camera: Camera, size: tuple[int, int] = (320, 240)
 ) -> str:
-    """Return the address of an image with a red ring around each point, as the camera sees it."""
+    """Return a data URL of an image with a red ring around each point, as the camera sees it."""
     width, height = size
     flat = camera.flatten(camera.place(np.array(places))) * (height / 2)
     circles = "".join(
@@ -127,7 +127,7 @@ def _vector(svg: str) -> str:
 
 
 def _pixels(painted: Picture) -> str:
-    """Return the picture as WebP, or nothing if Pillow is not there."""
+    """Return the picture as WebP, or nothing without Pillow."""
     try:
         from PIL import Image
     except ImportError:

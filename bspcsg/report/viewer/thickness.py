@@ -10,7 +10,7 @@ _INSIDE = 1e-7
 
 
 def thickness(vertices: FloatArray, faces: IndexArray) -> FloatArray:
-    """Return the way from each face's middle straight through the solid to the other side, (m,).
+    """Return the distance from each face's middle through the solid to the opposite side, (m,).
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ def thickness(vertices: FloatArray, faces: IndexArray) -> FloatArray:
     Returns
     -------
     (m,) float64
-        In model units; NaN where there is no other side, or the face has no area.
+        In model units; NaN if there is no opposite side, or the face has no area.
     """
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

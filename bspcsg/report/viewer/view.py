@@ -1,4 +1,4 @@
-"""The page of one model: the interactive view, and a picture where that is not to be had."""
+"""The page of one model: the interactive view, with a picture as a fallback."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,7 @@ def view_page(
     live: str = "",
     shared: str = "",
 ) -> str:
-    """Return a page that shows meshes, whole in one file.
+    """Return a page that shows meshes, as one self-contained file.
 
     Parameters
     ----------
@@ -33,17 +33,17 @@ def view_page(
     unit : str
         The unit of lengths.
     embedded : bool
-        Leave out what a notebook's cell has no room for.
+        True to omit the parts for which a notebook cell has no room.
     paint : str
-        The name of the paint that is on at first; by default colours and materials, if there are.
+        The initial paint; by default colours and materials, if there are any.
     landmarks : sequence of Landmark
-        The places that the page offers to look at.
+        The points of interest that the page offers.
     notes : sequence of str
         Sentences below the title.
     live : str
-        The address at which the page asks whether it is out of date, on the server that it is from.
+        The address on its server at which the page checks whether it is out of date.
     shared : str
-        The name of a viewer that the page around this one holds; by default the page has its own.
+        The name of a viewer in the enclosing page; by default the page contains its own.
 
     Raises
     ------
@@ -67,6 +67,6 @@ def view_page(
 
 
 def _own_colours(layers: Sequence[Layer]) -> str:
-    """Return the paint that shows layers as their files say they look, if one does."""
+    """Return the paint that shows layers with the look from their files, if there is one."""
     names = {paint.name for layer in layers for paint in layer.paints}
     return next((name for name in OWN if name in names), "")

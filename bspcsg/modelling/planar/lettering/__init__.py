@@ -1,1 +1,1 @@
-"""Text as figures of the plane: which font, which glyphs, where they go."""
+"""Text as plane figures: fonts, glyphs and their layout."""

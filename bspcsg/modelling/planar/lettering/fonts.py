@@ -1,4 +1,4 @@
-"""The file of a font: ours, one that is named by its path, or one of the system's."""
+"""The file of a font: the bundled one, one given by path, or one of the system."""
 
 import os
 import re
@@ -32,13 +32,13 @@ _TIMEOUT = 120.0
 
 
 class FontFile(NamedTuple):
-    """A font of a file.
+    """A font in a file.
 
     Parameters
     ----------
     path : Path
     face : int
-        Its number among those of the file.
+        Its number in the file.
     """
 
     path: Path
@@ -52,17 +52,17 @@ def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
     ----------
     name : str or path
         ``"Family"`` or ``"Family:style=Style"``, as fontconfig has it; empty for the font that
-        comes with the package; or the path of a font file. Where a family is not there, another one
-        counts that fontconfig knows to be of the same metrics.
+        comes with the package; or the path of a font file. If a family is missing, one that
+        fontconfig knows to have the same metrics is used.
     paths : bool
         True if a name may be a path.
 
     Raises
     ------
     InvalidParameterError
-        If no such font is there (code "unknown_font").
+        If there is no such font (code "unknown_font").
     FormatError
-        If the path is that of no file.
+        If the path names no file.
     """
     text = file_path(name, "font").strip()
     if paths and (isinstance(name, os.PathLike) or text.lower().endswith(_SUFFIXES)):
@@ -77,7 +77,7 @@ def font_file(name: str | os.PathLike[str], *, paths: bool = True) -> FontFile:
 
 
 def unknown_font(name: str) -> InvalidParameterError:
-    """Return the error for a font that is not there."""
+    """Return the error for a missing font."""
     message = (
         f"There is no font {shown(name)} on this machine. Give the path of a .ttf or .otf file, or"
         f' one of "{FAMILY}" and "{FAMILY}:style=Bold", which come with the package.'
@@ -86,19 +86,19 @@ def unknown_font(name: str) -> InvalidParameterError:
 
 
 def stand_in(name: str) -> FontFile:
-    """Return the own font that is used where one is not there: bold if that was to be."""
+    """Return the bundled font that replaces a missing one, bold if the missing one was bold."""
     _, style = _family_and_style(name)
     return _own_file("bold" if "bold" in style else "regular")
 
 
 @lru_cache(maxsize=16)
 def opened(file: FontFile) -> uharfbuzz.Font:
-    """Return a font, measured in units of its design.
+    """Open a font, with measures in design units.
 
     Raises
     ------
     FormatError
-        If the file cannot be read or holds no such font.
+        If the file cannot be read or does not contain the font.
     """
     face = uharfbuzz.Face(limited_content(file.path), file.face)
     if face.glyph_count == 0:
@@ -109,9 +109,9 @@ def opened(file: FontFile) -> uharfbuzz.Font:
 
 
 def wants_whole_pixels(file: FontFile) -> bool:
-    """Say whether a font says that its em is to be a whole number of pixels."""
+    """Say whether a font requires its em to be a whole number of pixels."""
     head = opened(file).face.reference_table("head").data or b""
-    # The flags of the table "head", of which the fourth one says so.
+    # This is bit 3 of the flags in the table "head".
     return len(head) >= _HEAD_FLAGS.stop and bool(head[_HEAD_FLAGS][1] & 8)
 
 
@@ -127,19 +127,19 @@ def _own_file(style: str) -> FontFile:
 
 
 def _family_and_style(name: str) -> tuple[str, str]:
-    """Return family and style of a name as fontconfig writes it, in small letters."""
+    """Return family and style of a name in fontconfig's notation, in lower case."""
     family, *properties = (part.strip().lower() for part in name.split(":"))
     pairs = [part.rpartition("=") for part in properties]
-    # A word alone is a style, too.
+    # A single word is also a style.
     styles = [value.strip() for key, _, value in pairs if key.strip() in ("", "style")]
     return family, " ".join(styles)
 
 
 @lru_cache(maxsize=64)
 def _fontconfig(name: str) -> FontFile | None:
-    """Return what fontconfig has of this family, or of one that it counts as the same.
+    """Return fontconfig's font of this family, or of an equivalent one.
 
-    None without fontconfig, too.
+    Also return None without fontconfig.
     """
     told = _answer("fc-match", "-f", "%{index}\n%{file}\n%{family}", "--", name)
     index, path, families = [*told.split("\n", 2), "", "", ""][:3]
@@ -150,15 +150,15 @@ def _fontconfig(name: str) -> FontFile | None:
         if own is not None:
             return own
         if like in there:
-            # Beyond 16 bits is the number of a variable font's instance.
+            # The bits above the lower 16 are the number of a variable font's instance.
             return FontFile(Path(path), int(index or 0) & 0xFFFF)
     return None
 
 
 def _equals(name: str) -> list[str]:
-    """Return the families that fontconfig counts as the same as one, in small letters.
+    """Return the families that fontconfig treats as equivalent to one, in lower case.
 
-    Their metrics are equal: it binds them as strongly as the name itself.
+    Their metrics are equal: fontconfig binds them as strongly as the name itself.
     """
     lines = _answer("fc-pattern", "-c", "--", name).splitlines()
     families = [line for line in lines if line.strip().startswith("family:")]
@@ -166,7 +166,7 @@ def _equals(name: str) -> list[str]:
 
 
 def _answer(program: str, *arguments: str) -> str:
-    """Return what a program of fontconfig says; nothing without it, or if the name is no name."""
+    """Return the output of a fontconfig program; nothing without it or for an invalid name."""
     path, name = shutil.which(program), arguments[-1]
     if path is None or not name.isprintable() or len(name) > _MAX_NAME_CHARACTERS:
         return ""

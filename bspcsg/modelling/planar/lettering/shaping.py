@@ -1,4 +1,4 @@
-"""Glyphs in their places, by HarfBuzz."""
+"""The layout of glyphs by HarfBuzz."""
 
 from typing import NamedTuple, TypeAlias
 
@@ -13,7 +13,7 @@ _Stroke: TypeAlias = list[tuple[float, float]]
 
 
 class Writing(NamedTuple):
-    """The direction, script and language of text; what is empty follows from the text.
+    """The direction, script and language of text; empty ones follow from the text.
 
     Parameters
     ----------
@@ -31,16 +31,16 @@ class Writing(NamedTuple):
 
 
 class PlacedGlyph(NamedTuple):
-    """A glyph of a line of text, in units of its font's design.
+    """A glyph of a line of text, in design units of its font.
 
     Parameters
     ----------
     glyph : int
-        0 if the font does not have the letter.
+        0 if the font lacks the letter.
     cluster : int
         The number of its first letter in the text.
     offset, advance : (2,) float64
-        From where the pen is to where the glyph is, and to where the pen is next.
+        Vectors from the pen to the glyph, and to the next position of the pen.
     """
 
     glyph: int
@@ -56,7 +56,7 @@ def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[Plac
     buffer.guess_segment_properties()
     if writing.direction:
         buffer.direction = writing.direction
-    # What it guesses is that of the machine.
+    # HarfBuzz would guess the language of the machine.
     buffer.language = writing.language
     if writing.script:
         buffer.script = writing.script
@@ -75,7 +75,7 @@ def shaped(font: uharfbuzz.Font, text: str, writing: Writing) -> tuple[list[Plac
 
 
 class Glyph:
-    """The outlines of a glyph, in units of its font's design.
+    """The outlines of a glyph, in design units of its font.
 
     Parameters
     ----------
@@ -94,14 +94,14 @@ class Glyph:
 
     @property
     def bounds(self) -> FloatArray:
-        """Lowest and highest coordinates of control points, (2, 2) float64; zeros if it is bare."""
+        """Lowest and highest coordinates of control points, (2, 2) float64; zeros for none."""
         points = [p for contour in self._contours for stroke in contour for p in stroke]
         if not points:
             return np.zeros((2, 2))
         return np.array([np.min(points, axis=0), np.max(points, axis=0)])
 
     def loops(self, steps: int) -> list[FloatArray]:
-        """Return the corners of each outline, curves taken in so many steps."""
+        """Return the corners of each outline, with `steps` chords for each curve."""
         loops = []
         for contour in self._contours:
             parts = [

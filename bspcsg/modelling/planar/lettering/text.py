@@ -1,4 +1,4 @@
-"""Text as a figure of the plane."""
+"""Text as a plane figure."""
 
 import math
 import os
@@ -26,22 +26,22 @@ EM = 100 / 72
 
 @dataclass(frozen=True)
 class Lettering:
-    """The look of a line of text, but for its font.
+    """The appearance of a line of text, apart from its font.
 
     Parameters
     ----------
     em : float
-        Of the font, in model units.
+        The em of the font, in model units.
     halign, valign : str
     spacing : float
-        The factor of distances from one letter to the next.
+        The factor of distances between letters.
     writing : Writing
     steps : int
-        Straight pieces of each curve of a glyph.
+        The number of chords of each curve of a glyph.
     ink : float
-        The factor by which glyphs are drawn larger than they should be.
+        The factor by which glyphs are enlarged.
     tightness : float
-        The factor of distances and of the measures of the line.
+        The factor of distances and of the size of the line.
     grid : float
         The reach of the line is rounded up to multiples of this, unless it is 0.
     """
@@ -57,15 +57,15 @@ class Lettering:
     grid: float = 0.0
 
     def reach(self, distance: float) -> float:
-        """Return how far a line counts as reaching, never below 0."""
+        """Return the extent of a line for alignment, never below 0."""
         steps = math.ceil(distance / self.grid) * self.grid if self.grid else distance
         return max(steps, 0.0) * self.tightness
 
 
 def steps_of(segments: float) -> int:
-    """Return how many pieces a glyph's curves have where circles of its size have `segments`.
+    """Return the number of chords of a glyph's curves, given the segments of a circle of its size.
 
-    This is OpenSCAD's rule: curves of glyphs are short, so an eighth of a circle's sides does.
+    This is OpenSCAD's rule: curves of glyphs are short, so an eighth of a circle's sides suffices.
     """
     return max(int(segments // 8) + 1, 2)
 
@@ -90,23 +90,23 @@ def text(
     string : str
         One line.
     size : float
-        About the height of capitals, in model units; as OpenSCAD has it, the em is 100/72 of it.
+        About the height of capitals, in model units; as in OpenSCAD, the em is 100/72 of it.
     font : str or path
         ``"Family"`` or ``"Family:style=Bold"`` of a font that fontconfig finds on this machine, or
-        the path of a font file. "Liberation Sans", regular and bold, comes with the package. One of
-        equal metrics stands for a font that is not there, as fontconfig knows them.
+        the path of a font file. "Liberation Sans", regular and bold, comes with the package. A
+        missing font is replaced by one that fontconfig knows to have equal metrics.
     halign : {"left", "center", "right"}
         The part of the line that is at x = 0.
     valign : {"baseline", "bottom", "center", "top"}
         The part of it that is at y = 0.
     spacing : float
-        The factor of distances from one letter to the next, above 0.
+        The factor of distances between letters, above 0.
     direction : {"ltr", "rtl", "ttb", "btt"}, optional
-        By default that of the text's own script.
+        By default the direction of the text's script.
     language : str
-        Of the text, such as ``"en"``; some fonts draw letters differently in some languages.
+        The language of the text, such as ``"en"``; some fonts have variants for some languages.
     script : str, optional
-        The four letters of ISO 15924, such as ``"Latn"``; by default that of the text.
+        The script as four letters of ISO 15924, such as ``"Latn"``; by default that of the text.
     segments : int
         Sides that a circle of this size would have. Curves of glyphs get an eighth of them and one
         more, at least two.
@@ -114,7 +114,7 @@ def text(
     Returns
     -------
     Region
-        The region that the glyphs cover, also where they overlap.
+        The union of the glyphs.
 
     Raises
     ------
@@ -151,9 +151,9 @@ def text(
 
 
 def lettered(string: str, file: FontFile, look: Lettering) -> tuple[Region, list[str]]:
-    """Return a line of text in the font of a file, and the letters that this does not have.
+    """Return a line of text in the font of a file, and the letters that the font lacks.
 
-    Glyphs that are not there look as the font says, which mostly is a box.
+    Missing glyphs get the font's substitute, usually a box.
     """
     font = opened(file)
     placed, is_horizontal = shaped(font, string, look.writing)
@@ -176,7 +176,7 @@ def lettered(string: str, file: FontFile, look: Lettering) -> tuple[Region, list
 
 
 def _places(placed: Sequence[PlacedGlyph], unit: float, spacing: float) -> list[FloatArray]:
-    """Return where each glyph is if the pen begins at the origin, and where it ends."""
+    """Return the position of each glyph if the pen starts at the origin, and the pen's end."""
     pen, places = np.zeros(2), []
     for one in placed:
         places.append(pen + one.offset * unit)
@@ -185,10 +185,11 @@ def _places(placed: Sequence[PlacedGlyph], unit: float, spacing: float) -> list[
 
 
 def _anchor(end: FloatArray, boxes: FloatArray, look: Lettering, is_horizontal: bool) -> FloatArray:
-    """Return where the first glyph's pen is: OpenSCAD's rules.
+    """Return the start of the pen, by OpenSCAD's rules.
 
-    A line along x is as wide as its glyphs advance and as high as their control points reach; one
-    along y is as high as its glyphs advance, downwards, and as wide as the widest of them.
+    The width of a line along x is the sum of its advances, and its height is the extent of control
+    points. The height of a line along y is the sum of its advances, downwards, and its width is
+    that of the widest glyph.
     """
     low, high = boxes[:, 0], boxes[:, 1]
     if is_horizontal:
