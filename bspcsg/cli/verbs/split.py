@@ -72,7 +72,7 @@ _FORMER = "explode"
 @sets
 @common
 @click.pass_context
-def split(context: click.Context, files: tuple[Path, ...], target: Path, **given: Any) -> int:
+def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Write each connected component of solids to a file of its own, the largest first.
 
     With --plane, number 1 is the side with nx x + ny y + nz z below d, number 2 the other. With
