@@ -76,6 +76,9 @@ def test_files_without_a_suffix_are_refused_before_they_are_read(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     code, _, err = ran(capsys, "union", "first", "second", "-o", f"out{suffix}")
+    assert code == 3 and "first: there is no such file or folder." in err
+    Path("first").write_bytes(b"")
+    code, _, err = ran(capsys, "union", "first", "second", "-o", f"out{suffix}")
     assert code == 3 and "first: the name needs a suffix that says the format" in err
 
 

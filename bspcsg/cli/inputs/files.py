@@ -90,6 +90,9 @@ class Inputs:
                 message = f"{path}: this is a folder; name the files in it, as in {path / '*.stl'}."
                 raise FormatError(message, "unreadable")
             if self.suffix_of(path) not in FORMATS and not self.is_script(path):
+                if not path.suffix and not path.exists():
+                    message = f"{path}: there is no such file or folder."
+                    raise FormatError(message, "unreadable")
                 format_of(path)
 
     def _refuse_programs(self, path: Path) -> None:
