@@ -76,8 +76,8 @@ MUTANTS = [
     Mutant(
         "what absorbs an expression is turned around",
         "merge/residual.rs",
-        "Known::Value(v) => is_decided |= v == absorbing,",
-        "Known::Value(v) => is_decided |= v != absorbing,",
+        "FoldedLine::Value(v) => is_decided |= v == absorbing,",
+        "FoldedLine::Value(v) => is_decided |= v != absorbing,",
         ("expressions",),
     ),
     Mutant(
@@ -96,9 +96,9 @@ MUTANTS = [
     ),
     Mutant(
         "coplanar faces that face each other add up",
-        "merge/kernels/trees/overlay.rs",
-        "        _ => -new.weight,\n",
-        "        _ => new.weight,\n",
+        "merge/kernels/trees/coverage.rs",
+        "                -fragment.weight\n",
+        "                fragment.weight\n",
         ("voxels",),
     ),
     Mutant(

@@ -210,10 +210,10 @@ def test_forbidden_files_as_the_system_tells_it(
     assert err == "bspcsg: error: a.off: cannot read this file: Permission denied.\n"
 
 
-@pytest.mark.parametrize("verb", ["compare", "split"])
+@pytest.mark.parametrize("verb", ["compare", "slice"])
 def test_folders_are_no_files(folder: Path, capsys: Capture, verb: str) -> None:
     Path("d.stl").mkdir()
-    more = {"compare": ["a.off"], "split": ["-o", "x.ply"]}[verb]
+    more = {"compare": ["a.off"], "slice": ["--z", "1", "-o", "x.svg"]}[verb]
     code, _, err = ran(capsys, verb, "d.stl", *more)
     assert code == 3 and "d.stl: cannot read this file: Is a directory." in err
 

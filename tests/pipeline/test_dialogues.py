@@ -57,7 +57,7 @@ ERRORS = [
         "none.stl: cannot read this file: No such file or directory.",
     ),
     (
-        ["split", ".", "-o", "x.ply"],
+        ["slice", ".", "--z", "1", "-o", "x.svg"],
         3,
         ".: this is a folder; name the files in it, as in *.stl.",
     ),

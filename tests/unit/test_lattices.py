@@ -37,7 +37,7 @@ def test_small_and_large_solids_meet_on_one_lattice(prepare: Callable[[Solid], S
 # Found: a mesh on a lattice that is too coarse for it, as by `union --pitch 22`, was called one
 # without area, and nothing named the lattice.
 def test_a_lattice_that_is_too_coarse_for_a_mesh_is_named() -> None:
-    with pytest.raises(b.InvalidMeshError, match=r"at the pitch 10\^22"):
+    with pytest.raises(b.InvalidMeshError, match=r"steps of 10\^22"):
         Solid(*CUBE.to_mesh(), pitch=22)
 
 

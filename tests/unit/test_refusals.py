@@ -217,6 +217,7 @@ ROWS: dict[str, Row] = {
     "Region.simplify": (R.simplify, {"tolerance": 0.1}),
     "Region.split": (R.split, {"normal": (1, 0), "offset": 1}),
     "Region.to_dxf": (R.to_dxf, {"path": "x.dxf"}),
+    "Region.save": (R.save, {"path": "x.svg"}),
     "Region.to_svg": (R.to_svg, {"path": "x.svg"}),
     "Region.transform": (R.transform, {"matrix": np.eye(3)}),
     "Region.translate": (in_order(R.translate), {"x": 1, "y": 2}),

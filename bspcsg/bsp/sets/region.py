@@ -18,6 +18,7 @@ from ...mesh import interop
 from ...owned import owning
 from ...parameters import (
     SEGMENTS,
+    file_path,
     function_of,
     number,
     of_kind,
@@ -664,9 +665,10 @@ class Region(PlaneQueries):
         FormatError
             If the suffix is neither; code ``"unknown_format"``.
         """
-        suffix = os.path.splitext(os.fspath(path))[1].lower()
+        name = file_path(path)
+        suffix = os.path.splitext(name)[1].lower()
         if suffix not in (".svg", ".dxf"):
-            message = f"{os.fspath(path)}: a region is written as .svg or .dxf."
+            message = f"{name}: a region is written as .svg or .dxf."
             raise FormatError(message, "unknown_format")
         if suffix == ".svg":
             self.to_svg(path, **options)
