@@ -327,7 +327,7 @@ def warn_of_losses(findings: Iterable[Finding]) -> None:
 
 def deprecated(old: str, new: str) -> None:
     """Warn the caller of this package about a name that the next version removes."""
-    message = f"{old} goes with the next version; use {new}."
+    message = f"{old} will be removed in the next version; use {new}."
     warnings.warn(message, DeprecationWarning, stacklevel=_levels_to_caller())
 
 

@@ -254,7 +254,7 @@ def milled_by_cylinders(count: int) -> tuple[MeshArrays, list[MeshArrays]]:
 
 
 def _slot(start: FloatArray, end: FloatArray, radius: float, sides: int) -> FloatArray:
-    """Return the convex polygon that a regular polygon sweeps on a straight way."""
+    """Return the convex polygon that a regular polygon sweeps along a straight segment."""
     along = end - start
     angles = np.arctan2(along[1], along[0]) + np.pi * (0.5 + np.arange(sides // 2 + 1) * 2 / sides)
     half = radius * np.column_stack([np.cos(angles), np.sin(angles)])

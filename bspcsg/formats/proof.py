@@ -70,7 +70,7 @@ def prove(
 
 @contextmanager
 def _reading(path: str) -> Iterator[None]:
-    """Turn all errors of the block into one that the file cannot be read back."""
+    """Replace any error of the block by one that says that the file cannot be read back."""
     try:
         yield
     except MemoryError:

@@ -113,7 +113,7 @@ def _region_triangles(contours: Sequence[FloatArray], edges: IndexArray) -> Inde
 
 
 def _piece_triangles(corners: FloatArray) -> IndexArray | None:
-    """Return the triangles of one contour; None if it crosses itself and is too long."""
+    """Return the triangles of one contour; None if it crosses itself and has many corners."""
     is_turned = signed_area(corners) < 0
     contour = np.ascontiguousarray(corners[::-1]) if is_turned else corners
     if len(contour) <= _MAX_MANIFOLD_CORNERS:

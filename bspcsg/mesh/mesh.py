@@ -202,7 +202,7 @@ class Mesh:
 
 
 def surfaces_of(faces: IndexArray, vertex_count: int) -> IndexArray:
-    """Return for each face the number of its connected surface, in the order of lowest vertices.
+    """Return for each face the number of its surface; smallest vertex numbers give the order.
 
     Parameters
     ----------

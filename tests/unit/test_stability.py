@@ -143,5 +143,5 @@ def test_what_is_to_go_warns_and_names_what_stays(name: str) -> None:
         if callable(found):
             found()
     assert [one.category for one in said] == [DeprecationWarning]
-    assert re.search(rf"{name} goes with the next version; use \S+", str(said[0].message))
+    assert re.search(rf"{name} will be removed in the next version; use \S+", str(said[0].message))
     assert Path(said[0].filename) == Path(__file__)

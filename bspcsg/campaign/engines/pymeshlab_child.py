@@ -27,7 +27,7 @@ FILTERS = {
 
 
 def main(folder: Path) -> int:
-    """Combine the operands in a folder, the first with each of the others in turn."""
+    """Combine the operands in a folder from left to right, each with the result so far."""
     try:
         import pymeshlab
 

@@ -98,7 +98,7 @@ class _Hull(_OfFiles):
 
 
 class _Simplified(_OfFiles):
-    """One file, which the job simplifies like any result."""
+    """A job without an operation: it simplifies one file, as it does any result."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("simplify", files, **settings)

@@ -146,7 +146,7 @@ class _Claims:
             if "uri" in buffer:
                 is_text = str(buffer["uri"]).startswith("data:")
                 where = "as text in the description" if is_text else "in another file"
-                message = f"data lies {where}; only GLB with all of it in its binary chunk is read."
+                message = f"data lies {where}; a GLB is read only if its binary chunk has all data."
                 raise self._source.error(message, "unsupported")
             if number > 0 or not 0 <= buffer["byteLength"] <= self._held:
                 message = f"buffer {number} promises more than the {self._held} bytes of data."
@@ -224,7 +224,7 @@ class _Claims:
             while (above := parents[above]) != -1:
                 steps += 1
                 if steps > _MAX_NODE_DEPTH:
-                    message = "the nodes contain each other too often."
+                    message = "the nodes are nested too deeply, or in a cycle."
                     raise self._source.error(message, "too_large")
         shown = sum(self._triangles_of(node) for node in nodes)
         if shown > _MAX_TRIANGLES:

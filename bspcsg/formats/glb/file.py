@@ -93,7 +93,7 @@ def _hidden(count: int) -> tuple[Finding, ...]:
 
 
 def _unit() -> Finding:
-    message = "GLB is in metres with y upwards; it was read in millimetres with z upwards."
+    message = "GLB is in metres with y upwards; it was converted to millimetres with z upwards."
     return Finding("unit", "note", message, (), 1)
 
 

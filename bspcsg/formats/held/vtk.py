@@ -110,7 +110,7 @@ def _arrays(file: BinaryIO, data: bytes, at: int, order: str) -> list[npt.NDArra
         found.append(np.frombuffer(_unpacked(data[start:end], order), order + kind))
         at = end + len(_END_OF_ARRAY)
     if _behind(_END, file, at) != len(data):
-        raise ValueError("something follows its end")
+        raise ValueError("there is data after the end of the arrays")
     return found
 
 

@@ -61,7 +61,7 @@ def _uncrossed(moved: AttributedMesh, before: FloatArray, given: int | None) -> 
 
 
 def _farthest(vertices: FloatArray, pitch: int | None) -> float:
-    """Return a distance that exceeds all moves by mending, rounding and a lattice step."""
+    """Return a bound on how far mending, rounding and one lattice step can move a point."""
     step = 0.0 if pitch is None else 10.0**pitch
     return float(np.abs(vertices).max()) * _ROUNDING + step
 

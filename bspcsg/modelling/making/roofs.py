@@ -144,7 +144,7 @@ class _Building:
             self._bounds[behind].append((high, low))
 
     def _next_front(self, met: Meeting, nodes: dict[int, int]) -> Front:
-        """Return the next front, with unchanged corners and new corners at nodes."""
+        """Return the next wavefront: corners without an event, and a new corner at each node."""
         rows: list[tuple[int, int, int, int]] = []
         origins: list[tuple[float, float, float]] = []
         begun: dict[int, int] = {}

@@ -350,7 +350,8 @@ fn continues(first: &Carrier, second: &Carrier) -> bool {
     }
 }
 
-/// Return whether an outline lies on the inner side of an edge, with only the edge's ends on its line.
+/// Return whether a whole outline lies on the inner side of one of its edges' lines, and touches that
+/// line only at the edge's ends.
 fn bounds(carrier: &Carrier, edges: &[BareEdge]) -> bool {
     let Carrier::Cut(plane, plus) = carrier else {
         return true;

@@ -26,10 +26,11 @@ pub struct Edge {
     pub to: u32,
 }
 
-/// The points at which edges must be subdivided, for the edges that have any.
+/// The points at which edges must be subdivided, for each edge that has any.
 ///
-/// Opposite edges with equal ends pair and stay. The others still form a closed chain, because a
-/// boundary has no boundary: subdivided at each other's ends, line by line, they pair too.
+/// Opposite edges with equal ends match and stay. The other edges of a line still cover it equally
+/// often in both directions, because a boundary has no boundary. Divided at each other's ends, they
+/// match too.
 pub fn subdivisions(
     edges: &[Edge],
     mut line: impl FnMut(usize) -> LineKey,

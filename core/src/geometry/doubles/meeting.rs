@@ -271,7 +271,7 @@ fn lie_apart(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     (0..2).any(|i| high(p, i) <= low(q, i) || high(q, i) <= low(p, i))
 }
 
-/// Return whether one triangle lies on the outer side of the line through an edge of another, or on it.
+/// Return whether the line through some edge of `p` separates it from `q`, which may touch the line.
 fn separates(p: &[[f64; 2]; 3], q: &[[f64; 2]; 3]) -> bool {
     let inner = turn(*p);
     (0..3).any(|i| {
@@ -291,7 +291,7 @@ pub fn has_no_area(triangle: &Triangle) -> bool {
 mod tests {
     use super::*;
 
-    /// A corner of a small grid, by a number; triangles on this grid touch in every way.
+    /// A point of a small grid, by number; triangles of these points touch in every way.
     fn corner(number: u32, step: f64) -> Point {
         [1, 3, 9].map(|place| f64::from(number / place % 3) * step)
     }

@@ -176,7 +176,7 @@ impl Triangulation {
         is_inside
     }
 
-    /// A triangle at a point.
+    /// A triangle that has a point as a corner.
     pub fn cell_at(&self, place: u32) -> u32 {
         self.incident[place as usize]
     }

@@ -51,8 +51,8 @@ mod linux {
             }
         }
 
-        /// Has each thread begin on a processor of its own, the first on the caller's, which is about
-        /// to wait. `None` where other work would lose by it, or another call holds the threads.
+        /// Pins each thread to its own processor, the first to the caller's, since the caller is about
+        /// to wait. `None` if that would slow other work, or another call has pinned the threads.
         pub fn hold(&self) -> Option<Held<'_>> {
             if !(2..=MAX_THREADS_PLACED).contains(&self.threads.len()) {
                 return None;

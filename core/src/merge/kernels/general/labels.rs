@@ -107,7 +107,7 @@ impl Scene<'_> {
         self.count_by(own, point.map(as_double), across)
     }
 
-    /// The labels at a point close to one, given the change across an element on the way there.
+    /// The labels near a point, counted from the cell's corner; `across` is the change at an element.
     fn count_by(
         &self,
         own: usize,

@@ -87,7 +87,7 @@ fn fragments(list: &List, cell: &Cell, sources: &Sources) -> Vec<Fragment> {
 pub struct LeafTree(Operand);
 
 impl LeafTree {
-    /// The local tree of a list.
+    /// Builds the tree of the listed faces inside a cell.
     pub fn new(list: &List, cell: &Cell, sources: &Sources) -> Self {
         Self(Operand::new(0, list, cell, sources))
     }
