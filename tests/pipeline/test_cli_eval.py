@@ -62,7 +62,7 @@ def test_a_sign_taken_for_a_part_of_the_name(folder: Path, capsys: Capture) -> N
         ("a.off - a.off", 4, "--allow-empty"),
         ("a.off | none.stl", 3, "none.stl: cannot read"),
         ("a.off | x.step", 3, "STEP"),
-        ("a.off | nosuffix", 3, "needs a suffix"),
+        ("a.off | nosuffix", 3, "there is no such file or folder"),
         ("", 2, "is empty"),
     ],
 )
