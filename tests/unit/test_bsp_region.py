@@ -289,7 +289,9 @@ def test_named_operations_refuse_a_mixture(operation: Any, other: Any) -> None:
 
 def test_nearest_points_have_their_old_name() -> None:
     for one in (plate(), plate().tree, bsp.Intervals([(0, 1)])):
-        with pytest.warns(DeprecationWarning, match=r"project will be removed .* use nearest") as warned:
+        with pytest.warns(
+            DeprecationWarning, match=r"project will be removed .* use nearest"
+        ) as warned:
             found = one.project([[0.5, 0.5][: one.dimension]])
         assert warned[0].filename == __file__
         assert (found[0] == one.nearest([[0.5, 0.5][: one.dimension]])[0]).all()
