@@ -371,6 +371,6 @@ def test_the_former_name_is_an_alias_with_a_note(folder: Path, capsys: Capture) 
     again = ran(capsys, "crosscheck", *line)
     assert code == again[0] == 0
     assert json.loads(out)["verdicts"] == json.loads(again[1])["verdicts"]
-    assert err == "note: validate is called crosscheck now; the old name goes later.\n"
+    assert err == "note: validate is called crosscheck now; the old name will be removed later.\n"
     assert again[2] == ran(capsys, "validate", *line, "-q")[2] == ""
     assert "validate" not in ran(capsys, "--help")[1]

@@ -91,11 +91,11 @@ impl Triangulation {
             made.add(vertex, [side, before]);
         }
         for k in 2..count {
-            let mate = |to: u32, first: u32| if to == count { NONE } else { to - first };
             let before = if k == 2 { NONE } else { k - 3 };
+            let after = if k + 1 == count { NONE } else { k - 1 };
             let cell = Cell {
                 corners: [0, k - 1, k],
-                mates: [before, NONE, mate(k + 1, 2)],
+                mates: [before, NONE, after],
                 marks: [0; 3],
             };
             made.put(k - 2, cell);
@@ -276,7 +276,7 @@ impl Triangulation {
         std::iter::from_fn(move || {
             if at == NONE && !is_back {
                 is_back = true;
-                let cell = &self.cells[first as usize];
+                let cell = self.cells.get(first as usize)?;
                 at = cell.mates[place(cell)];
             }
             let here = at;

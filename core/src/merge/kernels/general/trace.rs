@@ -131,32 +131,48 @@ fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Spec
         let along = division.along_edge(cell, edge);
         along.fold(0, |all, (segment, _)| all ^ segments[segment].bit())
     };
+    // First relative to the first cell, then as the segments say.
     let mut labels = division.spread(0, |here, cell, edge| here ^ change(cell, edge));
-    let (mut known, mut inside_first): (Labels, Labels) = (0, 0);
-    for cell in 0..labels.len() {
-        for (edge, mate) in division.mates(cell) {
-            if labels[mate] != labels[cell] ^ change(cell, edge) {
-                return Err(Special);
-            }
-            for (segment, is_along) in division.along_edge(cell, edge) {
-                let segment = &segments[segment];
-                // The inside lies on the left, or on the right if it is on the plus side.
-                let is_inside = is_along != segment.plus;
-                let first =
-                    labels[cell] & segment.bit() ^ if is_inside { segment.bit() } else { 0 };
-                if known & segment.bit() == 0 {
-                    known |= segment.bit();
-                    inside_first |= first;
-                } else if inside_first & segment.bit() != first {
-                    return Err(Special);
-                }
-            }
+    let in_first = labels_of_first(division, segments, &labels);
+    for all in &mut labels {
+        *all ^= in_first;
+    }
+    let agree = |cell: usize| {
+        let mut mates = division.mates(cell);
+        mates.all(|(edge, mate)| labels[mate] == labels[cell] ^ change(cell, edge))
+            && sides(division, segments, cell).all(|(bit, inside)| labels[cell] & bit == inside)
+    };
+    let is_certain = (0..labels.len()).all(agree);
+    is_certain.then_some(labels).ok_or(Special)
+}
+
+/// The labels of the first cell, given those of all cells relative to it.
+fn labels_of_first(division: &Division, segments: &[Segment], relative: &[Labels]) -> Labels {
+    let (mut known, mut labels): (Labels, Labels) = (0, 0);
+    for (cell, relative) in relative.iter().enumerate() {
+        for (bit, inside) in sides(division, segments, cell) {
+            labels |= (relative & bit ^ inside) & !known;
+            known |= bit;
         }
     }
-    for all in &mut labels {
-        *all ^= inside_first;
-    }
-    Ok(labels)
+    labels
+}
+
+/// For each segment along an inner edge of a cell the bit of its operand, and that bit again if the cell
+/// lies inside the operand, else 0.
+fn sides<'a>(
+    division: &'a Division,
+    segments: &'a [Segment],
+    cell: usize,
+) -> impl Iterator<Item = (Labels, Labels)> + 'a {
+    let edges = division.mates(cell).map(|(edge, _)| edge);
+    let along = edges.flat_map(move |edge| division.along_edge(cell, edge));
+    along.map(|(segment, is_along)| {
+        let segment = &segments[segment];
+        // The inside lies on the left, or on the right if it is on the plus side.
+        let is_inside = is_along != segment.plus;
+        (segment.bit(), if is_inside { segment.bit() } else { 0 })
+    })
 }
 
 #[cfg(test)]

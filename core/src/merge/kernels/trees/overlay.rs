@@ -16,11 +16,14 @@ pub fn disjoint(fragments: Vec<Fragment>) -> (Vec<Fragment>, bool) {
     let mut overlap = false;
     let mut all = Vec::with_capacity(fragments.len());
     for group in by_planes(fragments) {
-        if some_overlap(&group) {
+        let overlaps = overlapping(&group);
+        let (some, others): (Vec<_>, Vec<_>) =
+            group.into_iter().zip(overlaps).partition(|one| one.1);
+        all.extend(others.into_iter().map(|one| one.0));
+        if !some.is_empty() {
             overlap = true;
-            all.extend(partitioned(&group));
-        } else {
-            all.extend(group);
+            let some: Vec<Fragment> = some.into_iter().map(|one| one.0).collect();
+            all.extend(partitioned(&some));
         }
     }
     all.retain(|f: &Fragment| f.weight != 0);
@@ -46,14 +49,22 @@ fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
     groups
 }
 
-/// Return whether two fragments of one plane have an area in common.
-fn some_overlap(group: &[Fragment]) -> bool {
+/// For each fragment of a plane whether it has an area in common with another one.
+fn overlapping(group: &[Fragment]) -> Vec<bool> {
     let extents: Vec<Extent> = group.iter().map(|f| extent(&f.polygon)).collect();
     let lie_beside = |i: usize, j: usize| {
-        poll();
         extents[i].misses(&extents[j]) || group[i].polygon.lies_beside(&group[j].polygon)
     };
-    (1..group.len()).any(|i| !(0..i).all(|j| lie_beside(i, j)))
+    let mut overlaps = vec![false; group.len()];
+    for i in 1..group.len() {
+        for j in 0..i {
+            poll();
+            if !(overlaps[i] && overlaps[j] || lie_beside(i, j)) {
+                (overlaps[i], overlaps[j]) = (true, true);
+            }
+        }
+    }
+    overlaps
 }
 
 #[cfg(test)]
@@ -89,5 +100,15 @@ mod tests {
         assert_eq!(weights([one.clone(), one.flipped()]), (vec![], true));
         let (weights, overlap) = weights([one, moved]);
         assert!(overlap && weights.contains(&1) && weights.last() == Some(&2));
+    }
+
+    #[test]
+    fn fragments_beside_those_that_overlap_stay_whole() {
+        let one = triangle([[0, 0, 0], [8, 0, 0], [0, 8, 0]]);
+        let moved = triangle([[2, 0, 0], [10, 0, 0], [2, 8, 0]]);
+        let beside = triangle([[-9, -9, 0], [9, -9, 0], [9, -1, 0]]);
+        let (fragments, _) = disjoint([one, moved, beside].map(fragment).into());
+        let whole = fragments.iter().filter(|f| f.intact).count();
+        assert_eq!(whole, 1);
     }
 }
