@@ -102,7 +102,8 @@ class _Verbs(click.Group):
             raise click.UsageError(f"there is no verb {args[0]!r}.{asks}", ctx)
         if args and args[0] in _FORMER and not terminal.QUIET.intersection(ctx.obj or ()):
             terminal.say(
-                "note", f"{args[0]} is called {_ALIASES[args[0]]} now; the old name will be removed later."
+                "note",
+                f"{args[0]} is called {_ALIASES[args[0]]} now; the old name will be removed later.",
             )
         return super().resolve_command(ctx, args)
 

@@ -60,7 +60,10 @@ def test_parts_of_several_files(folder: Path, capsys: Capture) -> None:
 def test_the_former_name_of_split_keeps_its_names_of_files(folder: Path, capsys: Capture) -> None:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
     code, out, err = ran(capsys, "explode", "two.off", "-o", "%.ply", "--json")
-    assert code == 0 and err == "note: explode is called split now; the old name will be removed later.\n"
+    assert (
+        code == 0
+        and err == "note: explode is called split now; the old name will be removed later.\n"
+    )
     assert [part["output"] for part in json.loads(out)["parts"]] == ["two-1.ply", "two-2.ply"]
 
 
