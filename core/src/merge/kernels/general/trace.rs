@@ -139,11 +139,30 @@ fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Spec
     }
     let agree = |cell: usize| {
         let mut mates = division.mates(cell);
-        mates.all(|(edge, mate)| labels[mate] == labels[cell] ^ change(cell, edge))
-            && sides(division, segments, cell).all(|(bit, inside)| labels[cell] & bit == inside)
+        mates.all(|(edge, mate)| {
+            are_of_different_operands(division, segments, cell, edge)
+                && labels[mate] == labels[cell] ^ change(cell, edge)
+        }) && sides(division, segments, cell).all(|(bit, inside)| labels[cell] & bit == inside)
     };
     let is_certain = (0..labels.len()).all(agree);
     is_certain.then_some(labels).ok_or(Special)
+}
+
+/// Return whether all segments along an edge are of different operands. Of three coincident faces of one
+/// operand the bits would look like those of a single face.
+fn are_of_different_operands(
+    division: &Division,
+    segments: &[Segment],
+    cell: usize,
+    edge: usize,
+) -> bool {
+    let mut seen: Labels = 0;
+    division.along_edge(cell, edge).all(|(segment, _)| {
+        let bit = segments[segment].bit();
+        let is_new = seen & bit == 0;
+        seen |= bit;
+        is_new
+    })
 }
 
 /// The labels of the first cell, given those of all cells relative to it.
@@ -203,8 +222,8 @@ mod tests {
         }
     }
 
-    /// The trace that two faces of one operand leave on a polygon.
-    fn trace(crossed: &Polygon, faces: [[Lattice; 3]; 2]) -> Option<Trace> {
+    /// The trace that faces of one operand leave on a polygon.
+    fn trace<const N: usize>(crossed: &Polygon, faces: [[Lattice; 3]; N]) -> Option<Trace> {
         let faces = faces.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
         let crossers: Vec<Crosser> = (1..)
             .zip(&faces)
@@ -242,6 +261,15 @@ mod tests {
         assert_eq!(trace.parts.len(), 2);
         assert_eq!(trace.part_at_corner(0), trace.part_at_corner(2));
         assert_ne!(trace.part_at_corner(0), trace.part_at_corner(1));
+    }
+
+    #[test]
+    fn coincident_faces_of_one_operand_are_no_trace() {
+        let crossed = polygon(&[[0, 0, 0], [8, 0, 0], [8, 8, 0]]);
+        let wall = [[5, -9, -30], [5, 60, 1], [5, -9, 30]];
+        assert!(trace(&crossed, [wall]).is_some());
+        assert!(trace(&crossed, [wall; 2]).is_none());
+        assert!(trace(&crossed, [wall; 3]).is_none());
     }
 
     /// A corner of both faces lies in the polygon's plane.
