@@ -74,7 +74,7 @@ pub fn of_lattice(p: &Lattice) -> Fixed {
     p.map(|c| i128::from(c) << PLACES)
 }
 
-/// An exact point in fixed-point binary, each coordinate within [`slack`] of the exact one.
+/// An exact point in fixed-point binary, each coordinate within `slack` of the exact one.
 pub fn of_vertex(vertex: &Vertex) -> Fixed {
     if let Some(p) = vertex.as_lattice() {
         return of_lattice(p);
