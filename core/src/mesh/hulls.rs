@@ -48,7 +48,7 @@ const MAX_FOLD_SINE: f64 = 1e-7;
 /// use bspcsg::mesh::hulls::hull_of;
 ///
 /// let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-/// One third of an edge from its end, as nearly as doubles can represent it.
+/// // A third of the way along an edge, as near as doubles come.
 /// let points = [&corners[..], &[[0.0, 2.0 / 3.0, 1.0 / 3.0]]].concat();
 /// assert_eq!(hull_of(&points, Pitch::DEFAULT)?.vertices, corners);
 /// # Ok::<(), bspcsg::error::Error>(())
