@@ -58,7 +58,8 @@ pub const SHORT_OFFSET_BITS: u32 = 124;
 /// `i128`.
 pub const LINE_NORMAL_BITS: u32 = 62;
 
-/// The number of bits of the offset of a line in the plane that passes between lattice points.
+/// The number of bits of the offset of a line in the plane, if the line meets the square |x|, |y| ≤
+/// [`REACH`].
 pub const LINE_OFFSET_BITS: u32 = LINE_NORMAL_BITS + COORDINATE_BITS + 2;
 
 /// Limbs of each homogeneous coordinate of a point where two lines of the plane meet.
@@ -147,8 +148,8 @@ pub const fn edge_at_corner(p: u32) -> u32 {
     det3([p, p, 0]) + 1
 }
 
-/// Bound, in bits, on the determinant that decides on which side of the common line of two planes an
-/// axis-parallel line through a cell's doubled corner passes.
+/// Bound, in bits, on the determinant that decides on which side of a plane an axis-parallel line through a
+/// cell's doubled corner meets another plane.
 pub const fn plane_pair_at_corner(p: u32) -> u32 {
     det2([normal(p), plane_at_corner(p)])
 }

@@ -20,7 +20,7 @@ pub struct LatticeEdge {
 }
 
 impl LatticeEdge {
-    /// The edge from one point to another.
+    /// The directed edge from one lattice point to another.
     pub fn new(from: Lattice, to: Lattice) -> Self {
         Self::of_ring(&Arc::new(SmallVec::from_slice(&[from, to])), 0)
     }

@@ -252,7 +252,7 @@ impl LineKey {
         ))
     }
 
-    /// The key of a line.
+    /// The key of a line that is given modulo both primes.
     pub fn of(line: &Line) -> Self {
         Self {
             first: line.first.scaled(inv_mod(line.first.first_nonzero(), P1)),

@@ -1,4 +1,4 @@
-//! Oriented planes with canonical integer coefficients.
+//! Oriented planes with coprime integer coefficients.
 
 use super::axes::each_axis;
 use super::side::{Half, Orientation, Side};
@@ -263,7 +263,7 @@ impl Plane {
         }
     }
 
-    /// The side on which a lattice point lies.
+    /// The side of the plane on which a lattice point lies, exactly.
     pub fn side_of_lattice(&self, p: &Lattice) -> Side {
         let a = &self.approx;
         let t = [

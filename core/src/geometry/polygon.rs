@@ -236,7 +236,7 @@ impl Polygon {
         &self.support
     }
 
-    /// The corners, counterclockwise.
+    /// The corners of the polygon, counterclockwise as seen from the plus side of its plane.
     pub fn corners(&self) -> &[Corner] {
         &self.corners
     }

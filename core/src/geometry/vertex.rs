@@ -148,7 +148,7 @@ impl Vertex {
         (0..3).all(|i| low[i] <= as_double(place[i]) && as_double(place[i]) <= high[i])
     }
 
-    /// The side of a plane on which the point lies.
+    /// The side of a plane on which the point lies, exactly.
     pub fn side_of(&self, plane: &Plane) -> Side {
         match &self.place {
             Place::Lattice(p) => plane.side_of_lattice(p),

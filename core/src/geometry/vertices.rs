@@ -75,7 +75,7 @@ impl VertexTable {
         std::iter::successors(last, before).find(|id| self.point(*id).same(vertex))
     }
 
-    /// The point with this number.
+    /// The exact point with this number.
     pub fn point(&self, id: u32) -> &Arc<Vertex> {
         &self.points[id as usize]
     }

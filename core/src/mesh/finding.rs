@@ -27,7 +27,7 @@ pub struct Finding {
     pub code: &'static str,
     /// How serious the finding is.
     pub severity: Severity,
-    /// The number of times that it was found.
+    /// The number of faces or vertices concerned.
     pub count: u64,
     /// The numbers of the first faces or vertices concerned, as the message says.
     pub place: Vec<u64>,

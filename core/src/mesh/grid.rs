@@ -36,7 +36,7 @@ impl Pitch {
     /// The step of 10^-9 units: CAD numbers are decimals of at most nine digits after the point.
     pub const DEFAULT: Self = Self(-9);
 
-    /// The pitch with this exponent.
+    /// The pitch of the step 10^`exponent` model units; an error outside −22..=22.
     pub fn new(exponent: i64) -> Result<Self> {
         i8::try_from(exponent)
             .ok()
@@ -113,7 +113,7 @@ impl Pitch {
     /// zero.
     #[inline]
     pub fn snap(self, x: f64) -> Result<i64> {
-        // This refuses infinities and NaN too.
+        // The test is also false for infinities and NaN.
         if !self.fits(x) {
             return Err(self.refused(x));
         }

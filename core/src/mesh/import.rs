@@ -20,6 +20,7 @@ use crate::mesh::handle::VertexId;
 const WITHOUT_EXPONENT: std::ops::Range<f64> = 1e-4..1e6;
 
 /// Snaps a closed triangle mesh to the lattice.
+///
 /// `vertices` are in model units; `faces` are indices of them, counterclockwise from outside. Faces without
 /// area are dropped; vertices at one lattice point are welded if the faces do not close by index; T-junctions
 /// are accepted if the edges on each line cancel.

@@ -36,7 +36,8 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
         let [a, b, c] = face.map(|vertex| vertices[vertex.place()]);
         let normal = normal(&[a, b, c]);
         let from_middle = less(&a, &middle);
-        // With the normal of the edges a small face far out loses no digits to cancellation.
+        // The normal comes from edges, so that a small face far from the middle loses no digits to
+        // cancellation.
         volume.add(dot(&normal, &from_middle) / 6.0);
         area.add(dot(&normal, &normal).sqrt() / 2.0);
         size += length(less(&b, &a)) * length(less(&c, &a)) * length(from_middle);
@@ -65,7 +66,7 @@ pub struct Moments {
     pub volume: f64,
     /// The centroid, relative to the point from which the mesh was measured; not finite without volume.
     pub centroid: [f64; 3],
-    /// The integrals of the products of two coordinates, relative to the centroid.
+    /// The second moments: the integrals of the products of two coordinates, relative to the centroid.
     pub second: [[f64; 3]; 3],
 }
 

@@ -79,7 +79,7 @@ fn needles_terrains(faces: &Faces, needles: &[u32]) -> Vec<u32> {
     search.pieces.into_iter().map(proved).collect()
 }
 
-/// Return whether a triangle is at least [`MIN_NEEDLE_RATIO`] times as long as high.
+/// Return whether a triangle is at least `MIN_NEEDLE_RATIO` times as long as high.
 pub fn is_needle(triangle: &Triangle) -> bool {
     let [a, b, c] = triangle;
     let square = |p: &Point, q: &Point| (0..3).map(|i| (p[i] - q[i]) * (p[i] - q[i])).sum();

@@ -52,7 +52,7 @@ struct PointTable {
 /// many points.
 #[derive(Clone, Copy, Debug, Default)]
 struct Slot {
-    /// The number of a point plus one, or 0 if the slot is free.
+    /// The index of a point plus one, or 0 if the slot is free.
     next: u32,
     hash: u32,
 }

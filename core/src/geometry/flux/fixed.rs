@@ -23,7 +23,8 @@ pub type Fixed = [i128; 3];
 /// The corners of a closed polygon, in order.
 pub type Ring = SmallVec<[Fixed; 12]>;
 
-/// Six times a flux, in units of 2^-152 cubic steps, and a bound on its error.
+/// Six times the flux of the field (0, 0, z) through a surface, in units of 2^-152 cubic lattice steps, with
+/// a bound on its error.
 ///
 /// # Bits
 /// A triangle's flux is below 2^165 cubic steps; 66 bits are left for sums of them.

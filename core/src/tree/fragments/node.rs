@@ -51,9 +51,9 @@ pub struct Node<S: Affine> {
     pub cut: NodeCut,
     /// The fragments that lie in the hyperplane, as a range of the tree's fragments.
     pub coplanar: Range<u32>,
-    /// The subtree on the minus side, unless no facet lies there.
+    /// The child on the minus side; `None` if no facet lies there.
     pub minus: Option<NodeId>,
-    /// The subtree on the plus side, unless no facet lies there.
+    /// The child on the plus side; `None` if no facet lies there.
     pub plus: Option<NodeId>,
     /// The parent, and on which side of its hyperplane this node lies; `None` for the root.
     pub parent: Option<(NodeId, Half)>,
@@ -70,7 +70,7 @@ pub struct Crossing {
     pub piece: u32,
 }
 
-/// A partition tree over facets.
+/// A partition tree over facets, whose inner nodes list the fragments in their hyperplanes.
 #[derive(Clone, Debug)]
 pub struct FragmentTree<S: Affine> {
     pub(super) nodes: Vec<Node<S>>,
@@ -90,7 +90,7 @@ impl<S: Affine> FragmentTree<S> {
         }
     }
 
-    /// The nodes in preorder, minus before plus; the root is first.
+    /// The inner nodes in preorder, minus before plus; the root is first.
     pub fn nodes(&self) -> &[Node<S>] {
         &self.nodes
     }

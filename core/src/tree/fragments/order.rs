@@ -1,4 +1,4 @@
-//! The painter's order: no fragment hides one that comes after it.
+//! The painter's order of a fragment tree: no fragment hides another one that comes later.
 
 use super::node::FragmentTree;
 use crate::geometry::side::Side;

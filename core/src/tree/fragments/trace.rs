@@ -54,7 +54,7 @@ pub enum Reason {
     Median,
     /// It was a given cut.
     Given,
-    /// A callback chose it.
+    /// A callback chose this hyperplane.
     Asked,
     /// It passes through corners of pieces, or supports a piece, and its larger side has the fewest pieces.
     Ends,

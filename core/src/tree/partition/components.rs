@@ -21,8 +21,8 @@ pub struct Wall<S: Space> {
 
 /// The boundary of a tree's set, each piece with the two connected parts that it separates.
 ///
-/// Parts are open: two regions that have no piece of a hyperplane in common, such as an edge's or a point's
-/// neighbours, are not connected. A part is named by its first leaf, only to distinguish it from others.
+/// Parts are open: regions that touch only in points, or in space along edges, are not connected. A part is
+/// named by its first leaf, only to distinguish it from others.
 ///
 /// # Order
 /// By inner node, breadth first.

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::geometry::spaces::dim2::Dim2;
 use crate::tree::partition::{enclosed, is_bounded, stats, Facet, Label, PartitionTree, Plan};
 
-/// An immutable set of the plane.
+/// An immutable set of points of the plane, stored as its boundary or as a tree.
 ///
 /// # Example
 /// ```
