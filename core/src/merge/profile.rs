@@ -41,7 +41,7 @@ impl From<Defect> for Declined {
 }
 
 impl Declined {
-    /// Returns the index of the operand that overlaps itself, if the reason is [`Declined::Overlap`].
+    /// Returns the index of the operand that overlaps itself, if the reason is `Declined::Overlap`.
     pub fn overlapping(self) -> Option<usize> {
         match self {
             Self::Overlap(operand) => Some(operand),

@@ -106,7 +106,7 @@ pub fn tetrahedra() -> [Solid; 2] {
     [tetrahedron(a), tetrahedron(b)]
 }
 
-/// Returns the two tetrahedra of [`tetrahedra`], listed in the smallest cell that contains both.
+/// Returns the two tetrahedra of `tetrahedra`, listed in the smallest cell that contains both.
 pub fn crossing() -> Shared {
     Shared::of(&tetrahedra())
 }

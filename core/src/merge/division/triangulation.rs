@@ -226,7 +226,7 @@ impl Triangulation {
     }
 
     /// Returns the exact sign of the turn along three points, positive to the left, if the first two lie in
-    /// the plane `cut` whose minus side is on the left; cheaper than [`Self::turn`] for constructed points.
+    /// the plane `cut` whose minus side is on the left; cheaper than `Self::turn` for constructed points.
     fn turn_beside(&self, cut: &Plane, points: [u32; 3]) -> Sign {
         match self.near_turn(points) {
             Filtered::Certain(sign) => sign,

@@ -23,7 +23,7 @@ pub struct Outlines {
 pub struct Strand {
     /// The directed line that contains the segment.
     pub line: Line2,
-    /// The indices of its first and its last point in [`Outlines::corners`].
+    /// The indices of its first and its last point in `Outlines::corners`.
     pub ends: [u32; 2],
     /// The increase of the winding number from the plus side (right) to the minus side (left).
     pub weight: i32,
