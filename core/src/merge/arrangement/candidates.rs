@@ -13,7 +13,7 @@ use crate::mesh::source::Source;
 use crate::mesh::tasks::each_chunk;
 use crate::mesh::triangles::TriangleMesh;
 
-/// A mesh as an operand, with its source and its place in the table of sources.
+/// A mesh as an operand, with its source and its index (slot) in the table of sources.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Operand<'a> {
     pub(super) slot: Slot,

@@ -73,8 +73,8 @@ pub(super) fn leaf_len(root: &Result<Branch, Declined>) -> usize {
     }
 }
 
-/// For each mesh, the faces in the window (the intersection of both bounding boxes), and those of them that
-/// may meet faces of the other mesh (candidates).
+/// For each mesh, the faces in the window (the intersection of both bounding boxes), and the candidates:
+/// faces that may meet faces of the other mesh.
 struct Near {
     within: [Within; 2],
     candidates: [Candidates; 2],

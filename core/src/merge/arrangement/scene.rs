@@ -1,4 +1,4 @@
-//! Builds the result for one or two meshes from the contacts of their faces.
+//! Builds the leaf that results from one or two meshes, from the contacts of their faces.
 
 use std::sync::Arc;
 
@@ -57,15 +57,16 @@ impl Fate {
     }
 }
 
-/// What stays of a face after its division: nothing or all of it in one orientation, or a part of it in each
-/// orientation.
+/// The parts of a divided face that bound the result: none or the whole face in one orientation, or a part in
+/// each orientation.
 enum Remainder {
     Whole(Option<Orientation>),
     Parts([Option<PartElement>; 2]),
 }
 
 impl<'a> Scene<'a> {
-    /// Returns the branch with the leaf of all faces and parts that stay, given the contacts of faces.
+    /// Returns the branch with the leaf of all faces and parts of faces that bound the result, given the
+    /// contacts of faces.
     ///
     /// # Errors
     /// The reason why the contacts do not determine the result.
@@ -191,7 +192,8 @@ impl<'a> Scene<'a> {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// Returns what stays of an operand: groups of whole faces, and parts of divided faces.
+    /// Returns the faces of an operand that bound the result: groups of whole faces, and parts of divided
+    /// faces.
     fn remainder(
         &self,
         operand: usize,
@@ -240,8 +242,8 @@ impl<'a> Scene<'a> {
         Ok(())
     }
 
-    /// Relates the winding numbers around all vertices of an operand, and counts as many of them as the rest
-    /// follows from.
+    /// Relates the winding numbers around all vertices of an operand, and counts those from which all others
+    /// follow, as far as they must be counted in advance.
     fn labels<'b>(
         &self,
         operand: usize,
@@ -343,7 +345,8 @@ impl<'a> Scene<'a> {
         Ok(parts.concat())
     }
 
-    /// Returns what stays of a divided face, given the winding number in front of its first cell.
+    /// Returns the parts of a divided face that bound the result, given the winding number in front of its
+    /// first cell.
     fn left_of(
         &self,
         operand: usize,

@@ -12,8 +12,8 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::crossing::{triangle_change, Segment};
 
-/// A point in the plane of a face at which a winding number is counted, and its other two coordinates than
-/// that of the plane's main axis, in half lattice steps.
+/// A point in the plane of a face at which a winding number is counted, and its coordinates, in half lattice
+/// steps, on the two axes other than the plane's main axis.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
     pub(super) point: Arc<Vertex>,
@@ -21,8 +21,9 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// Returns the point of a plane whose other two coordinates than that of the plane's main axis are
-    /// `doubled`, in half lattice steps; `None` if the plane is parallel to that axis, which never happens.
+    /// Returns the point of a plane that has the coordinates `doubled`, in half lattice steps, on the two
+    /// axes other than the plane's main axis; `None` if the plane is parallel to the main axis, which never
+    /// happens.
     pub(super) fn above(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
         let axis = plane.main_axis();
         let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::merge::profile::Profile;
 
-/// Counts of the work of an evaluation.
+/// Counts of the cells visited, faces sorted and cells solved by kernels in an evaluation.
 ///
 /// # Example
 /// ```

@@ -84,7 +84,7 @@ pub struct Descent<'a> {
     /// True if a cell in which one operand alone matters takes its boundary unchanged; false if every cell
     /// with surface is solved, to unite a solid with itself.
     pub share: bool,
-    /// Counts of the work.
+    /// Counts of the cells visited, faces sorted and cells solved by kernels.
     pub counters: Counters,
     /// For each operand, whether a visited cell showed that it, or the result of a group of operands with it,
     /// overlaps itself.

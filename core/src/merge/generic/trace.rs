@@ -20,8 +20,8 @@ use crate::tree::trace::Watcher;
 pub enum Root<S: Space> {
     /// A leaf: an undivided region with this label.
     Leaf(Label),
-    /// A cut: the part of its hyperplane inside the node's region, with the facets in it. A tree and its
-    /// complement have the same ones.
+    /// A cut: the part of its hyperplane inside the node's region, with the facets in it. The complement of
+    /// the tree has the same sub-hyperplane.
     Cut(Arc<SubHyperplane<S>>),
 }
 

@@ -18,7 +18,7 @@ use crate::mesh::source::{Shape, Source};
 use crate::tree::node::{Deferred, Group, Node, Part, PartElement};
 use crate::tree::pieces::pieces;
 
-/// What stays in a cell of one face, or of one piece of a face, in one orientation.
+/// The part of a face, or of a piece of a face, that bounds the result of a cell in one orientation.
 #[derive(Debug)]
 pub struct Kept {
     face: SourceFace,
@@ -173,8 +173,8 @@ pub fn assemble(
     Node::Deferred(leaf)
 }
 
-/// Returns the outline of what stays of a face in one orientation; `None` if all of the face in the cell
-/// stays.
+/// Returns the outline of the part of a face that stays in one orientation; `None` if all of the face in the
+/// cell stays.
 fn outline(run: &[Kept], source: &Source, face: FaceId, cell: &Cell) -> Option<Vec<BareEdge>> {
     let polygons: Vec<Cow<[Polygon]>> = run.iter().map(|k| k.polygons(source, cell)).collect();
     let polygons: Vec<&Polygon> = polygons.iter().flat_map(|p| p.iter()).collect();

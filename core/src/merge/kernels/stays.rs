@@ -1,4 +1,4 @@
-//! Collects what stays of the elements of a cell as a kernel's result.
+//! Collects the parts of a cell's elements that bound a kernel's result.
 
 use std::sync::Arc;
 
@@ -10,7 +10,7 @@ use crate::interrupt::poll;
 use crate::mesh::handle::{Slot, SourceFace};
 use crate::tree::node::Part;
 
-/// What stays of an element (a face or a convex piece of a part) in one orientation.
+/// The part of an element (a face or a convex piece of a part) that bounds the result in one orientation.
 pub enum Stays {
     /// Nothing of the element.
     Nothing,
@@ -30,8 +30,8 @@ pub enum Owner {
     Part(usize),
 }
 
-/// An element that meets the cell: its number, the face or part that it comes from, and what stays of it in
-/// the source's orientation and in the opposite one.
+/// An element that meets the cell: its number, the face or part that it comes from, and the parts of it that
+/// bound the result in the source's orientation and in the opposite one.
 pub type Settled = (usize, Owner, [Stays; 2]);
 
 impl Stays {
@@ -54,8 +54,8 @@ impl Stays {
     }
 }
 
-/// Returns what stays of all faces and parts. `parts` has the parts with the slots of their sources, and
-/// `polygon` returns the element with a given number.
+/// Returns the regions of all faces and parts that bound the result. `parts` has the parts with the slots of
+/// their sources, and `polygon` returns the element with a given number.
 pub fn kept(
     settled: impl Iterator<Item = Settled>,
     parts: &[(&Arc<Part>, Slot)],

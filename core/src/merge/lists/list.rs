@@ -273,8 +273,8 @@ impl List {
         (self, plus)
     }
 
-    /// Makes this the list of a smaller cell. No element may meet the rest of the larger cell, so that the
-    /// winding number at the low corner stays the same.
+    /// Restricts the list to a smaller cell. No element may meet the other part of the larger cell, so that
+    /// the winding number at the low corner does not change.
     pub fn shrink(&mut self, inner: &Cell, sources: &Sources) {
         if !self.frame.resolves(inner) {
             spend(self.len());

@@ -11,7 +11,7 @@ pub struct HalfPlane {
 }
 
 impl HalfPlane {
-    /// The whole plane.
+    /// The half-plane without a limit: the whole plane.
     const ALL: Self = Self {
         normal: [0.0; 2],
         limit: f64::INFINITY,

@@ -1,8 +1,8 @@
 //! Set operations on sets of the plane, by a sweep over both boundaries or by merging partition trees.
 //!
-//! The cost of a sweep is that of both boundaries; the cost of a merge is that of the smaller operand, once
-//! the larger one has a tree. So a sweep suits operands with similar numbers of edges, and a large operand
-//! that is combined with few small ones; merging suits a large operand that is combined with many.
+//! A sweep visits all edges of both boundaries; a merge visits the smaller operand and few nodes of the
+//! larger one, once that has a tree. So a sweep suits operands with similar numbers of edges, and a large
+//! operand that is combined with few small ones; merging suits a large operand that is combined with many.
 
 use super::input::Outlines;
 use super::sweep::bounded;

@@ -1,4 +1,4 @@
-//! Decides what stays of the elements of a cell.
+//! Decides which parts of the elements of a cell bound the result.
 
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
@@ -11,8 +11,8 @@ use crate::merge::kernels::stays::{kept, Owner, Stays};
 use crate::mesh::handle::{FaceId, SourceFace};
 
 impl Scene<'_> {
-    /// Returns what stays of all elements, given the labels of their pieces; `value` returns the expression's
-    /// value for a label.
+    /// Returns the parts of all elements that bound the result, given the labels of their pieces; `value`
+    /// returns the expression's value for a label.
     pub(super) fn keep(
         &self,
         fates: Vec<Fate>,
@@ -38,8 +38,8 @@ impl Scene<'_> {
 }
 
 impl Element<'_> {
-    /// Returns what stays of the element in its source's orientation and in the opposite one, given the
-    /// labels of its pieces.
+    /// Returns the parts of the element that bound the result in its source's orientation and in the opposite
+    /// one, given the labels of its pieces.
     fn stays(
         &self,
         fate: Fate,
@@ -110,8 +110,8 @@ fn all_on(side: usize) -> [Stays; 2] {
     stays
 }
 
-/// Returns what stays of a divided element in each orientation, given the orientation in which each of its
-/// parts stays.
+/// Returns the parts of a divided element that bound the result in each orientation, given the orientation in
+/// which each of its parts does.
 fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
     let Fate::Cut(mut cut) = fate else {
         return [Stays::Nothing, Stays::Nothing];

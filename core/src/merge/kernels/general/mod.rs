@@ -64,8 +64,8 @@ impl Kernel for GeneralPosition {
     }
 }
 
-/// Returns what stays of the operands' faces, and the expression's value at the cell's corner (1 for inside);
-/// `None` if the kernel refuses the cell.
+/// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside); `None` if the kernel refuses the cell.
 fn kept_and_corner(scene: &Scene, problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let fates = scene.fates()?;

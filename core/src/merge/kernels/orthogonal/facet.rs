@@ -19,7 +19,7 @@ use crate::tree::node::Part;
 /// follow each other, then the axis along which a row's bits do.
 pub(super) const ACROSS: [(usize, usize); 3] = [(1, 2), (0, 2), (0, 1)];
 
-/// A face or a convex piece of a part, perpendicular to an axis.
+/// A face, or a convex piece of a part of a face, that is perpendicular to an axis.
 pub(super) struct Facet<'a> {
     pub(super) operand: usize,
     pub(super) axis: usize,

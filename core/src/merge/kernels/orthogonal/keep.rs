@@ -1,4 +1,4 @@
-//! Decides what stays of the facets (faces perpendicular to axes) in the grid of a cell.
+//! Decides which parts of the facets (faces perpendicular to axes) of a cell bound the result.
 
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ pub(super) struct Scene<'a> {
 type Plane = (usize, usize);
 
 impl Scene<'_> {
-    /// Returns what stays of all facets; `None` if two facets of one operand overlap.
+    /// Returns the parts of all facets that bound the result; `None` if two facets of one operand overlap.
     pub(super) fn keep(&self) -> Option<Vec<Kept>> {
         let all = &self.facets.all;
         let mut order: Vec<usize> = (0..all.len()).collect();
@@ -50,8 +50,8 @@ impl Scene<'_> {
         Some(kept(settled.into_iter(), &self.facets.parts, polygon))
     }
 
-    /// Decides what stays of the facets in one plane of the grid; `None` if two facets of one operand
-    /// overlap.
+    /// Decides which parts of the facets in one plane of the grid bound the result; `None` if two facets of
+    /// one operand overlap.
     fn keep_sheet(&self, sheet: &[usize], settled: &mut Vec<Settled>) -> Option<()> {
         let all = &self.facets.all;
         let facet = &all[sheet[0]];
@@ -143,8 +143,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Returns what stays of a facet in each orientation, given the rectangles of its plane in which the
-    /// operand's faces stay; `None` if the facet does not meet the cell.
+    /// Returns the parts of a facet that bound the result in each orientation, given the rectangles of its
+    /// plane in which the operand's faces stay; `None` if the facet does not meet the cell.
     fn settled(&self, i: usize, owned: &[[u64; 2]]) -> Option<Settled> {
         let (facet, extent) = (&self.facets.all[i], &self.extents[i]);
         let owned = &owned[extent.rows.touched.clone()];
@@ -164,8 +164,8 @@ impl Scene<'_> {
         Some((i, facet.owner(), stays?))
     }
 
-    /// Returns what stays of a facet in one orientation; `held` has the rectangles that the facet touches,
-    /// row by row from row `first` on, and `owned` the rectangles that stay.
+    /// Returns the part of a facet that bounds the result in one orientation; `held` has the rectangles that
+    /// the facet touches, row by row from row `first` on, and `owned` the rectangles that stay.
     fn side(
         &self,
         facet: &Facet,

@@ -2,7 +2,8 @@
 //!
 //! The planes of the faces form a grid in the cell, and each box of the grid is inside or outside an operand
 //! as a whole. So sets of boxes are bits, expressions are evaluated a 64-bit word at a time, and faces in one
-//! plane are no special case. The rectangles of the grid in a face's plane determine what stays of the face.
+//! plane need no care. The rectangles of the grid in a face's plane determine which parts of the face bound
+//! the result.
 
 mod extent;
 mod facet;
@@ -38,8 +39,8 @@ impl Kernel for Orthogonal {
     }
 }
 
-/// Returns what stays of the operands' faces, and the expression's value at the cell's corner (1 for inside);
-/// `None` if the kernel refuses the cell.
+/// Returns the parts of the operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside); `None` if the kernel refuses the cell.
 fn kept_and_corner(problem: &CellProblem) -> Option<(Vec<Kept>, i32)> {
     let operands = &problem.operands;
     let facets = Facets::new(problem.cell, operands, problem.sources)?;

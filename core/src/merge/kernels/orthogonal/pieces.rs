@@ -1,4 +1,4 @@
-//! Cuts a facet (a face perpendicular to an axis) into the pieces that stay.
+//! Cuts a facet (a face perpendicular to an axis) into the pieces that bound the result.
 
 use super::facet::{Facet, ACROSS};
 use super::grid::Grid;
@@ -6,7 +6,7 @@ use crate::geometry::cell::Cell;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
 use crate::interrupt::poll;
 
-/// Returns pieces of a facet that cover those of its rectangles that stay.
+/// Returns pieces of a facet that cover its rectangles that stay in the result.
 ///
 /// Rectangles of the grid are bits in rows, from row `first` on; `touched` marks those that the facet
 /// touches, and `stay` those that stay. Compatible rows form one slab, and each run of bits in a slab one

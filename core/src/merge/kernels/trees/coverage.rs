@@ -100,7 +100,7 @@ impl Covered {
     }
 }
 
-/// A fragment that covers a part of a cell, and those of its edges that may cross the cell.
+/// A fragment that covers a part of a cell, and the indices of its edges that may cross the cell.
 #[derive(Clone)]
 struct Crossing {
     place: u32,

@@ -17,9 +17,9 @@ use crate::geometry::side::{Half, Orientation, Side};
 use crate::interrupt::poll;
 use crate::mesh::handle::NodeId;
 
-/// A convex piece of boundary with its multiplicity.
+/// A convex piece of boundary, with the jump of the winding number across it.
 ///
-/// The winding number on the minus side of the polygon's support exceeds the plus side's by
+/// The winding number on the minus side of the polygon's plane exceeds the number on its plus side by
 /// `weight`.
 #[derive(Clone, Debug)]
 pub struct Weighted {
@@ -305,8 +305,8 @@ impl LocalTree {
         found
     }
 
-    /// Pushes a polygon down a subtree until the winding numbers beside it are known, and returns what is
-    /// left of it; pieces cut off are added to `open`.
+    /// Pushes a polygon down a subtree until the winding numbers beside it are known. Returns the remaining
+    /// polygon and the end of its path; pieces cut off are added to `open`.
     ///
     /// If no fragment of the subtree is near the polygon, the number of any region that it borders holds for
     /// all of it.

@@ -49,8 +49,8 @@ impl Kernel for LocalTrees {
     }
 }
 
-/// Returns what stays of the faces of all operands, and the expression's value at the cell's corner (1 for
-/// inside).
+/// Returns the parts of all operands' faces that bound the result, and the expression's value at the cell's
+/// corner (1 for inside).
 fn keep_all(operands: &[Operand], expression: &Expression, rule: Rule) -> (Vec<Kept>, i32) {
     let bounds = Bounds {
         operands,
@@ -175,8 +175,8 @@ impl Piece {
     }
 }
 
-/// Returns what stays of a fragment in each orientation; `side` returns the orientation in which a piece
-/// stays, or `None`.
+/// Returns the parts of a fragment that bound the result, in each orientation; `side` returns the orientation
+/// in which a piece bounds the result, or `None`.
 pub(in crate::merge) fn keep(
     fragment: &Fragment,
     pieces: Vec<Piece>,
