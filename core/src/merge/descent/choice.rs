@@ -196,7 +196,10 @@ impl Round {
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
     }
 
-    /// Returns true if the kernel for general position should be asked about a cell with `total` elements.
+    /// Returns true if the kernel for general position should be asked about a cell with `total` elements: it
+    /// has at most `MAX_OPERANDS` operands, at most `MAX_ELEMENTS_FRESH`, `MAX_ELEMENTS_OF_GROUPS` or
+    /// `MAX_ELEMENTS_GENERAL` elements, depending on where the operands come from, and few enough since the
+    /// kernel last refused.
     pub fn suits_general_position(&self, states: &States, total: usize) -> bool {
         if states.len() > MAX_OPERANDS || total > self.refused / RETRIED_IF_ONE_IN {
             return false;

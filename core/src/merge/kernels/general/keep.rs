@@ -110,8 +110,8 @@ fn all_on(side: usize) -> [Stays; 2] {
     stays
 }
 
-/// Returns the parts of a divided element that bound the result in each orientation, given the orientation in
-/// which each of its parts does.
+/// Returns the parts of a divided element that bound the result in each orientation; `sides` has for each
+/// part the orientation in which it bounds the result, or `None`.
 fn stays_of_parts(fate: Fate, sides: &[Option<usize>]) -> [Stays; 2] {
     let Fate::Cut(mut cut) = fate else {
         return [Stays::Nothing, Stays::Nothing];
