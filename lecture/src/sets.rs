@@ -238,7 +238,7 @@ fn places<S: AxisSpace + Affine>(
             MergeStep::Pair { a, decision, .. } => {
                 now = waiting.pop().flatten();
                 if let (Name::First(number), Decision::Divide) = (a, decision) {
-                    if let Some((cut, _)) = inner.get(number.place()) {
+                    if let Some((cut, _)) = inner.get(number.index()) {
                         let [minus, plus] = now.as_ref().map_or([None, None], |r| r.divided(cut));
                         waiting.extend([plus, minus]);
                     }
@@ -250,7 +250,7 @@ fn places<S: AxisSpace + Affine>(
                 ..
             } => {
                 let own = inner
-                    .get(number.place())
+                    .get(number.index())
                     .and_then(|(_, region)| region.clone());
                 found.push(shown(&own));
             }

@@ -25,11 +25,11 @@ pub const COORDINATE_BITS: u32 = 53;
 
 /// The least integer above all lattice coordinates; points on the line, and lines in the plane that are
 /// perpendicular to an axis, may lie there.
-pub const REACH: i64 = 1 << COORDINATE_BITS;
+pub const MAX_COORDINATE: i64 = 1 << COORDINATE_BITS;
 
 /// Return whether an integer is below 2^[`COORDINATE_BITS`] in magnitude, so that it is a lattice coordinate.
 pub const fn is_coordinate(k: i64) -> bool {
-    k.unsigned_abs() < REACH.unsigned_abs()
+    k.unsigned_abs() < MAX_COORDINATE.unsigned_abs()
 }
 
 /// The number of bits of a half-space's normal: its components are below 2^`HALF_SPACE_NORMAL_BITS` in
@@ -59,7 +59,7 @@ pub const SHORT_OFFSET_BITS: u32 = 124;
 pub const LINE_NORMAL_BITS: u32 = 62;
 
 /// The number of bits of the offset of a line in the plane, if the line meets the square |x|, |y| ≤
-/// [`REACH`].
+/// [`MAX_COORDINATE`].
 pub const LINE_OFFSET_BITS: u32 = LINE_NORMAL_BITS + COORDINATE_BITS + 2;
 
 /// Limbs of each homogeneous coordinate of a point where two lines of the plane meet.

@@ -178,7 +178,7 @@ impl Assembly<'_> {
             for e in group.edges() {
                 let [from, to] = [&e.from, &e.to].map(|at| {
                     let entry = known.entry(Arc::as_ptr(at));
-                    *entry.or_insert_with(|| self.table.number(at))
+                    *entry.or_insert_with(|| self.table.number_of(at))
                 });
                 edges.push(Edge { from, to });
             }
@@ -187,8 +187,8 @@ impl Assembly<'_> {
         for (i, e) in group.edges().iter().enumerate() {
             let before = group.edges()[..i].iter().zip(&edges[start..]);
             let [from, to] = [&e.from, &e.to].map(|at| known_end(at, before.clone()));
-            let from = from.unwrap_or_else(|| self.table.number(&e.from));
-            let to = to.unwrap_or_else(|| self.table.number(&e.to));
+            let from = from.unwrap_or_else(|| self.table.number_of(&e.from));
+            let to = to.unwrap_or_else(|| self.table.number_of(&e.to));
             edges.push(Edge { from, to });
         }
     }
@@ -257,7 +257,7 @@ impl Assembly<'_> {
                     continue;
                 };
                 for vertex in mesh.vertices_of(face.id()) {
-                    let place = Vertex::lattice(mesh.vertices[vertex.place()]);
+                    let place = Vertex::lattice(mesh.vertices[vertex.index()]);
                     let found = self.table.find(&place);
                     if let Some(point) = found.filter(|p| group_of[*p as usize] == number) {
                         self.name(point, (slot, vertex));
@@ -319,7 +319,7 @@ impl Assembly<'_> {
         self.untouched = Untouched::new(first..VertexId::of(self.vertices.len()));
         for (slot, fates) in fates.by_slot() {
             let source = self.sources.get(slot);
-            let (Some(mesh), images) = (source.mesh(), &self.images[slot.place()]) else {
+            let (Some(mesh), images) = (source.mesh(), &self.images[slot.index()]) else {
                 continue;
             };
             let source = Emitted { slot, mesh, images };
@@ -399,7 +399,7 @@ mod tests {
         let mesh = assemble(&made_of(&tetrahedra(), Term::Or)).expect("bounded");
         assert_closed(&mesh);
         assert_eq!(mesh.untouched, 4);
-        let is_source = |v: &VertexId| matches!(mesh.vertices[v.place()], Corner::Source(..));
+        let is_source = |v: &VertexId| matches!(mesh.vertices[v.index()], Corner::Source(..));
         assert!(mesh.triangles[..4].iter().flatten().all(is_source));
         // The corner inside is gone; its three edges meet the first one's last face.
         assert_eq!(mesh.vertices.len(), 4 + 3 + 3);

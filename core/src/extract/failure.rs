@@ -48,7 +48,7 @@ impl Failure {
 
 impl Overlap {
     fn error(self, solid: &Solid) -> Error {
-        if solid.is_claimed() {
+        if solid.is_reduced_by_claim() {
             return Error::internal(self.sign);
         }
         let (slot, source) = match culprit(solid) {

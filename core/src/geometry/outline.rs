@@ -204,8 +204,8 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let order = by_line(&edges);
     let mut alone: SmallVec<[bool; 64]> = SmallVec::from_elem(false, edges.len());
     let mut joined = Vec::new();
-    let line = |place: &Place| &edges[place.edge as usize].line;
-    for run in order.chunk_by(|a, b| a.mixed == b.mixed && line(a) == line(b)) {
+    let line = |entry: &EdgeByLine| &edges[entry.edge as usize].line;
+    for run in order.chunk_by(|a, b| a.line_hash == b.line_hash && line(a) == line(b)) {
         match run {
             [single] => alone[single.edge as usize] = true,
             _ => cancel_line(&edges, run, &mut joined),
@@ -219,23 +219,23 @@ pub fn cancel(mut edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
 }
 
 /// An edge's index, with the sort key of its line.
-struct Place {
+struct EdgeByLine {
     /// A hash of the line's key, faster to compare than the key itself.
-    mixed: u64,
+    line_hash: u64,
     edge: u32,
 }
 
 /// Indices of the edges, grouped by line; within a line in the given order.
-fn by_line(edges: &[OutlineEdge]) -> SmallVec<[Place; 32]> {
-    let places = (0..).zip(edges).map(|(edge, e)| Place {
-        mixed: e.line.mixed(),
+fn by_line(edges: &[OutlineEdge]) -> SmallVec<[EdgeByLine; 32]> {
+    let entries = (0..).zip(edges).map(|(edge, e)| EdgeByLine {
+        line_hash: e.line.line_hash(),
         edge,
     });
-    let mut order: SmallVec<[Place; 32]> = places.collect();
+    let mut order: SmallVec<[EdgeByLine; 32]> = entries.collect();
     order.sort_unstable_by(|a, b| {
-        let line = |place: &Place| &edges[place.edge as usize].line;
+        let line = |entry: &EdgeByLine| &edges[entry.edge as usize].line;
         let by_key = || line(a).cmp(line(b)).then(a.edge.cmp(&b.edge));
-        a.mixed.cmp(&b.mixed).then_with(by_key)
+        a.line_hash.cmp(&b.line_hash).then_with(by_key)
     });
     order
 }
@@ -246,7 +246,7 @@ struct Event<'a> {
 }
 
 /// Cancels the edges `run` of one line against each other, and appends the remaining maximal edges to `kept`.
-fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>) {
+fn cancel_line(edges: &[OutlineEdge], run: &[EdgeByLine], kept: &mut Vec<OutlineEdge>) {
     let run: SmallVec<[&OutlineEdge; 16]> = run.iter().map(|p| &edges[p.edge as usize]).collect();
     let axis = run[0].line.axis();
     if let [a, b] = run[..]
@@ -265,14 +265,14 @@ fn cancel_line(edges: &[OutlineEdge], run: &[Place], kept: &mut Vec<OutlineEdge>
             change: -1,
         });
     }
-    stretches(&mut events, axis, |sum, low, high| {
+    each_segment(&mut events, axis, |sum, low, high| {
         emit(&run, sum, low, high, kept);
     });
 }
 
 /// Calls `emit` for each interval of a line on which the running sum of the events' changes is a nonzero
 /// constant, with the sum and both ends.
-fn stretches<'a>(
+fn each_segment<'a>(
     events: &mut [Event<'a>],
     axis: usize,
     mut emit: impl FnMut(i32, &'a Arc<Vertex>, &'a Arc<Vertex>),
@@ -448,7 +448,7 @@ fn chords(edges: &[BareEdge], carrier: &Carrier, cut: &Plane, axis: usize) -> Ve
     let met = ends.filter(|(at, _)| at.side_of(cut) == Side::On);
     let mut events: Vec<Event> = met.map(|(at, change)| Event { at, change }).collect();
     let mut chords = Vec::new();
-    stretches(&mut events, axis, |sum, low, high| {
+    each_segment(&mut events, axis, |sum, low, high| {
         let (from, to) = if sum > 0 { (low, high) } else { (high, low) };
         let chord = BareEdge {
             from: Arc::clone(from),

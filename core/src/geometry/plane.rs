@@ -103,14 +103,14 @@ impl Plane {
         let n = normal(a, b, c);
         let level = |i: &usize| a[*i] == b[*i] && b[*i] == c[*i];
         match (0..3).find(level) {
-            Some(axis) => Self::level(axis, a[axis], Sign::of(n[axis])),
+            Some(axis) => Self::axis_plane(axis, a[axis], Sign::of(n[axis])),
             None => Self::new(n, -dot_lattice(&n, a)),
         }
     }
 
     /// The plane across an axis at a lattice coordinate, its normal pointing along the axis with this sign;
     /// `None` if the sign is zero.
-    fn level(axis: usize, at: i64, sign: Sign) -> Option<Self> {
+    fn axis_plane(axis: usize, at: i64, sign: Sign) -> Option<Self> {
         let plane = Self::axis_cut(axis, 2 * at);
         match sign {
             Sign::Zero => None,
@@ -244,7 +244,7 @@ impl Plane {
 
     /// Twice the coordinate of a plane perpendicular to `axis`, if the plane lies on the lattice or halfway
     /// between lattice planes; else `None`.
-    pub fn doubled_place(&self, axis: usize) -> Option<i64> {
+    pub fn doubled_coordinate(&self, axis: usize) -> Option<i64> {
         let lead = self.n[axis];
         let short = lead.unsigned_abs() <= 2 && self.only_axis() == Some(axis);
         let offset = short.then(|| self.d.narrow::<1>()).flatten()?;

@@ -64,7 +64,7 @@ pub struct Expression {
 /// An expression split into two smaller ones of which it is the union, intersection or symmetric difference,
 /// or the complement of that.
 #[derive(Debug)]
-pub struct Parted {
+pub struct SplitExpression {
     /// The two smaller expressions; they have no operand in common.
     pub halves: [Expression; 2],
     /// The expression that combines the two smaller ones: `halves[0]` is operand 0 and `halves[1]` is operand
@@ -72,7 +72,7 @@ pub struct Parted {
     pub whole: Expression,
 }
 
-impl Parted {
+impl SplitExpression {
     /// Returns the ascending operand indices of each of the two smaller expressions.
     pub fn operands(&self) -> [Vec<u32>; 2] {
         self.halves.each_ref().map(Expression::operands)
@@ -131,7 +131,7 @@ impl Expression {
     /// Splits the arguments of the last operation into two expressions with about half of the operands each;
     /// of a symmetric difference, the last argument becomes an expression alone. `None` if the last operation
     /// has fewer than two arguments, or if an operand would occur in both expressions.
-    pub fn parted(&self) -> Option<Parted> {
+    pub fn split(&self) -> Option<SplitExpression> {
         let mut top = self.terms.len() - 1;
         let mut negate = false;
         while let Term::Not(line) = &self.terms[top] {
@@ -167,7 +167,7 @@ impl Expression {
             terms.push(Term::Not(2));
         }
         let whole = Self { terms };
-        Some(Parted { halves, whole })
+        Some(SplitExpression { halves, whole })
     }
 
     /// Returns for each line how often operands occur in it once earlier lines are substituted; at least 1.

@@ -51,14 +51,14 @@ impl DisjointSets {
         for corners in triangles {
             let least = sets.lowest(corners);
             for v in corners {
-                sets.lower[v.place()] = least;
+                sets.lower[v.index()] = least;
             }
         }
         sets.shorten();
         spend(triangles.len());
         for corners @ [a, b, c] in triangles {
             let least = sets.lowest(corners);
-            if corners.iter().any(|v| sets.lower[v.place()] != least) {
+            if corners.iter().any(|v| sets.lower[v.index()] != least) {
                 sets.join(a.0, b.0);
                 sets.join(a.0, c.0);
             }
@@ -70,7 +70,7 @@ impl DisjointSets {
     /// The least number to which the three vertices of a triangle point.
     #[inline]
     fn lowest(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
-        let lower = |v: &VertexId| self.lower[v.place()];
+        let lower = |v: &VertexId| self.lower[v.index()];
         lower(a).min(lower(b)).min(lower(c))
     }
 

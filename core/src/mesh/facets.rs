@@ -89,7 +89,7 @@ pub fn check_reach(rows: &[Lattice]) -> Result<()> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lenience {
     /// Divide polygons that are not planar into triangles.
-    pub triangulate_bent: bool,
+    pub triangulate_nonplanar: bool,
     /// Leave out segments without length and polygons without area.
     pub drop_flat: bool,
 }
@@ -119,7 +119,7 @@ pub fn facets(
         let source = u32::try_from(number)
             .map_err(|_| Error::new(ErrorKind::TooLarge, "there are at most 2^32 facets"))?;
         let pieces = match dimension {
-            3 => polygon(own, source, lenience.triangulate_bent),
+            3 => polygon(own, source, lenience.triangulate_nonplanar),
             _ => point_or_segment(dimension, own, source).map(|facet| vec![facet]),
         };
         match pieces {
@@ -331,7 +331,7 @@ mod tests {
         assert_eq!(kind(&there_and_back), Some(ErrorKind::Degenerate));
         assert_eq!(kind(&[[0, 0, 0], [1, 0, 0]]), Some(ErrorKind::Shape));
         let lenience = Lenience {
-            triangulate_bent: true,
+            triangulate_nonplanar: true,
             drop_flat: true,
         };
         assert_eq!(facets(3, &bent, &[0, 4], lenience).unwrap().len(), 2);

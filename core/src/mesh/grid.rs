@@ -88,14 +88,14 @@ impl Pitch {
         }
     }
 
-    /// The difference from the lattice coordinate `place` to `x`, which is in model units, in steps; only the
-    /// result is rounded.
-    pub fn steps_beyond(self, x: f64, place: f64) -> f64 {
+    /// The difference from the lattice coordinate `origin` to `x`, which is in model units, in steps; only
+    /// the result is rounded.
+    pub fn steps_from(self, x: f64, origin: f64) -> f64 {
         let power = power_of_ten(self.0.abs());
         if self.0 <= 0 {
-            x.mul_add(power, -place)
+            x.mul_add(power, -origin)
         } else {
-            place.mul_add(-power, x) / power
+            origin.mul_add(-power, x) / power
         }
     }
 

@@ -121,7 +121,7 @@ impl Outgoing {
     fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let mut starts = vec![0u32; vertex_count + 1];
         for vertex in faces.iter().flatten() {
-            starts[vertex.place() + 1] += 1;
+            starts[vertex.index() + 1] += 1;
         }
         for i in 0..vertex_count {
             starts[i + 1] += starts[i];
@@ -130,7 +130,7 @@ impl Outgoing {
         let mut halves = vec![OutgoingHalfEdge::default(); 3 * faces.len()];
         for (number, vertex) in (0u32..).zip(faces.iter().flatten()) {
             poll();
-            let slot = &mut next[vertex.place()];
+            let slot = &mut next[vertex.index()];
             let head = ends(faces, number).1;
             halves[*slot as usize] = OutgoingHalfEdge { head, number };
             *slot += 1;
@@ -143,7 +143,7 @@ impl Outgoing {
     }
 
     fn of(&self, vertex: VertexId) -> &[OutgoingHalfEdge] {
-        let row = &self.starts[vertex.place()..vertex.place() + 2];
+        let row = &self.starts[vertex.index()..vertex.index() + 2];
         &self.halves[row[0] as usize..row[1] as usize]
     }
 
@@ -190,8 +190,8 @@ struct LineEdge {
 impl LineEdge {
     fn new(vertices: &[Lattice], faces: &[[VertexId; 3]], half: usize) -> Option<Self> {
         let face = &faces[half / 3];
-        let a = vertices[face[half % 3].place()];
-        let b = vertices[face[(half % 3 + 1) % 3].place()];
+        let a = vertices[face[half % 3].index()];
+        let b = vertices[face[(half % 3 + 1) % 3].index()];
         let (direction, axis, sign) = primitive_direction(&a, &b)?;
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         let line = (direction, moment(&a, &direction));

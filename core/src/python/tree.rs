@@ -24,7 +24,7 @@ use crate::geometry::spaces::dim3::Dim3;
 use crate::geometry::spaces::motion::Motion;
 use crate::interrupt::poll;
 use crate::merge::descent::counters::Counters;
-use crate::merge::evaluate::{evaluate, explained, normalize, settled};
+use crate::merge::evaluate::{blamed_on_snapshot, evaluate, normalize, union_with_itself};
 use crate::merge::expression::{Expression, Term};
 use crate::merge::profile::Declined;
 use crate::merge::rule::Rule;
@@ -99,8 +99,8 @@ impl Tree {
         size: usize,
         work: impl FnOnce() -> Result<T> + Send,
     ) -> PyResult<T> {
-        let explained = || caught(work).map_err(|e| explained(&self.solid, e));
-        run(py, threads, size, explained).map_err(|e| {
+        let blamed_on_snapshot = || caught(work).map_err(|e| blamed_on_snapshot(&self.solid, e));
+        run(py, threads, size, blamed_on_snapshot).map_err(|e| {
             with_report(py, e, &format!("Tree.{method}"), || {
                 let inputs = PyDict::new(py);
                 let operand = Bound::new(py, Self::of(self.solid.clone()))?;
@@ -177,7 +177,7 @@ impl Tree {
                 Ok(inputs)
             })
         })?;
-        let source = source.noting(rounded.map(operand_rounded).into_iter().collect());
+        let source = source.with_findings(rounded.map(operand_rounded).into_iter().collect());
         Ok(Self::of(Solid::of_source(Arc::new(source), trusted)))
     }
 
@@ -263,8 +263,8 @@ impl Tree {
         };
         if rule == Rule::Positive {
             let size = work_to_settle(&self.solid);
-            let settled = || settled(&self.solid);
-            if let Some(solid) = self.run(py, "normalized", threads, size, settled)? {
+            let union_with_itself = || union_with_itself(&self.solid);
+            if let Some(solid) = self.run(py, "normalized", threads, size, union_with_itself)? {
                 return Ok(Self::of(solid));
             }
         }
@@ -384,7 +384,7 @@ impl Tree {
     /// For each source whether faces of it may bound the solid.
     #[getter]
     fn named(&self) -> Vec<bool> {
-        let names = self.solid.names();
+        let names = self.solid.source_ids();
         let sources = self.solid.sources().iter();
         sources.map(|s| names.contains(&s.id())).collect()
     }

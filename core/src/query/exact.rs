@@ -11,9 +11,9 @@ use crate::tree::solid::Solid;
 
 /// The place of a vertex, if it is a lattice point.
 pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Option<Lattice> {
-    match mesh.vertices[vertex.place()] {
+    match mesh.vertices[vertex.index()] {
         Corner::Source(slot, index) => {
-            Some(solid.sources().get(slot).mesh()?.vertices[index.place()])
+            Some(solid.sources().get(slot).mesh()?.vertices[index.index()])
         }
         Corner::Point(point) => mesh.table.point(point).as_lattice().copied(),
     }
@@ -21,7 +21,7 @@ pub(super) fn lattice(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Opti
 
 /// A vertex as a point of space.
 pub(super) fn vertex(solid: &Solid, mesh: &ExactMesh, vertex: VertexId) -> Vertex {
-    match mesh.vertices[vertex.place()] {
+    match mesh.vertices[vertex.index()] {
         Corner::Point(point) => Vertex::clone(mesh.table.point(point)),
         Corner::Source(..) => Vertex::lattice(lattice(solid, mesh, vertex).unwrap_or_default()),
     }

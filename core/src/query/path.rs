@@ -39,7 +39,7 @@ pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<Point
     let mut next = (!tree.nodes().is_empty()).then_some(NodeId::ROOT);
     while let Some(number) = next {
         poll();
-        let node = &tree.nodes()[number.place()];
+        let node = &tree.nodes()[number.index()];
         let side = point.side::<S>(&node.hyperplane);
         steps.push(PointStep { node: number, side });
         next = match side {
@@ -224,7 +224,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
 
     fn visit(&mut self, number: NodeId, stretch: Stretch, open: &mut Vec<StackEntry>) {
         self.path.nodes += 1;
-        let node = &self.tree.nodes()[number.place()];
+        let node = &self.tree.nodes()[number.index()];
         let crossing = Crossing::of::<S, D>(&node.hyperplane, self.ray);
         let (pitch, exponent) = (self.pitch, self.ray.exponent());
         let units = |at: Ratio| parameter(pitch, &at, exponent);
@@ -262,7 +262,7 @@ impl<S: Cast<D> + Affine, W: Watcher<RayEvent>, const D: usize> Walk<'_, S, W, D
     }
 
     fn test(&mut self, number: NodeId) {
-        let node = &self.tree.nodes()[number.place()];
+        let node = &self.tree.nodes()[number.index()];
         let range = node.coplanar.start as usize..node.coplanar.end as usize;
         for fragment in &self.tree.fragments()[range] {
             let piece = fragment.piece.number;

@@ -17,7 +17,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::unbounded::big;
 use crate::interrupt::{poll, spend};
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{both, Worth};
+use crate::mesh::tasks::{both, WorkSize};
 use crate::tree::solid::Solid;
 
 /// Sums whose denominators have at most this many bits are reduced: for longer ones the divisor
@@ -85,7 +85,7 @@ impl Shares {
                 continue;
             }
             let numbers = [0, 1, 2].map(|i| {
-                let number = &mut known[triangle[i].place()];
+                let number = &mut known[triangle[i].index()];
                 *number.get_or_insert_with(|| {
                     points.push(Point::of(solid, mesh, triangle[i]));
                     points.len() as u32 - 1
@@ -164,9 +164,9 @@ impl Shares {
                 open: share.points.iter().map(|p| (*p, 1)).collect(),
             }),
             _ => {
-                let worth = Worth::pool_if(shares.len() >= MIN_TRIANGLES_DIVIDED);
+                let work_size = WorkSize::pool_if(shares.len() >= MIN_TRIANGLES_DIVIDED);
                 let (low, high) = halves(shares);
-                let (low, high) = both(worth, || self.partial(low), || self.partial(high));
+                let (low, high) = both(work_size, || self.partial(low), || self.partial(high));
                 self.joined(low, high)
             }
         }

@@ -32,7 +32,7 @@ use crate::mesh::handle::{FaceId, Slot, VertexId};
 use crate::mesh::import::is_flat;
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node, Part, PartElement};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
 /// An exact boundary without its tree.
@@ -157,19 +157,19 @@ impl Snapshot {
         let Some(cell) = cell.filter(|_| !(self.wholes.is_empty() && self.parts.is_empty())) else {
             return Ok(Solid::uniform(pitch, self.outside > 0));
         };
-        let mut leaf = Deferred {
+        let mut leaf = DeferredLeaf {
             corner: self.outside,
-            ..Deferred::default()
+            ..DeferredLeaf::default()
         };
         for w in &self.wholes {
             poll();
-            let source = sources.get(w.slot.place()).ok_or_else(bad_snapshot)?;
-            let known = w.faces.iter().all(|f| f.place() < source.face_count());
+            let source = sources.get(w.slot.index()).ok_or_else(bad_snapshot)?;
+            let known = w.faces.iter().all(|f| f.index() < source.face_count());
             if !known || !w.faces.is_sorted_by(|a, b| a < b) {
                 return Err(bad_snapshot());
             }
             let source = Arc::clone(source);
-            leaf.groups.push(Group {
+            leaf.groups.push(FaceGroup {
                 source,
                 orientation: w.manner.orientation(),
                 touching: w.manner.is_touching(),
@@ -272,7 +272,7 @@ impl Snapshot {
     fn reaches_infinity(&self) -> bool {
         let unbounded = |slot: Slot| {
             matches!(
-                self.sources.get(slot.place()),
+                self.sources.get(slot.index()),
                 Some(SourceData::HalfSpace(_))
             )
         };
@@ -291,7 +291,7 @@ impl Snapshot {
     /// The label at the low corner of the universe: a lone plane decides it by its side there.
     fn label_at_infinity(&self) -> Result<i32> {
         if let [only] = self.wholes.as_slice()
-            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.place())
+            && let Some(SourceData::HalfSpace(plane)) = self.sources.get(only.slot.index())
         {
             let side = plane.plane()?.side_of_corner(&Cell::UNIVERSE.corner());
             let turned = only.manner.orientation().is_opposite();
@@ -315,7 +315,7 @@ impl Snapshot {
 
     /// The solid stored in bytes, which are checked in full.
     ///
-    /// Only one claim is trusted ([`Solid::claimed`]): that its faces are the reduced boundary.
+    /// Only one claim is trusted ([`Solid::marked_as_claimed`]): that its faces are the reduced boundary.
     /// Checking it would cost ten times as much as all the rest.
     ///
     /// # Errors
@@ -326,7 +326,7 @@ impl Snapshot {
         if !matches!(snapshot.outside, 0 | 1) || !is_sound(&solid) {
             return Err(bad_snapshot());
         }
-        Ok(solid.claimed())
+        Ok(solid.marked_as_claimed())
     }
 }
 
@@ -342,7 +342,7 @@ impl SourceData {
         let mut is_named = vec![false; solid.sources().len()];
         let slots = wholes.iter().map(|w| w.slot);
         for slot in slots.chain(parts.iter().map(|p| p.slot)) {
-            is_named[slot.place()] = true;
+            is_named[slot.index()] = true;
         }
         let all = solid.sources().iter().zip(is_named);
         all.map(|(source, is_named)| {
@@ -457,17 +457,17 @@ fn is_sound_mesh(mesh: &TriangleMesh) -> bool {
         numbers,
     } = mesh;
     let count = vertices.len();
-    let named = faces.iter().flatten().all(|v| v.place() < count);
+    let named = faces.iter().flatten().all(|v| v.index() < count);
     let fits = vertices.iter().flatten().all(|k| is_coordinate(*k));
     let numbered = numbers.as_ref().is_none_or(|n| n.len() == faces.len());
-    let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.place()]));
+    let flat = |f: &[VertexId; 3]| is_flat(&f.map(|v| vertices[v.index()]));
     named && fits && numbered && doubles.len() == count && !faces.iter().any(flat)
 }
 
 impl PartData {
     fn element(&self, sources: &[Arc<Source>], home: Cell) -> Result<PartElement> {
-        let source = sources.get(self.slot.place()).ok_or_else(bad_snapshot)?;
-        if self.face.place() >= source.face_count() {
+        let source = sources.get(self.slot.index()).ok_or_else(bad_snapshot)?;
+        if self.face.index() >= source.face_count() {
             return Err(bad_snapshot());
         }
         let support = source.plane(self.face);
@@ -564,7 +564,7 @@ fn carries(carrier: &Carrier, support: &Plane, from: &Vertex, to: &Vertex) -> bo
         }
         Carrier::Cut(plane, _) => crosses(plane) && on(plane),
     };
-    carried && on(support) && !from.same(to)
+    carried && on(support) && !from.equals(to)
 }
 
 /// Return whether as many edges of an outline leave each point as arrive.

@@ -19,7 +19,7 @@ use crate::mesh::grid::Pitch;
 use crate::mesh::handle::{OrientedFace, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Deferred, Node, Part, PartElement};
+use crate::tree::node::{DeferredLeaf, Node, Part, PartElement};
 use crate::tree::solid::Solid;
 
 /// Return whether the one leaf of a solid, with its indices and ranges already checked, is the
@@ -42,7 +42,7 @@ fn is_proper(source: &Source) -> bool {
     };
     let numbers = mesh.numbers.iter();
     let ascending = |n: &Vec<u32>| n.is_sorted_by(|a, b| a < b);
-    numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.closes()
+    numbers.into_iter().all(ascending) && doubles_fit(mesh, source.pitch()) && source.is_closed()
 }
 
 /// Return whether the doubles of each vertex snap to it, on this lattice or on a coarser one that
@@ -107,7 +107,7 @@ fn is_within(part: &Part, face: &Polygon) -> bool {
 }
 
 /// Return the fate of each listed face; `None` if something is listed twice.
-fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
+fn fates(leaf: &DeferredLeaf, sources: &Sources) -> Option<Fates> {
     let gone = |s: &Arc<Source>| vec![Fate::Gone; s.face_count()];
     let mut fates = Fates::new(sources.table().iter().map(gone).collect());
     for group in &leaf.groups {
@@ -139,7 +139,7 @@ fn fates(leaf: &Deferred, sources: &Sources) -> Option<Fates> {
 }
 
 /// Return whether all listed edges cancel, except at the border of the universe.
-fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
+fn is_closed(leaf: &DeferredLeaf, fates: &Fates, sources: &Sources) -> bool {
     let rims = Rims::of(fates, sources);
     let frontier = rims.frontier(fates, sources).into_iter();
     let rim = frontier.filter_map(|edge| rim_edge(edge, fates, sources));
@@ -157,7 +157,7 @@ fn is_closed(leaf: &Deferred, fates: &Fates, sources: &Sources) -> bool {
 /// An edge of a whole face, in the direction of the face's orientation.
 fn rim_edge(edge: FrontierEdge, fates: &Fates, sources: &Sources) -> Option<OutlineEdge> {
     let mesh = sources.get(edge.slot).mesh()?;
-    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.place()]);
+    let [from, to] = half_edge_ends(mesh, edge.half).map(|v| mesh.vertices[v.index()]);
     let forward = OutlineEdge {
         from: Arc::new(Vertex::lattice(from)),
         to: Arc::new(Vertex::lattice(to)),

@@ -5,14 +5,14 @@ use crate::geometry::side::Orientation;
 
 /// The share of a solid's volume that a node of its tree contributes.
 #[derive(Clone, Copy, Debug)]
-pub struct Share {
+pub struct VolumeShare {
     /// Six times the flux of (0, 0, z) through the boundary in the node's cell.
     pub flux: Flux,
     /// True if the boundary may be unbounded, so that the flux has no meaning.
     pub open: bool,
 }
 
-impl Share {
+impl VolumeShare {
     /// The share of a node without boundary.
     pub const NONE: Self = Self {
         flux: Flux::ZERO,

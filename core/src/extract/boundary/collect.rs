@@ -15,7 +15,7 @@ use crate::merge::lists::separation::misses;
 use crate::mesh::handle::{FaceId, OrientedFace, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::mesh::tasks::in_pool;
-use crate::tree::node::{Branch, Deferred, Node};
+use crate::tree::node::{Branch, DeferredLeaf, Node};
 use crate::tree::solid::Solid;
 
 /// A face that is partly boundary.
@@ -170,7 +170,7 @@ fn by_face(spanning: &[Spanning], fates: &Fates) -> Vec<Spanning> {
             Some(*sum - fates.len())
         })
         .collect();
-    let place = |s: &Spanning| firsts[s.face.slot().place()] + s.face.id().place();
+    let place = |s: &Spanning| firsts[s.face.slot().index()] + s.face.id().index();
     let mut ends = vec![0u32; faces];
     for s in spanning {
         ends[place(s)] += 1;
@@ -194,7 +194,7 @@ fn is_full_face(cut: &mut CutFace, source: &Source) -> bool {
         return false;
     };
     let c = mesh.corners(cut.face.id());
-    let near = |edge: &BareEdge| c.iter().any(|corner| edge.from.may_be(corner));
+    let near = |edge: &BareEdge| c.iter().any(|corner| edge.from.may_lie_at(corner));
     if cut.outline.edges().len() != 3 || !cut.outline.edges().iter().all(near) {
         return false;
     }
@@ -220,7 +220,7 @@ impl<'a> Place<'a> {
     fn enter(&mut self, child: &'a Branch) -> bool {
         self.branch = child;
         self.complement ^= child.complement;
-        child.cell.holds_box(&self.low, &self.high)
+        child.cell.contains_box(&self.low, &self.high)
     }
 
     /// Return whether this is a leaf that lists the face.
@@ -235,7 +235,7 @@ impl<'a> Place<'a> {
 /// Return whether every leaf that a face meets lists it; may return false negatives.
 fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     let (low, high) = source.face_box(face.id());
-    if !root.cell.holds_box(&low, &high) {
+    if !root.cell.contains_box(&low, &high) {
         return false;
     }
     let mut open: SmallVec<[Place; 8]> = smallvec![Place {
@@ -284,7 +284,7 @@ fn enters(source: &Source, face: FaceId, cell: &Cell) -> bool {
 }
 
 /// Return whether a leaf, inverted if `complement`, lists a face.
-fn lists(leaf: &Deferred, source: &Source, face: OrientedFace, complement: bool) -> bool {
+fn lists(leaf: &DeferredLeaf, source: &Source, face: OrientedFace, complement: bool) -> bool {
     let orientation = face.orientation.turned_if(complement);
     leaf.groups.iter().any(|g| {
         let alike = g.source.id() == source.id() && g.orientation == orientation;

@@ -19,7 +19,7 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace};
 use crate::mesh::source::Source;
 use crate::mesh::tasks::{in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node, Part};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, Part};
 
 /// A face that extends beyond a leaf that lists it.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -114,7 +114,7 @@ struct Leaf<'a> {
     number: u32,
     cell: Cell,
     complement: bool,
-    content: &'a Deferred,
+    content: &'a DeferredLeaf,
 }
 
 /// Collects the listings of all leaves.
@@ -142,7 +142,7 @@ pub fn listed<'a>(root: &'a Branch, sources: &Sources) -> Listed<'a> {
     parts.sort_by_key(|listing| listing.face);
     all.parts = pieces(&parts, &all.cells);
     for piece in &all.parts {
-        fates.0[piece.face.slot().place()][piece.face.id().place()].store(CUT, Ordering::Relaxed);
+        fates.0[piece.face.slot().index()][piece.face.id().index()].store(CUT, Ordering::Relaxed);
     }
     all.fates = fates.into_plain();
     all
@@ -240,10 +240,10 @@ pub fn fill(
         let (bottom, top) = (cell.low(), cell.high());
         let a = each_axis(|i| low[i].max(bottom[i]));
         let b = each_axis(|i| high[i].min(top[i]));
-        let Some(less) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
+        let Some(difference) = count(&a, &b).and_then(|part| rest.checked_sub(part)) else {
             return false;
         };
-        rest = less;
+        rest = difference;
     }
     rest == 0
 }
@@ -303,7 +303,7 @@ impl Fates {
 
     /// The fates of a source's faces.
     pub fn of(&self, slot: Slot) -> &[Fate] {
-        &self.0[slot.place()]
+        &self.0[slot.index()]
     }
 
     /// The sources with their faces' fates.
@@ -326,13 +326,13 @@ impl Index<SourceFace> for Fates {
     type Output = Fate;
 
     fn index(&self, face: SourceFace) -> &Fate {
-        &self.0[face.slot.place()][face.id.place()]
+        &self.0[face.slot.index()][face.id.index()]
     }
 }
 
 impl IndexMut<SourceFace> for Fates {
     fn index_mut(&mut self, face: SourceFace) -> &mut Fate {
-        &mut self.0[face.slot.place()][face.id.place()]
+        &mut self.0[face.slot.index()][face.id.index()]
     }
 }
 
@@ -349,7 +349,7 @@ impl AtomicFates {
         let mut fates: Vec<Vec<AtomicU8>> = Vec::new();
         fates.resize_with(sources.table().len(), Vec::new);
         let mut enter = |source: &Source, slot: Slot| {
-            let fates = &mut fates[slot.place()];
+            let fates = &mut fates[slot.index()];
             if fates.is_empty() {
                 fates.resize_with(source.face_count(), || AtomicU8::new(GONE));
             }
@@ -387,7 +387,7 @@ impl<'a> Leaf<'a> {
                 let faces = group.faces.iter();
                 found.near.extend(faces.map(|f| SourceFace::new(slot, *f)));
             }
-            self.visit_group(group, slot, &fates.0[slot.place()], &mut found);
+            self.visit_group(group, slot, &fates.0[slot.index()], &mut found);
         }
         for element in &self.content.parts {
             let part = &*element.part;
@@ -401,18 +401,25 @@ impl<'a> Leaf<'a> {
         found
     }
 
-    fn visit_group(&self, group: &Group, slot: Slot, fates: &[AtomicU8], found: &mut Found<'a>) {
+    fn visit_group(
+        &self,
+        group: &FaceGroup,
+        slot: Slot,
+        fates: &[AtomicU8],
+        found: &mut Found<'a>,
+    ) {
         let orientation = group.orientation.turned_if(self.complement);
         let mark = match orientation {
             Orientation::Same => WHOLE,
             Orientation::Opposite => TURNED,
         };
         let mesh = group.source.mesh();
-        let holds_all = mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.holds(&c));
+        let holds_all =
+            mesh.is_some() && group.source.cell().is_some_and(|c| self.cell.contains(&c));
         let holds = mesh.map(|mesh| holder(mesh, &self.cell));
         for &face in &group.faces {
             if holds_all || holds.as_ref().is_some_and(|holds| holds(face)) {
-                fates[face.place()].store(mark, Ordering::Relaxed);
+                fates[face.index()].store(mark, Ordering::Relaxed);
             } else {
                 found.spanning.push(Spanning {
                     face: SourceFace::new(slot, face).oriented(orientation),
@@ -428,7 +435,7 @@ fn holder<'a>(mesh: &'a TriangleMesh, cell: &Cell) -> impl Fn(FaceId) -> bool + 
     let (low, high) = (*cell.low(), cell.high());
     move |face| {
         mesh.vertices_of(face).iter().all(|v| {
-            let p = &mesh.vertices[v.place()];
+            let p = &mesh.vertices[v.index()];
             (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i])
         })
     }

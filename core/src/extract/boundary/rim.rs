@@ -57,7 +57,7 @@ impl FrontierEdge {
     /// The line it lies on.
     pub fn line(&self, sources: &Sources) -> LineKey {
         let mesh = sources.get(self.slot).mesh();
-        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v.place()]));
+        let ends = mesh.map(|m| half_edge_ends(m, self.half).map(|v| m.vertices[v.index()]));
         let [a, b] = ends.unwrap_or([[0; 3], [1, 0, 0]]);
         LineKey::of_edge(&a, &b)
     }
@@ -89,14 +89,14 @@ impl Rims {
     /// Finds again the rims of sources whose fates have changed.
     pub fn renew(&mut self, fates: &Fates, sources: &Sources) {
         for slot in std::mem::take(&mut self.outdated) {
-            self.by_slot[slot.place()] = Rim::of(sources.get(slot), fates.of(slot));
-            self.by_ends[slot.place()] = OnceLock::new();
+            self.by_slot[slot.index()] = Rim::of(sources.get(slot), fates.of(slot));
+            self.by_ends[slot.index()] = OnceLock::new();
         }
     }
 
     /// The rim of a source.
     pub fn get(&self, slot: Slot) -> &Rim {
-        &self.by_slot[slot.place()]
+        &self.by_slot[slot.index()]
     }
 
     /// The frontier: half-edges of whole faces without a whole mate of the same orientation.
@@ -122,10 +122,10 @@ impl Rims {
             return None;
         }
         if rim.is_mixed(a) || rim.is_mixed(b) {
-            let by_ends = self.by_ends[slot.place()].get_or_init(|| rim.by_ends(mesh));
+            let by_ends = self.by_ends[slot.index()].get_or_init(|| rim.by_ends(mesh));
             return by_ends.get(&[b, a]).map(|mate| FaceId::beside(*mate));
         }
-        let around = self.around[slot.place()].get_or_init(|| Around::of(mesh));
+        let around = self.around[slot.index()].get_or_init(|| Around::of(mesh));
         let mut faces = around.faces(a).iter();
         let has_mate = |face: &&FaceId| {
             let mut halves = face.half_edges();
@@ -147,7 +147,7 @@ impl Around {
     fn of(mesh: &TriangleMesh) -> Self {
         let mut starts = vec![0u32; mesh.vertices.len() + 1];
         for vertex in mesh.faces.iter().flatten() {
-            starts[vertex.place()] += 1;
+            starts[vertex.index()] += 1;
         }
         let mut sum = 0;
         for start in &mut starts {
@@ -158,7 +158,7 @@ impl Around {
         for (face, corners) in mesh.faces.iter().enumerate().rev() {
             poll();
             for vertex in corners {
-                let start = &mut starts[vertex.place()];
+                let start = &mut starts[vertex.index()];
                 *start -= 1;
                 faces[*start as usize] = FaceId(as_number(face));
             }
@@ -168,7 +168,7 @@ impl Around {
 
     /// The faces around a vertex, ascending.
     fn faces(&self, vertex: VertexId) -> &[FaceId] {
-        let [start, end] = [0, 1].map(|i| self.starts[vertex.place() + i] as usize);
+        let [start, end] = [0, 1].map(|i| self.starts[vertex.index() + i] as usize);
         &self.faces[start..end]
     }
 }
@@ -193,7 +193,7 @@ impl Rim {
             near: Vec::new(),
         };
         for vertex in source.open_vertices() {
-            rim.touch[vertex.place()] |= OPEN;
+            rim.touch[vertex.index()] |= OPEN;
         }
         if rim.touch.iter().any(|t| is_mixed(*t)) {
             let near = |(_, (corners, fate)): &(FaceId, (&[VertexId; 3], &Fate))| {
@@ -207,7 +207,7 @@ impl Rim {
 
     /// Return whether a vertex is a corner of a whole face.
     pub fn is_used(&self, vertex: VertexId) -> bool {
-        self.touch[vertex.place()] & (KEPT | TURNED) != 0
+        self.touch[vertex.index()] & (KEPT | TURNED) != 0
     }
 
     /// The number of vertices that are corners of whole faces.
@@ -222,7 +222,7 @@ impl Rim {
 
     /// Return whether faces of different fates meet at a vertex.
     fn is_mixed(&self, vertex: VertexId) -> bool {
-        is_mixed(self.touch[vertex.place()])
+        is_mixed(self.touch[vertex.index()])
     }
 
     /// The half-edges of whole faces without an opposite of the same orientation, ascending.
@@ -233,7 +233,7 @@ impl Rim {
             for number in face.half_edges() {
                 let ends = half_edge_ends(mesh, number);
                 if ends.iter().all(|v| self.is_mixed(*v)) {
-                    halves.push(Half::new(number, ends, fates[face.place()]));
+                    halves.push(Half::new(number, ends, fates[face.index()]));
                 }
             }
         }
@@ -295,9 +295,9 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
                 Fate::Whole(Orientation::Opposite) => TURNED,
                 Fate::Cut | Fate::Gone => OTHER,
             };
-            touch[a.place()] |= kind;
-            touch[b.place()] |= kind;
-            touch[c.place()] |= kind;
+            touch[a.index()] |= kind;
+            touch[b.index()] |= kind;
+            touch[c.index()] |= kind;
         }
     }
     touch

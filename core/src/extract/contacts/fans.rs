@@ -183,7 +183,7 @@ impl Surface<'_> {
 
     /// Half-edges grouped by the lower of their vertices, and where each group starts.
     fn halves_by_lower_end(&self, vertex_count: u32) -> (Vec<usize>, Vec<usize>) {
-        let group = |half: usize| ends(self.triangles, half)[0].place();
+        let group = |half: usize| ends(self.triangles, half)[0].index();
         let mut starts = vec![0; vertex_count as usize + 1];
         for half in 0..self.mates.len() {
             poll();
@@ -329,7 +329,7 @@ impl Fans {
             let vertex = &mut corners[corner / 3][corner % 3];
             let copy = match copies[fan] {
                 Some(copy) => copy,
-                None if !std::mem::replace(&mut is_used[vertex.place()], true) => *vertex,
+                None if !std::mem::replace(&mut is_used[vertex.index()], true) => *vertex,
                 None => {
                     let copy = u32::try_from(origin.len()).map_err(|_| Error::TooMany)?;
                     let copy = VertexId(copy);

@@ -24,11 +24,11 @@ pub(super) fn split(mesh: &mut ExactMesh, sources: &Sources) -> Result<()> {
     let split = split_fans(&mesh.triangles, count, &Geometry { mesh, sources })
         .map_err(|e| Error::internal(format!("contacts could not be split: {e}")))?;
     let origin = &split.origin;
-    mesh.vertices = origin.iter().map(|v| mesh.vertices[v.place()]).collect();
+    mesh.vertices = origin.iter().map(|v| mesh.vertices[v.index()]).collect();
     mesh.triangles = split.corners;
     // Copies follow their originals.
     let mut order: Vec<VertexId> = VertexId::all().take(origin.len()).collect();
-    order.sort_by_key(|v| origin[v.place()]);
+    order.sort_by_key(|v| origin[v.index()]);
     let numbers = renumber(&mut mesh.vertices, &mut mesh.triangles, &order);
     let starts = split.split_edges.iter().map(|e| e[0]);
     let text = "the solid touches itself along edges, here split (start vertices)";
@@ -49,7 +49,7 @@ fn add_finding(
     numbers: &[VertexId],
     text: &str,
 ) {
-    let places: Vec<u64> = vertices.map(|v| u64::from(numbers[v.place()])).collect();
+    let places: Vec<u64> = vertices.map(|v| u64::from(numbers[v.index()])).collect();
     if !places.is_empty() {
         let finding = Finding::about(code, Severity::Note, &places, text);
         mesh.findings.push(finding);

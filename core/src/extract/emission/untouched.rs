@@ -53,7 +53,7 @@ impl Untouched {
 
     /// The number of these vertices.
     pub fn own_count(&self) -> usize {
-        self.vertices.end.place() - self.vertices.start.place()
+        self.vertices.end.index() - self.vertices.start.index()
     }
 
     /// Appends the whole faces of a source.
@@ -114,7 +114,7 @@ impl Task<'_> {
             let Some(((triangle, origin), number)) = out.next() else {
                 break;
             };
-            let image = |v: VertexId| source.images[v.place()];
+            let image = |v: VertexId| source.images[v.index()];
             let (a, b, c) = (image(a), image(b), image(c));
             *triangle = match orientation {
                 Orientation::Same => [a, b, c],

@@ -49,7 +49,7 @@ pub fn subdivisions(
 }
 
 /// An edge with its box in a projection.
-struct Boxed<'a> {
+struct BoxedElement<'a> {
     edge: &'a Edge,
     /// Its number in the outline.
     number: usize,
@@ -72,10 +72,10 @@ pub fn find_touching(
         return;
     }
     let view = Projection::onto(&group.plane, table);
-    let mut boxed: Vec<Boxed> = edges
+    let mut boxed: Vec<BoxedElement> = edges
         .iter()
         .enumerate()
-        .map(|(number, edge)| Boxed::new(edge, number, &view))
+        .map(|(number, edge)| BoxedElement::new(edge, number, &view))
         .collect();
     boxed.sort_by(|a, b| a.low[0].total_cmp(&b.low[0]));
     let (mut touches, mut crossings) = (Vec::new(), Vec::new());
@@ -100,7 +100,7 @@ pub fn find_touching(
         let (first, second) = (&group.edges()[a].carrier, &group.edges()[b].carrier);
         let cut = Arc::new(second.plane(&group.plane));
         if let Some(vertex) = first.meet(&group.plane, &cut) {
-            let point = table.number(&Arc::new(vertex));
+            let point = table.number_of(&Arc::new(vertex));
             touches.extend([(a, point), (b, point)]);
         }
     }
@@ -110,7 +110,7 @@ pub fn find_touching(
     }
 }
 
-impl<'a> Boxed<'a> {
+impl<'a> BoxedElement<'a> {
     /// The box is widened by the rounding of its ends.
     fn new(edge: &'a Edge, number: usize, view: &Projection) -> Self {
         let (a, b) = (view.approx(edge.from), view.approx(edge.to));

@@ -178,7 +178,7 @@ impl<'a> Cells<'a> {
         corners: [VertexId; 3],
         mut holds: impl FnMut(&[AtomicU32]) -> bool,
     ) -> bool {
-        let cells @ [a, b, c] = corners.map(|v| self.of_vertices[v.place()]);
+        let cells @ [a, b, c] = corners.map(|v| self.of_vertices[v.index()]);
         if a == b && b == c {
             return holds(&marks[usize::from(a)..=usize::from(a)]);
         }

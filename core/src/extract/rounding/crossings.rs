@@ -12,10 +12,10 @@ use crate::geometry::doubles::meeting::{are_clear, folds_over, has_no_area, meet
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::Facing;
 use crate::interrupt::{poll, spend};
-use crate::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
+use crate::merge::pairs::{pairs_of_many, BoxedElement, ElementsInBox, SweptElement};
 use crate::mesh::faces::Faces;
 use crate::mesh::handle::VertexId;
-use crate::mesh::tasks::{both, each, each_chunk, Worth, CHUNK};
+use crate::mesh::tasks::{both, each, each_chunk, WorkSize, CHUNK};
 use crate::mesh::terrains::terrains;
 use crate::mesh::topology::NONE;
 
@@ -47,7 +47,7 @@ impl Faults {
 pub fn faults(faces: &Faces, some: &[u32], party: impl Fn(u32) -> u32 + Sync + Send) -> Faults {
     let candidate = |e: &(u32, u32)| Candidate::of(faces, *e);
     let (mut candidates, (own, flat)) = both(
-        Worth::pool_if(some.len() > TRIANGLES_PER_TASK),
+        WorkSize::pool_if(some.len() > TRIANGLES_PER_TASK),
         || -> Vec<Candidate> {
             let near = triangles_near(faces, some, &party);
             let has_area = near.iter().filter(|e| !has_no_area(&faces.corners(e.1)));
@@ -270,21 +270,22 @@ impl<'a> Search<'a> {
             slabs: candidates.iter().map(slabs).collect(),
         };
         let boxes = (0..as_number(candidates.len())).map(|k| search.boxed(k));
-        let parts = Part::of(boxes.collect(), Image::BITS - 30).divided(TRIANGLES_PER_TASK);
-        let found = each(Worth::Pool, parts, |part| search.findings_in(part));
+        let parts =
+            ElementsInBox::of(boxes.collect(), Image::BITS - 30).divided(TRIANGLES_PER_TASK);
+        let found = each(WorkSize::Pool, parts, |part| search.findings_in(part));
         found.into_iter().fold(K::default(), K::with)
     }
 
-    fn boxed(&self, k: u32) -> Boxed {
+    fn boxed(&self, k: u32) -> BoxedElement {
         let (low, high) = self.image.ends(k);
         let party = self.candidates[k as usize].party as usize;
-        Boxed::new(party, k, [&low, &high], Image::BITS - 30)
+        BoxedElement::new(party, k, [&low, &high], Image::BITS - 30)
     }
 
-    fn swept(&self, k: u32) -> Swept {
+    fn swept(&self, k: u32) -> SweptElement {
         let (low, high) = self.image.ends(k);
         let Candidate { party, facing, .. } = &self.candidates[k as usize];
-        Swept {
+        SweptElement {
             operand: *party as usize,
             low,
             high,
@@ -293,7 +294,7 @@ impl<'a> Search<'a> {
     }
 
     /// The findings about the pairs that belong to a part of space.
-    fn findings_in<K: PairFindings>(&self, part: Part) -> K {
+    fn findings_in<K: PairFindings>(&self, part: ElementsInBox) -> K {
         let mut found = K::default();
         let mut waiting = Vec::new();
         pairs_of_many(

@@ -55,7 +55,7 @@ impl Drift {
 
     /// Bound the distance from a vertex of what came to it.
     pub fn at(&self, v: VertexId) -> f64 {
-        self.bounds[v.place()]
+        self.bounds[v.index()]
     }
 
     /// Return the bound at a vertex after an arrival; `None` beyond a limit.
@@ -91,9 +91,9 @@ impl Drift {
 
     /// Records an arrival at a vertex, and the bound after it.
     pub fn follow(&mut self, to: VertexId, arrival: Arrival, bound: f64) {
-        let to = to.place();
+        let to = to.index();
         let from = match arrival {
-            Arrival::Vertex(v) => v.place(),
+            Arrival::Vertex(v) => v.index(),
             Arrival::Point(place, slack) => {
                 let next = as_number(self.witnesses.len());
                 self.witnesses.push(Witness { place, slack, next });

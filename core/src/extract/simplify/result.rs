@@ -49,7 +49,7 @@ fn on_lattice(mesh: &Simplified, pitch: Pitch, noticed: Vec<Finding>) -> Result<
     let Some(source) = imported.filter(Source::is_as_given) else {
         return Ok(None);
     };
-    let solid = Solid::of_source(Arc::new(source.noting(noticed)), false);
+    let solid = Solid::of_source(Arc::new(source.with_findings(noticed)), false);
     normalize(&solid, Rule::Positive)?;
     Ok(solid.is_reduced().then_some(solid))
 }

@@ -11,7 +11,7 @@ use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::slabs::Slabs;
 use crate::geometry::doubles::{Point, Triangle};
 use crate::interrupt::{poll, spend};
-use crate::mesh::tasks::{each, Worth};
+use crate::mesh::tasks::{each, WorkSize};
 
 /// The number of children of a node of the tree.
 const CHILDREN_PER_NODE: usize = 4;
@@ -27,7 +27,7 @@ const PAIRS_PER_BLOCK: usize = 1 << 9;
 
 /// A box in single precision, rounded outwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bounds {
+pub(super) struct RoundedBox {
     pub(super) low: [f32; 3],
     pub(super) high: [f32; 3],
 }
@@ -36,17 +36,17 @@ pub(super) struct Bounds {
 /// of the level below.
 #[derive(Debug)]
 pub(super) struct BoxTree {
-    bounds: Vec<Bounds>,
+    bounds: Vec<RoundedBox>,
     slabs: Vec<Slabs>,
     /// The levels from the lowest to the root.
-    levels: Vec<Vec<Bounds>>,
+    levels: Vec<Vec<RoundedBox>>,
 }
 
 /// A node of a tree of boxes: its level, and its index in this level.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     level: usize,
-    place: usize,
+    index: usize,
 }
 
 /// Returns a number in single precision that is at most x: the margin exceeds the rounding.
@@ -59,7 +59,7 @@ fn up(x: f64) -> f32 {
     -down(-x)
 }
 
-impl Bounds {
+impl RoundedBox {
     const NOTHING: Self = Self {
         low: [f32::INFINITY; 3],
         high: [f32::NEG_INFINITY; 3],
@@ -92,25 +92,25 @@ impl Bounds {
         }
     }
 
-    fn around_all(some: &[Self]) -> Self {
-        some.iter().fold(Self::NOTHING, |all, one| all.joined(one))
+    fn around_all(boxes: &[Self]) -> Self {
+        boxes.iter().fold(Self::NOTHING, |all, one| all.joined(one))
     }
 
-    fn girth(&self) -> f32 {
+    fn extent_sum(&self) -> f32 {
         (0..3).map(|i| self.high[i] - self.low[i]).sum()
     }
 }
 
 /// Returns the indices of triangles in the order of their boxes' centres along a space-filling curve.
 pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
-    let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
-    let all = Bounds::around_all(&bounds);
+    let bounds: Vec<RoundedBox> = triangles.iter().map(RoundedBox::around).collect();
+    let all = RoundedBox::around_all(&bounds);
     let scale = each_axis(|i| {
         let width = 2.0 * (all.high[i] - all.low[i]);
         f32::from(CURVE_STEPS - 1) / width.max(f32::MIN_POSITIVE)
     });
     spend(triangles.len());
-    let number = |b: &Bounds| {
+    let number = |b: &RoundedBox| {
         let step = |i: usize| (b.low[i] + b.high[i] - 2.0 * all.low[i]) * scale[i];
         (0..3).fold(0, |all, i| all | spread(along_curve(step(i))) << i)
     };
@@ -148,14 +148,14 @@ impl BoxTree {
     /// Makes the tree of triangles, which must be sorted along a space-filling curve.
     pub(super) fn new(triangles: &[Triangle]) -> Self {
         spend(triangles.len());
-        let bounds: Vec<Bounds> = triangles.iter().map(Bounds::around).collect();
+        let bounds: Vec<RoundedBox> = triangles.iter().map(RoundedBox::around).collect();
         let mut levels = Vec::new();
         let mut below = &bounds;
         while below.len() > 1 || levels.is_empty() {
             levels.push(
                 below
                     .chunks(CHILDREN_PER_NODE)
-                    .map(Bounds::around_all)
+                    .map(RoundedBox::around_all)
                     .collect(),
             );
             below = &levels[levels.len() - 1];
@@ -175,27 +175,27 @@ impl BoxTree {
 
     fn root(&self) -> Node {
         let level = self.levels.len() - 1;
-        Node { level, place: 0 }
+        Node { level, index: 0 }
     }
 
-    fn at(&self, node: Node) -> &Bounds {
-        &self.levels[node.level][node.place]
+    fn at(&self, node: Node) -> &RoundedBox {
+        &self.levels[node.level][node.index]
     }
 
     fn children(&self, node: Node) -> impl Iterator<Item = Node> + use<> {
         let level = node.level - 1;
-        let end = (CHILDREN_PER_NODE * (node.place + 1)).min(self.levels[level].len());
-        (CHILDREN_PER_NODE * node.place..end).map(move |place| Node { level, place })
+        let end = (CHILDREN_PER_NODE * (node.index + 1)).min(self.levels[level].len());
+        (CHILDREN_PER_NODE * node.index..end).map(move |index| Node { level, index })
     }
 
     /// Returns the indices of the triangles' boxes in a node of the lowest level.
     fn leaves(&self, node: Node) -> std::ops::Range<usize> {
-        CHILDREN_PER_NODE * node.place
-            ..(CHILDREN_PER_NODE * (node.place + 1)).min(self.bounds.len())
+        CHILDREN_PER_NODE * node.index
+            ..(CHILDREN_PER_NODE * (node.index + 1)).min(self.bounds.len())
     }
 
     /// Calls `visit` with the index of each triangle's box that meets `bounds`.
-    pub(super) fn each_meeting(&self, bounds: &Bounds, mut visit: impl FnMut(usize)) {
+    pub(super) fn each_meeting(&self, bounds: &RoundedBox, mut visit: impl FnMut(usize)) {
         let mut open = if self.bounds.is_empty() {
             Vec::new()
         } else {
@@ -219,13 +219,13 @@ impl BoxTree {
     pub(super) fn each_block<T: Send, E: Send>(
         &self,
         other: &Self,
-        worth: Worth,
+        work_size: WorkSize,
         visit: impl Fn(&[[u32; 2]]) -> Result<T, E> + Sync + Send,
     ) -> Result<Vec<T>, E> {
         if self.bounds.is_empty() || other.bounds.is_empty() {
             return Ok(Vec::new());
         }
-        let found = each(worth, self.starts(other), |start| {
+        let found = each(work_size, self.starts(other), |start| {
             self.blocks_below(other, start, &visit)
         });
         let found: Result<Vec<Vec<T>>, E> = found.into_iter().collect();
@@ -254,7 +254,8 @@ impl BoxTree {
         let (ours, theirs) = (self.at(a), other.at(b));
         if a.level == 0 && b.level == 0 {
             found.push([a, b]);
-        } else if b.level > a.level || b.level == a.level && theirs.girth() > ours.girth() {
+        } else if b.level > a.level || b.level == a.level && theirs.extent_sum() > ours.extent_sum()
+        {
             let met = other.children(b).filter(|n| ours.meets(other.at(*n)));
             found.extend(met.map(|n| [a, n]));
         } else {
@@ -317,7 +318,7 @@ mod tests {
             let (a, b) = (triangles(count, 1), triangles(others, 77));
             let [ours, theirs] = [&a, &b].map(|t| BoxTree::new(t).with_slabs(t, &[0.0; 3]));
             let visit = |pairs: &[[u32; 2]]| Ok::<_, ()>(pairs.to_vec());
-            let found = ours.each_block(&theirs, Worth::Nothing, visit);
+            let found = ours.each_block(&theirs, WorkSize::Nothing, visit);
             let mut found = found.expect("no error").concat();
             found.sort_unstable();
             let met = |i: usize, j: usize| {
@@ -334,7 +335,7 @@ mod tests {
     #[test]
     fn boxes_are_rounded_outwards() {
         let x = f64::from(1 << 30) + 0.5;
-        let bounds = Bounds::between(&[x; 3], &[x; 3]);
+        let bounds = RoundedBox::between(&[x; 3], &[x; 3]);
         assert!(f64::from(bounds.low[0]) < x && f64::from(bounds.high[0]) > x);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::segments::{Cover, Line, Point, Segment};
+use super::segments::{Cover, Line, MeetingPoint, Segment};
 use super::surfaces::Surfaces;
 use super::windings::Probe;
 use crate::arith::convert::as_number;
@@ -16,15 +16,15 @@ use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
-use crate::merge::division::{axes, Defect, Division, Spot, Triangulation};
+use crate::merge::division::{axes, Defect, Division, PositionInPolygon, Triangulation};
 use crate::merge::profile::Declined;
 use crate::mesh::handle::VertexId;
 
 /// The exact points and planes that the divisions of all faces share.
 #[derive(Debug)]
-pub(super) struct Shared<'a> {
+pub(super) struct SharedGeometry<'a> {
     pub(super) surfaces: &'a Surfaces<'a>,
-    pub(super) points: &'a [Point],
+    pub(super) points: &'a [MeetingPoint],
     /// For each point its exact position.
     pub(super) vertices: Vec<Arc<Vertex>>,
     /// The planes of the divided faces, by joint number.
@@ -73,7 +73,7 @@ impl<'a> Arrangement<'a> {
     ///
     /// # Errors
     /// `Defect` if a segment leaves the face.
-    pub(super) fn new(face: Face<'a>, shared: &Shared) -> Result<Self, Declined> {
+    pub(super) fn new(face: Face<'a>, shared: &SharedGeometry) -> Result<Self, Declined> {
         let mut made = Self {
             division: divided(&face, shared)?,
             face,
@@ -92,7 +92,7 @@ impl<'a> Arrangement<'a> {
 
     /// Returns a cell for which `count` finds a winding number at a point inside it, with this number; `None`
     /// if there is none.
-    pub(super) fn counted(
+    pub(super) fn count_in_cell(
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
     ) -> Option<(usize, i32)> {
@@ -129,7 +129,7 @@ impl<'a> Arrangement<'a> {
 
     /// Records which cells are covered by other faces of the same plane, and how these change the number
     /// behind.
-    fn cover(&mut self, shared: &Shared) {
+    fn cover(&mut self, shared: &SharedGeometry) {
         let axis = self.face.plane.main_axis();
         let is_up = self.face.plane.normal()[axis] > 0;
         for Cover { other, .. } in self.face.covers {
@@ -153,15 +153,15 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// Returns the outline of the cells for which `holds` is true; collinear consecutive edges are merged.
-    pub(super) fn outline(&mut self, holds: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
-        let holds: Vec<bool> = self.cells.iter().map(holds).collect();
-        self.division.outline(&holds)
+    /// Returns the outline of the cells for which `is_kept` is true; collinear consecutive edges are merged.
+    pub(super) fn outline(&mut self, is_kept: impl Fn(&CellNumbers) -> bool) -> Vec<BareEdge> {
+        let is_kept: Vec<bool> = self.cells.iter().map(is_kept).collect();
+        self.division.outline(&is_kept)
     }
 }
 
 /// Divides a face along its segments.
-fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
+fn divided(face: &Face, shared: &SharedGeometry) -> Result<Division, Defect> {
     let ring = Arc::new(Ring::from_slice(&face.corners));
     let corner = |(i, at): (u32, &Lattice)| {
         let side = Carrier::Edge(LatticeEdge::of_ring(&ring, i));
@@ -181,7 +181,7 @@ fn divided(face: &Face, shared: &Shared) -> Result<Division, Defect> {
 
 /// Returns the winding number that `count` finds at a point inside a face; `None` if the face is too thin for
 /// such a point.
-pub(super) fn counted_in_face(
+pub(super) fn count_in_face(
     corners: &[Lattice; 3],
     plane: &Arc<Plane>,
     count: impl FnMut(&Probe) -> Option<i32>,
@@ -211,14 +211,14 @@ fn counted(
         .flat_map(|cell| WEIGHTS.map(|w| (cell, w)));
     points.into_iter().find_map(|(cell, weights)| {
         let probe = Probe::above(cells.mean(cell, weights), plane)?;
-        let is_inside = cells.holds(cell, Arc::clone(&probe.point));
+        let is_inside = cells.contains(cell, Arc::clone(&probe.point));
         let number = if is_inside { count(&probe) } else { None };
         Some((cell as usize, number?))
     })
 }
 
 /// Returns a plane that cuts a face along a segment.
-fn cut(segment: &Segment, face: &Face, shared: &Shared) -> Arc<Plane> {
+fn cut(segment: &Segment, face: &Face, shared: &SharedGeometry) -> Arc<Plane> {
     match segment.line {
         Line::Directed | Line::Touching { .. } => Arc::clone(&shared.planes[&segment.other]),
         Line::Edge(edge) => {
@@ -257,9 +257,9 @@ fn directed(
 }
 
 /// The numbers in a face's triangulation of the points in which faces meet, by the index of the point.
-struct Places(SmallVec<[(u32, u32); 16]>);
+struct PointNumbers(SmallVec<[(u32, u32); 16]>);
 
-impl Places {
+impl PointNumbers {
     fn of(&self, point: u32) -> u32 {
         let at = self.0.binary_search_by_key(&point, |p| p.0);
         at.map_or(0, |i| self.0[i].1)
@@ -267,23 +267,27 @@ impl Places {
 }
 
 /// Inserts the ends of a face's segments into its triangulation, and returns their numbers there.
-fn insert(division: &mut Division, face: &Face, shared: &Shared) -> Result<Places, Defect> {
+fn insert(
+    division: &mut Division,
+    face: &Face,
+    shared: &SharedGeometry,
+) -> Result<PointNumbers, Defect> {
     let mut points: SmallVec<[u32; 16]> = face.segments.iter().flat_map(|s| s.ends).collect();
     points.sort_unstable();
     points.dedup();
     let end = |p: &u32| {
-        let spot = face.spot(&shared.points[*p as usize]);
-        (&shared.vertices[*p as usize], spot)
+        let position = face.position_of(&shared.points[*p as usize]);
+        (&shared.vertices[*p as usize], position)
     };
     let ends: SmallVec<[_; 16]> = points.iter().map(end).collect();
     let places = division.insert(&ends)?;
-    Ok(Places(points.into_iter().zip(places).collect()))
+    Ok(PointNumbers(points.into_iter().zip(places).collect()))
 }
 
 impl Face<'_> {
     /// Returns whether a point is a corner of the face, lies on one of its sides, or is not known to lie on
     /// its border, as its name tells.
-    fn spot(&self, point: &Point) -> Spot {
+    fn position_of(&self, point: &MeetingPoint) -> PositionInPolygon {
         let side = |(operand, ends): &(usize, [VertexId; 2])| {
             let is_it = |i: &usize| {
                 let [a, b] = [self.vertices[*i], self.vertices[(i + 1) % 3]];
@@ -292,13 +296,13 @@ impl Face<'_> {
             (0..3).find(is_it).filter(|_| *operand == self.operand)
         };
         let side = match point {
-            Point::Corner(at) => {
+            MeetingPoint::Corner(at) => {
                 let corner = self.corners.iter().position(|c| c == at);
-                return corner.map_or(Spot::Inside, Spot::Corner);
+                return corner.map_or(PositionInPolygon::Inside, PositionInPolygon::Corner);
             }
-            Point::Through(edge, _) => side(edge),
-            Point::Edges(edges) => edges.iter().find_map(side),
+            MeetingPoint::Through(edge, _) => side(edge),
+            MeetingPoint::Edges(edges) => edges.iter().find_map(side),
         };
-        side.map_or(Spot::Inside, Spot::Side)
+        side.map_or(PositionInPolygon::Inside, PositionInPolygon::Side)
     }
 }

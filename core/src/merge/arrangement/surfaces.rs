@@ -66,7 +66,7 @@ impl<'a> Surfaces<'a> {
     }
 
     /// Returns one corner, as a lattice point, of the face with this joint number.
-    pub(super) fn place(&self, face: u32, corner: usize) -> Lattice {
-        self.operand(face).mesh.vertices[self.vertices(face)[corner].place()]
+    pub(super) fn corner(&self, face: u32, corner: usize) -> Lattice {
+        self.operand(face).mesh.vertices[self.vertices(face)[corner].index()]
     }
 }

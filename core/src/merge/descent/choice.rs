@@ -158,7 +158,7 @@ impl Round {
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
             round = round.next_with_empty_sibling(&cell, extent, total);
             let lower = cell.half(cut, Half::Minus);
-            cell = if lower.holds(inner) {
+            cell = if lower.contains(inner) {
                 lower
             } else {
                 cell.half(cut, Half::Plus)
@@ -178,7 +178,7 @@ impl Round {
     }
 
     /// Records that the kernel for general position refused a cell with `total` elements.
-    pub fn refused(&mut self, total: usize) {
+    pub fn record_refusal(&mut self, total: usize) {
         if self.groups && total > MAX_ELEMENTS_GENERAL {
             self.groups = false;
         } else {
@@ -190,7 +190,7 @@ impl Round {
     /// and more than 7/8 of the `total` reach out of the cell, as around a vertex of many faces.
     pub fn is_stuck(&self, cell: &Cell, states: &States, total: usize) -> bool {
         let reaching = |s: &(u32, State)| match &s.1 {
-            State::List(list) => list.reaching_out(cell),
+            State::List(list) => list.count_reaching_out(cell),
             State::Constant(_) | State::Tree(_) | State::Bins(_) => 0,
         };
         self.stuck && states.iter().map(reaching).sum::<usize>() * 8 > total * 7
@@ -310,7 +310,7 @@ mod tests {
         let suits = |round: Round| round.suits_general_position(&states, 8);
         let mut round = Round::START;
         assert!(suits(round));
-        round.refused(8);
+        round.record_refusal(8);
         assert!(!suits(round));
     }
 }

@@ -10,7 +10,7 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::merge::lists::bins::Bins;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
-use crate::mesh::tasks::Worth;
+use crate::mesh::tasks::WorkSize;
 use crate::tree::node::{Branch, Node};
 
 /// The least number of elements of a cell that is worth a task of its own: a kernel takes about 20 µs for
@@ -22,11 +22,11 @@ const MIN_ELEMENTS_PER_TASK: usize = 64;
 const MIN_ELEMENTS_FOR_POOL: usize = 256;
 
 /// Returns how far the work in a cell with this number of elements is worth sharing among threads.
-pub const fn worth(elements: usize) -> Worth {
+pub const fn work_size(elements: usize) -> WorkSize {
     match elements {
-        ..MIN_ELEMENTS_PER_TASK => Worth::Nothing,
-        MIN_ELEMENTS_PER_TASK..MIN_ELEMENTS_FOR_POOL => Worth::Task,
-        MIN_ELEMENTS_FOR_POOL.. => Worth::Pool,
+        ..MIN_ELEMENTS_PER_TASK => WorkSize::Nothing,
+        MIN_ELEMENTS_PER_TASK..MIN_ELEMENTS_FOR_POOL => WorkSize::Task,
+        MIN_ELEMENTS_FOR_POOL.. => WorkSize::Pool,
     }
 }
 
@@ -61,7 +61,7 @@ pub fn find(states: &States, operand: u32) -> Option<&State> {
 /// Returns the smallest cell around all operands' boundaries, if it is smaller than `cell`; `None` if it is
 /// not, or if an operand's boundary is not known to lie in a smaller cell. Lists are examined, element by
 /// element, only if `lists` is true.
-pub fn nested(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
+pub fn smaller_cell(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
     let mut inner: Option<Cell> = None;
     for (_, state) in states {
         let home = match state {
@@ -133,11 +133,11 @@ impl State {
         match self {
             Self::Constant(_) => false,
             Self::Tree(branch) => match &*branch.node {
-                Node::Deferred(leaf) => !leaf.worked,
+                Node::Deferred(leaf) => !leaf.by_kernel,
                 Node::Leaf(_) | Node::Cut(_) => false,
             },
-            Self::List(list) => !list.is_worked(),
-            Self::Bins(bins) => !bins.is_worked(),
+            Self::List(list) => !list.is_by_kernel(),
+            Self::Bins(bins) => !bins.is_by_kernel(),
         }
     }
 
@@ -163,7 +163,7 @@ impl State {
     }
 
     /// Returns the number of listed elements, each of which a halving of the cell visits.
-    pub fn listed(&self) -> usize {
+    pub fn listed_len(&self) -> usize {
         match self {
             Self::List(list) => list.len(),
             Self::Constant(_) | Self::Tree(_) | Self::Bins(_) => 0,
@@ -192,8 +192,10 @@ impl State {
     pub fn list_in(&self, cell: &Cell, sources: &Sources) -> Option<Cow<'_, List>> {
         match self {
             Self::List(list) => Some(Cow::Borrowed(list)),
-            Self::Tree(branch) => List::lifted(branch, cell, sources).map(Cow::Owned),
-            Self::Bins(bins) => List::lifted(&bins.branch_in(cell), cell, sources).map(Cow::Owned),
+            Self::Tree(branch) => List::of_larger_cell(branch, cell, sources).map(Cow::Owned),
+            Self::Bins(bins) => {
+                List::of_larger_cell(&bins.branch_in(cell), cell, sources).map(Cow::Owned)
+            }
             Self::Constant(_) => None,
         }
     }
@@ -303,7 +305,7 @@ fn divide_tree(branch: Branch, cell: &Cell, cut: Cut) -> (State, State) {
         );
     }
     let around = State::Constant(branch.outside);
-    if cell.half(cut, Half::Minus).holds(&branch.cell) {
+    if cell.half(cut, Half::Minus).contains(&branch.cell) {
         (State::Tree(branch), around)
     } else {
         (around, State::Tree(branch))
@@ -354,7 +356,7 @@ mod tests {
         let tree = |s: &crate::tree::solid::Solid| State::Tree(s.root().clone());
         let states: States = (0..).zip(solids.iter().map(tree)).collect();
         assert!(find(&states, 1).is_some() && find(&states, 2).is_none());
-        let inner = nested(&Cell::UNIVERSE, &states, false);
+        let inner = smaller_cell(&Cell::UNIVERSE, &states, false);
         assert_eq!(inner, Some(Cell::around(&[0; 3], &[15; 3])));
     }
 }

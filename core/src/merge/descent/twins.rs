@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use super::state::{State, States};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
-use crate::merge::kernels::problem::Listed;
+use crate::merge::kernels::problem::ListedOperand;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
 use crate::merge::residual::Twin;
 use crate::tree::node::Part;
@@ -74,8 +74,11 @@ pub fn of_one_node(states: &States) -> Option<TwinTable> {
 ///
 /// # Cost
 /// One pass over lists of equal length, and a sort of lists with equal hashes.
-pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Option<TwinTable> {
-    let size = |listed: &Listed| (listed.list.len(), listed.list.corner);
+pub fn of_one_boundary<'a>(
+    operands: &'a [ListedOperand<'a>],
+    sources: &Sources,
+) -> Option<TwinTable> {
+    let size = |listed: &ListedOperand| (listed.list.len(), listed.list.corner);
     let mut sizes: SmallVec<[_; 8]> = operands.iter().map(size).collect();
     sizes.sort_unstable();
     if sizes.is_sorted_by(|a, b| a < b) {
@@ -85,8 +88,8 @@ pub fn of_one_boundary<'a>(operands: &'a [Listed<'a>], sources: &Sources) -> Opt
         let next = sizes.partition_point(|other| *other < size(listed)) + 1;
         sizes.get(next) != Some(&size(listed))
     };
-    let mut known: HashMap<_, &'a Listed<'a>> = HashMap::default();
-    let mut first = |listed: &'a Listed<'a>| {
+    let mut known: HashMap<_, &'a ListedOperand<'a>> = HashMap::default();
+    let mut first = |listed: &'a ListedOperand<'a>| {
         if has_unique_size(listed) {
             return None;
         }

@@ -21,7 +21,7 @@ use crate::geometry::side::Orientation;
 use crate::interrupt::poll;
 use crate::mesh::handle::FaceId;
 use crate::mesh::triangles::TriangleMesh;
-use crate::tree::node::{Branch, Deferred, Group, Node};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node};
 
 /// The least average number of faces in a cell into which faces are sorted.
 const MIN_FACES_PER_CELL: usize = 4;
@@ -55,7 +55,7 @@ pub struct Bins {
 
 /// The faces of one group, which share a mesh and an orientation; `first` is the number of the first one
 /// among the elements of the leaf.
-struct Run<'a> {
+struct GroupFaces<'a> {
     mesh: &'a TriangleMesh,
     faces: &'a [FaceId],
     orientation: Orientation,
@@ -93,7 +93,7 @@ impl Bins {
         }
     }
 
-    fn sorted(home: &Branch, runs: &[Run], window: Window, total: usize) -> Option<Self> {
+    fn sorted(home: &Branch, runs: &[GroupFaces], window: Window, total: usize) -> Option<Self> {
         let sorted = Sorted::new(&window, runs, total);
         let rows = rows(
             &window,
@@ -137,7 +137,7 @@ impl Bins {
 
     /// Returns the winding number at the low corner of a cell that lies in the sorted leaf.
     pub fn corner_of(&self, cell: &Cell) -> i32 {
-        let change = self.crossings.up_to(self.window.corner(cell));
+        let change = self.crossings.sum_up_to(self.window.corner(cell));
         self.home.oriented(self.leaf().corner + change)
     }
 
@@ -146,29 +146,29 @@ impl Bins {
         if *cell == self.home.cell {
             return self.home.clone();
         }
-        let leaf = Deferred {
+        let leaf = DeferredLeaf {
             groups: self.groups_in(cell),
             parts: Vec::new(),
             corner: self.corner_of(cell),
-            worked: self.leaf().worked,
-            ..Deferred::default()
+            by_kernel: self.leaf().by_kernel,
+            ..DeferredLeaf::default()
         };
         Branch::of_node(*cell, Node::Deferred(leaf))
     }
 
     /// Returns true if a kernel made the sorted leaf; false if it is the unchanged boundary of an operand.
-    pub fn is_worked(&self) -> bool {
-        self.leaf().worked
+    pub fn is_by_kernel(&self) -> bool {
+        self.leaf().by_kernel
     }
 
-    fn leaf(&self) -> &Deferred {
+    fn leaf(&self) -> &DeferredLeaf {
         match &*self.home.node {
             Node::Deferred(leaf) => leaf,
             Node::Leaf(_) | Node::Cut(_) => unreachable!("bins are made of deferred leaves"),
         }
     }
 
-    fn groups_in(&self, cell: &Cell) -> Vec<Group> {
+    fn groups_in(&self, cell: &Cell) -> Vec<FaceGroup> {
         let elements = self.elements_in(cell);
         let mut rest = &elements[..];
         let mut groups = Vec::new();
@@ -180,7 +180,7 @@ impl Bins {
             rest = others;
             if !own.is_empty() {
                 let face = |e: &u32| group.faces[(e - first) as usize];
-                groups.push(Group {
+                groups.push(FaceGroup {
                     touching: group.touching,
                     source: Arc::clone(&group.source),
                     orientation: group.orientation.turned_if(self.home.complement),
@@ -227,14 +227,14 @@ fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
 }
 
 /// Returns the faces of a leaf by group; `None` if the leaf has elements other than triangles of meshes.
-fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
+fn runs(leaf: &DeferredLeaf) -> Option<Vec<GroupFaces<'_>>> {
     if !leaf.parts.is_empty() {
         return None;
     }
     let mut runs = Vec::with_capacity(leaf.groups.len());
     let mut first = 0;
     for group in &leaf.groups {
-        runs.push(Run {
+        runs.push(GroupFaces {
             mesh: group.source.mesh()?,
             faces: &group.faces,
             orientation: group.orientation,
@@ -246,12 +246,12 @@ fn runs(leaf: &Deferred) -> Option<Vec<Run<'_>>> {
 }
 
 /// Returns the group of the element with this number, and its face.
-fn find<'a, 'b>(runs: &'a [Run<'b>], element: u32) -> (&'a Run<'b>, FaceId) {
+fn find<'a, 'b>(runs: &'a [GroupFaces<'b>], element: u32) -> (&'a GroupFaces<'b>, FaceId) {
     let run = &runs[runs.partition_point(|r| r.first <= element) - 1];
     (run, run.faces[(element - run.first) as usize])
 }
 
-impl Run<'_> {
+impl GroupFaces<'_> {
     /// Returns true if the group has at least as many faces as its mesh has vertices, so that one pass over
     /// all vertices pays.
     fn is_most(&self) -> bool {
@@ -278,8 +278,8 @@ fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
 
 /// Returns the intersection of a cell with the bounding box of all faces, as its low and its high corner;
 /// `None` if it is empty.
-fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
-    let (low, high) = runs.iter().filter_map(Run::bounds).reduce(joint)?;
+fn bounds(runs: &[GroupFaces], home: &Cell) -> Option<(Lattice, Lattice)> {
+    let (low, high) = runs.iter().filter_map(GroupFaces::bounds).reduce(joint)?;
     let top = home.high();
     let low = each_axis(|i| low[i].max(home.low()[i]));
     let high = each_axis(|i| high[i].min(top[i]));
@@ -288,7 +288,7 @@ fn bounds(runs: &[Run], home: &Cell) -> Option<(Lattice, Lattice)> {
 
 /// Returns the window of the smallest cells with enough faces in each cell and with each face in few enough
 /// cells, on average; `None` if there is none, or if its cells are fewer than `MIN_CELLS`.
-fn plan(runs: &[Run], home: &Cell, total: usize) -> Option<Window> {
+fn plan(runs: &[GroupFaces], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(FACES_SAMPLED);
     let sample: Vec<(Lattice, Lattice)> = (0..as_number(total))
@@ -323,7 +323,7 @@ fn cell_count(window: &Window, span: &Span) -> usize {
 }
 
 impl Sorted {
-    fn new(window: &Window, runs: &[Run], total: usize) -> Self {
+    fn new(window: &Window, runs: &[GroupFaces], total: usize) -> Self {
         let mut sorted = Self {
             cells: Vec::with_capacity(total),
             spans: Vec::new(),
@@ -335,7 +335,7 @@ impl Sorted {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
                 let code = |f: FaceId| {
                     let vertices = mesh.vertices_of(f);
-                    each_axis(|i| codes[vertices[i].place()])
+                    each_axis(|i| codes[vertices[i].index()])
                 };
                 sorted.add(window, run, code);
             } else {
@@ -345,7 +345,7 @@ impl Sorted {
         sorted
     }
 
-    fn add(&mut self, window: &Window, run: &Run, codes: impl Fn(FaceId) -> [u32; 3]) {
+    fn add(&mut self, window: &Window, run: &GroupFaces, codes: impl Fn(FaceId) -> [u32; 3]) {
         for (element, face) in (run.first..).zip(run.faces) {
             let [a, b, c] = codes(*face);
             let cell = if a == b && b == c {
@@ -361,7 +361,12 @@ impl Sorted {
 
 /// Returns the pairs of cell and element for the faces that reach into several cells; `None` if these pairs,
 /// with the lines that the faces may cross, are more than `limit`.
-fn rows(window: &Window, runs: &[Run], spans: &[Span], limit: usize) -> Option<Vec<(u32, u32)>> {
+fn rows(
+    window: &Window,
+    runs: &[GroupFaces],
+    spans: &[Span],
+    limit: usize,
+) -> Option<Vec<(u32, u32)>> {
     let mut rows = Vec::with_capacity(2 * spans.len());
     let mut lines = 0;
     for span in spans {
@@ -506,7 +511,7 @@ mod tests {
             assert_eq!(bins.corner_of(&cell), i32::from(inside), "{place:?}");
             let held = |face: &FaceId| {
                 let (low, high) = mesh.face_box(*face);
-                cell.holds_box(&low, &high)
+                cell.contains_box(&low, &high)
             };
             let small: Vec<FaceId> = mesh.face_ids().filter(held).collect();
             let faces = bins.groups_in(&cell).into_iter().flat_map(|g| g.faces);

@@ -12,9 +12,9 @@ use crate::interrupt::spend;
 use crate::mesh::cached::Cached;
 use crate::mesh::handle::{FaceId, Slot};
 use crate::mesh::source::{Shape, Source};
-use crate::tree::node::{Branch, Deferred, Group, Node, PartElement};
+use crate::tree::node::{Branch, DeferredLeaf, FaceGroup, Node, PartElement};
 use crate::tree::pieces::{pieces, Piece};
-use crate::tree::table::Table;
+use crate::tree::table::SourceTable;
 
 /// Coordinates relative to a cell, divided by a power of two so that they fit into 32 bits.
 #[derive(Clone, Copy, Debug)]
@@ -65,14 +65,14 @@ pub struct Record {
     high: [i32; 3],
     /// The number of the face in its source.
     pub face: FaceId,
-    run: Run,
+    tag: GroupTag,
 }
 
 /// The source (its slot), the orientation and the mark `TOUCHING` of a group of faces in one 32-bit word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Run(u32);
+struct GroupTag(u32);
 
-impl Run {
+impl GroupTag {
     /// The bit that is set for faces turned around; the bits below 2³⁰ are the slot, as there are fewer than
     /// 2³⁰ sources.
     const OPPOSITE: u32 = 1 << 31;
@@ -102,12 +102,12 @@ impl Run {
 impl Record {
     /// Returns the index of the face's source in the evaluation's table of sources.
     pub fn slot(&self) -> Slot {
-        self.run.slot()
+        self.tag.slot()
     }
 
     /// Returns the orientation of the face relative to its source.
     pub fn orientation(&self) -> Orientation {
-        self.run.orientation()
+        self.tag.orientation()
     }
 }
 
@@ -138,21 +138,21 @@ pub struct List {
     pub parts: Vec<PartRecord>,
     /// The operand's winding number at the cell's low corner.
     pub corner: i32,
-    worked: bool,
+    by_kernel: bool,
 }
 
 /// The sources (meshes and half-spaces) of an evaluation, in the order in which operands first name them.
 #[derive(Debug)]
-pub struct Sources(Table);
+pub struct Sources(SourceTable);
 
 impl Sources {
     /// Makes the sources of an evaluation from a table.
-    pub fn new(table: Table) -> Self {
+    pub fn new(table: SourceTable) -> Self {
         Self(table)
     }
 
     /// Returns the table of sources.
-    pub fn table(&self) -> &Table {
+    pub fn table(&self) -> &SourceTable {
         &self.0
     }
 
@@ -187,7 +187,7 @@ impl List {
     }
 
     /// Makes the list of a deferred leaf in the cell of its branch, complemented if the branch is.
-    pub fn open(leaf: &Deferred, branch: &Branch, sources: &Sources) -> Self {
+    pub fn open(leaf: &DeferredLeaf, branch: &Branch, sources: &Sources) -> Self {
         spend(leaf.len());
         let frame = Frame::of(&branch.cell);
         let mut list = Self {
@@ -195,12 +195,12 @@ impl List {
             records: Vec::with_capacity(leaf.groups.iter().map(|g| g.faces.len()).sum()),
             parts: Vec::with_capacity(leaf.parts.len()),
             corner: branch.oriented(leaf.corner),
-            worked: leaf.worked,
+            by_kernel: leaf.by_kernel,
         };
         for group in &leaf.groups {
             let orientation = group.orientation.turned_if(branch.complement);
-            let run = Run::new(sources.slot(&group.source), orientation, group.touching);
-            let record = |face: &FaceId| frame.record(&group.source, *face, run);
+            let tag = GroupTag::new(sources.slot(&group.source), orientation, group.touching);
+            let record = |face: &FaceId| frame.record(&group.source, *face, tag);
             list.records.extend(group.faces.iter().map(record));
         }
         for element in &leaf.parts {
@@ -212,16 +212,16 @@ impl List {
 
     /// Makes the list of a deferred leaf in a cell that contains the cell of its branch. `None` if an element
     /// extends out of the branch's cell, because outside it may not bound the solid.
-    pub fn lifted(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
+    pub fn of_larger_cell(branch: &Branch, cell: &Cell, sources: &Sources) -> Option<Self> {
         let Node::Deferred(leaf) = &*branch.node else {
             return None;
         };
         let held = |source: &Source, face: &FaceId| {
             let (low, high) = source.face_box(*face);
-            branch.cell.holds_box(&low, &high)
+            branch.cell.contains_box(&low, &high)
         };
-        let faces = |g: &Group| g.faces.iter().all(|face| held(&g.source, face));
-        let parts = |p: &PartElement| branch.cell.holds(&p.part.home);
+        let faces = |g: &FaceGroup| g.faces.iter().all(|face| held(&g.source, face));
+        let parts = |p: &PartElement| branch.cell.contains(&p.part.home);
         let all_held = || leaf.groups.iter().all(faces) && leaf.parts.iter().all(parts);
         if branch.cell != *cell && !all_held() {
             return None;
@@ -239,13 +239,13 @@ impl List {
     }
 
     /// Returns true if a kernel made the elements; false if they are the unchanged boundary of an operand.
-    pub fn is_worked(&self) -> bool {
-        self.worked
+    pub fn is_by_kernel(&self) -> bool {
+        self.by_kernel
     }
 
     /// Returns true if the list has a face that may touch other elements anywhere, not only along edges.
     pub fn is_touching(&self) -> bool {
-        self.records.iter().any(|r| r.run.is_touching())
+        self.records.iter().any(|r| r.tag.is_touching())
     }
 
     /// Returns true if no element is listed.
@@ -267,7 +267,7 @@ impl List {
             records: self.divide_records(cell, cut, sources),
             parts: above(&self.parts, cut.axis, at),
             corner: self.corner + change,
-            worked: self.worked,
+            by_kernel: self.by_kernel,
         };
         self.parts.retain(|p| p.low[cut.axis] < at);
         (self, plus)
@@ -284,7 +284,7 @@ impl List {
 
     /// Returns the winding number in `cell` outside of the smaller cell `inner`; no element may meet this
     /// region.
-    pub fn beside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
+    pub fn winding_number_outside(&self, cell: &Cell, inner: &Cell, sources: &Sources) -> i32 {
         match cell.cut() {
             Some(cut) if inner.low() == cell.low() => {
                 self.corner + self.change_along_edge(cell, cut, sources)
@@ -304,7 +304,7 @@ impl List {
         let frame = self.frame;
         self.records.retain(|r| {
             let (below, above) = (r.low[axis] < at, r.high[axis] >= at);
-            let large = below && above && frame.exceeds(r, cell);
+            let large = below && above && frame.is_as_long_as(r, cell);
             if above && !(large && missed(r, 1)) {
                 plus.push(*r);
             }
@@ -314,7 +314,7 @@ impl List {
     }
 
     /// Returns the number of elements that extend out of the cell, which halving cannot separate soon.
-    pub fn reaching_out(&self, cell: &Cell) -> usize {
+    pub fn count_reaching_out(&self, cell: &Cell) -> usize {
         let high = cell.high();
         let (low, high) = (self.frame.indices(cell.low()), self.frame.indices(&high));
         let out = |a: &[i32; 3], b: &[i32; 3]| (0..3).any(|i| a[i] < low[i] || b[i] > high[i]);
@@ -325,7 +325,7 @@ impl List {
     fn reframe(&mut self, cell: &Cell, sources: &Sources) {
         let frame = Frame::of(cell);
         for r in &mut self.records {
-            *r = frame.record(sources.get(r.slot()), r.face, r.run);
+            *r = frame.record(sources.get(r.slot()), r.face, r.tag);
         }
         for p in &mut self.parts {
             *p = frame.part_record(p.element.clone(), p.pieces.clone());
@@ -382,14 +382,14 @@ impl List {
         if self.is_empty() {
             return Node::Leaf(corner);
         }
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<FaceGroup> = Vec::new();
         let mut open = None;
         for r in &self.records {
-            if open != Some(r.run) {
-                open = Some(r.run);
+            if open != Some(r.tag) {
+                open = Some(r.tag);
                 let source = Arc::clone(sources.get(r.slot()));
-                groups.push(Group {
-                    touching: r.run.is_touching(),
+                groups.push(FaceGroup {
+                    touching: r.tag.is_touching(),
                     source,
                     orientation: r.orientation().turned_if(complement),
                     faces: Vec::new(),
@@ -401,11 +401,11 @@ impl List {
         }
         let turned = |p: PartRecord| p.element.turned_if(complement);
         let parts = self.parts.into_iter().map(turned).collect();
-        Node::Deferred(Deferred {
+        Node::Deferred(DeferredLeaf {
             groups,
             parts,
             corner,
-            worked: self.worked,
+            by_kernel: self.by_kernel,
             share: Cached::new(),
         })
     }
@@ -420,7 +420,7 @@ fn above(parts: &[PartRecord], axis: usize, at: i32) -> Vec<PartRecord> {
 }
 
 impl Frame {
-    fn record(&self, source: &Source, face: FaceId, run: Run) -> Record {
+    fn record(&self, source: &Source, face: FaceId, tag: GroupTag) -> Record {
         let (low, high) = match source.shape() {
             Shape::Mesh(mesh) => {
                 let (low, high) = mesh.face_box(face);
@@ -432,7 +432,7 @@ impl Frame {
             low,
             high,
             face,
-            run,
+            tag,
         }
     }
 
@@ -448,7 +448,7 @@ impl Frame {
 
     /// Returns true if a face's bounding box is at least as long as `cell` on an axis; such a face may miss a
     /// half of the cell that its box meets.
-    fn exceeds(&self, r: &Record, cell: &Cell) -> bool {
+    fn is_as_long_as(&self, r: &Record, cell: &Cell) -> bool {
         let size = cell.size();
         (0..3).any(|i| {
             let extent = i64::from(r.high[i]) - i64::from(r.low[i]);
@@ -490,7 +490,7 @@ mod tests {
             let inner = Cell::around(&[low.max(0); 3], &[high; 3]);
             let list = down(scene.lists[0].clone(), scene.cell, &cell, &scene.sources).0;
             let mut shrunk = list.clone();
-            let beside = shrunk.beside(&cell, &inner, &scene.sources);
+            let beside = shrunk.winding_number_outside(&cell, &inner, &scene.sources);
             shrunk.shrink(&inner, &scene.sources);
             let (list, others) = down(list, cell, &inner, &scene.sources);
             assert_eq!((shrunk.corner, shrunk.len()), (list.corner, list.len()));
@@ -505,7 +505,7 @@ mod tests {
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
             let (minus, plus) = list.divide(&cell, cut, sources);
             let lower = cell.half(cut, Half::Minus);
-            let is_lower = lower.holds(inner);
+            let is_lower = lower.contains(inner);
             cell = if is_lower {
                 lower
             } else {

@@ -3,7 +3,7 @@
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
-use crate::geometry::doubles::vector::{cross, dot, less};
+use crate::geometry::doubles::vector::{cross, difference, dot};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::mesh::handle::FaceId;
 use crate::mesh::source::{Shape, Source};
@@ -66,7 +66,7 @@ fn middle(low: &Lattice, high: &Lattice, origin: &Lattice) -> ([f64; 3], [f64; 3
 }
 
 fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
-    let e = each_axis(|i| less(&p[(i + 1) % 3], &p[i]));
+    let e = each_axis(|i| difference(&p[(i + 1) % 3], &p[i]));
     let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let across = e
         .iter()

@@ -25,7 +25,7 @@ type Ends = [i32; 3];
 
 /// An element with its box in 32-bit coordinates.
 #[derive(Clone, Copy)]
-pub struct Boxed {
+pub struct BoxedElement {
     low: [i32; 3],
     high: [i32; 3],
     /// The index of the element's operand.
@@ -34,7 +34,7 @@ pub struct Boxed {
     pub number: u32,
 }
 
-impl Boxed {
+impl BoxedElement {
     /// Makes an element with its operand's index, its number, and its box with `shift` low bits of each
     /// coordinate dropped.
     #[allow(clippy::cast_possible_truncation, reason = "the shift leaves 31 bits")]
@@ -94,9 +94,9 @@ struct Lanes {
 }
 
 /// The elements whose boxes reach into a box of space, grouped by operand.
-pub struct Part {
-    elements: Vec<Boxed>,
-    space: Space,
+pub struct ElementsInBox {
+    elements: Vec<BoxedElement>,
+    half_open_box: HalfOpenBox,
     /// The number of low bits dropped from the coordinates of the boxes.
     shift: u32,
 }
@@ -106,7 +106,7 @@ pub struct Part {
 /// Two elements belong to the space that contains the low corner of the intersection of their boxes, so that
 /// each pair is found in one space only.
 #[derive(Clone, Copy)]
-pub struct Space {
+pub struct HalfOpenBox {
     low: [i32; 3],
     high: [i32; 3],
 }
@@ -115,18 +115,18 @@ pub struct Space {
 /// that halving does not separate, with the space to which their pairs belong. Stops and returns `None` if a
 /// call does.
 pub fn pairs(
-    part: Part,
+    part: ElementsInBox,
     mut meet: impl FnMut(u32, u32) -> Option<()>,
-    mut crowd: impl FnMut(&[Boxed], &Space) -> Option<()>,
+    mut crowd: impl FnMut(&[BoxedElement], &HalfOpenBox) -> Option<()>,
 ) -> Option<()> {
     part.halved(MAX_COMPARED, |part| {
         if part.elements.len() <= MAX_COMPARED_UNSEPARATED {
-            let space = part.space;
-            compare_all(&part.elements, &space, |a, b| {
-                space.if_owned(a, b, || meet(a.number, b.number))
+            let half_open_box = part.half_open_box;
+            compare_all(&part.elements, &half_open_box, |a, b| {
+                half_open_box.if_owned(a, b, || meet(a.number, b.number))
             })
         } else {
-            crowd(&part.elements, &part.space)
+            crowd(&part.elements, &part.half_open_box)
         }
     })
 }
@@ -134,13 +134,13 @@ pub fn pairs(
 /// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the earlier operand
 /// first. Compares all with all; stops and returns `None` if `meet` does.
 pub fn compare_all(
-    elements: &[Boxed],
-    space: &Space,
-    mut meet: impl FnMut(&Boxed, &Boxed) -> Option<()>,
+    elements: &[BoxedElement],
+    half_open_box: &HalfOpenBox,
+    mut meet: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let operands = elements.chunk_by(|a, b| a.operand == b.operand).count();
     if 2 * operands > elements.len() {
-        return compare_in_order(elements, space, meet);
+        return compare_in_order(elements, half_open_box, meet);
     }
     let lanes = Lanes::of(elements);
     let mut end = 0;
@@ -166,11 +166,11 @@ pub fn compare_all(
 /// where most operands have a single element. Sorts the boxes along the axis on which they overlap least, and
 /// compares only those that overlap there.
 fn compare_in_order(
-    elements: &[Boxed],
-    space: &Space,
-    mut meet: impl FnMut(&Boxed, &Boxed) -> Option<()>,
+    elements: &[BoxedElement],
+    half_open_box: &HalfOpenBox,
+    mut meet: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
-    let axis = space.sparsest(elements);
+    let axis = half_open_box.sparsest(elements);
     let sorted = sorted_along(axis, elements);
     let lanes = Lanes::of(&sorted);
     for (next, one) in (1..).zip(&sorted) {
@@ -195,7 +195,7 @@ fn compare_in_order(
 }
 
 /// Returns the elements sorted by the lower ends of their boxes on an axis.
-fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
+fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     let begins = (0usize..).zip(elements).map(|(at, e)| (e.low[axis], at));
     let mut order: Vec<(i32, usize)> = begins.collect();
     order.sort_unstable();
@@ -204,7 +204,11 @@ fn sorted_along(axis: usize, elements: &[Boxed]) -> Vec<Boxed> {
 
 /// Calls `meet` for each element of the first group and each of the second whose boxes overlap; compares all
 /// with all.
-pub fn compare_groups(first: &[Boxed], second: &[Boxed], meet: impl Fn(&Boxed, &Boxed)) {
+pub fn compare_groups(
+    first: &[BoxedElement],
+    second: &[BoxedElement],
+    meet: impl Fn(&BoxedElement, &BoxedElement),
+) {
     let lanes = Lanes::of(second);
     for one in first {
         spend(1 + second.len() / PAIRS_PER_UNIT);
@@ -222,11 +226,11 @@ impl Lanes {
     };
 
     /// Packs the boxes of elements in order; empty boxes fill the last pack.
-    fn of(elements: &[Boxed]) -> Vec<Self> {
+    fn of(elements: &[BoxedElement]) -> Vec<Self> {
         elements.chunks(LANES).map(Self::of_few).collect()
     }
 
-    fn of_few(elements: &[Boxed]) -> Self {
+    fn of_few(elements: &[BoxedElement]) -> Self {
         let mut lanes = Self::EMPTY;
         for (lane, e) in elements.iter().enumerate() {
             for i in 0..3 {
@@ -238,7 +242,12 @@ impl Lanes {
     }
 
     /// Calls `found` with the indices, from `from` on, of the boxes that overlap the box of `one`.
-    fn each_overlapping(all: &[Self], from: usize, one: &Boxed, mut found: impl FnMut(usize)) {
+    fn each_overlapping(
+        all: &[Self],
+        from: usize,
+        one: &BoxedElement,
+        mut found: impl FnMut(usize),
+    ) {
         let first = from / LANES;
         for (block, lanes) in (first..).zip(&all[first.min(all.len())..]) {
             let missed = lanes.missed_by(one);
@@ -256,7 +265,7 @@ impl Lanes {
     /// Returns for each box a 32-bit word with all bits set if it misses the box of `one`, otherwise zero.
     /// Words as wide as the compared coordinates compile to vector instructions.
     #[inline]
-    fn missed_by(&self, one: &Boxed) -> [u32; LANES] {
+    fn missed_by(&self, one: &BoxedElement) -> [u32; LANES] {
         let word = |b: bool| if b { !0u32 } else { 0 };
         let mut missed = [0; LANES];
         for i in 0..3 {
@@ -269,9 +278,9 @@ impl Lanes {
     }
 }
 
-impl Space {
+impl HalfOpenBox {
     /// Returns the smallest space that contains the boxes of all elements.
-    pub fn around(elements: &[Boxed]) -> Self {
+    pub fn around(elements: &[BoxedElement]) -> Self {
         let low = |i: usize| elements.iter().map(|e| e.low[i]).min();
         let high = |i: usize| elements.iter().map(|e| e.high[i]).max();
         Self {
@@ -281,9 +290,9 @@ impl Space {
     }
 
     /// Returns the axis along which the boxes of elements are shortest, relative to the space.
-    fn sparsest(&self, elements: &[Boxed]) -> usize {
+    fn sparsest(&self, elements: &[BoxedElement]) -> usize {
         let share = |i: usize| {
-            let length = |e: &Boxed| f64::from(e.high[i]) - f64::from(e.low[i]);
+            let length = |e: &BoxedElement| f64::from(e.high[i]) - f64::from(e.low[i]);
             let size = f64::from(self.high[i]) - f64::from(self.low[i]);
             elements.iter().map(length).sum::<f64>() / size
         };
@@ -310,7 +319,12 @@ impl Space {
 
     /// Calls `meet` if the pair of elements belongs to this space, and returns its result; otherwise returns
     /// `Some(())`.
-    pub fn if_owned(&self, a: &Boxed, b: &Boxed, meet: impl FnOnce() -> Option<()>) -> Option<()> {
+    pub fn if_owned(
+        &self,
+        a: &BoxedElement,
+        b: &BoxedElement,
+        meet: impl FnOnce() -> Option<()>,
+    ) -> Option<()> {
         if self.owns(a, b) {
             meet()
         } else {
@@ -319,7 +333,7 @@ impl Space {
     }
 
     /// Returns true if the low corner of the intersection of two elements' boxes lies in this space.
-    pub fn owns(&self, a: &Boxed, b: &Boxed) -> bool {
+    pub fn owns(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
             self.low[i] < corner && corner <= self.high[i]
@@ -328,21 +342,21 @@ impl Space {
 }
 
 /// Returns the elements sorted by number, without repetition.
-pub fn each_once(mut elements: Vec<Boxed>) -> Vec<Boxed> {
+pub fn each_once(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
     elements
 }
 
-impl Part {
+impl ElementsInBox {
     /// Makes a part of space around all elements, which must be grouped by operand; `shift` is the number of
     /// low bits dropped from their boxes.
     #[must_use]
-    pub fn of(elements: Vec<Boxed>, shift: u32) -> Self {
-        let space = Space::around(&elements);
+    pub fn of(elements: Vec<BoxedElement>, shift: u32) -> Self {
+        let half_open_box = HalfOpenBox::around(&elements);
         Self {
             elements,
-            space,
+            half_open_box,
             shift,
         }
     }
@@ -353,15 +367,15 @@ impl Part {
         self.shift
     }
 
-    /// Halves space into parts with at most `most` elements each, and adds one part with all elements that
-    /// halving does not separate. Each pair of overlapping boxes belongs to one of the first parts, or is in
-    /// the last one.
+    /// Halves space into parts with at most `max_elements` elements each, and adds one part with all elements
+    /// that halving does not separate. Each pair of overlapping boxes belongs to one of the first parts, or
+    /// is in the last one.
     #[must_use]
-    pub fn divided(self, most: usize) -> Vec<Self> {
+    pub fn divided(self, max_elements: usize) -> Vec<Self> {
         let shift = self.shift;
         let (mut parts, mut crowded) = (Vec::new(), Vec::new());
-        let _ = self.halved(most, |part| {
-            if part.elements.len() <= most {
+        let _ = self.halved(max_elements, |part| {
+            if part.elements.len() <= max_elements {
                 parts.push(part);
             } else {
                 crowded.extend(part.elements);
@@ -374,13 +388,13 @@ impl Part {
         parts
     }
 
-    /// Halves space, and calls `visit` for each part that has at most `most` elements or that halving does
-    /// not separate; stops and returns `None` if `visit` does.
-    fn halved(self, most: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
+    /// Halves space, and calls `visit` for each part that has at most `max_elements` elements or that halving
+    /// does not separate; stops and returns `None` if `visit` does.
+    fn halved(self, max_elements: usize, mut visit: impl FnMut(Self) -> Option<()>) -> Option<()> {
         let mut open = vec![self];
         while let Some(part) = open.pop() {
             spend(part.elements.len());
-            let halved = part.elements.len() > most && part.halve(&mut open);
+            let halved = part.elements.len() > max_elements && part.halve(&mut open);
             if !halved {
                 visit(part)?;
             }
@@ -394,7 +408,7 @@ impl Part {
     /// It takes the longest axis that separates the elements: this is as good as the best one, and saves
     /// counting on all axes.
     fn halve(&self, open: &mut Vec<Self>) -> bool {
-        let length = |i: usize| self.space.high[i] - self.space.low[i];
+        let length = |i: usize| self.half_open_box.high[i] - self.half_open_box.low[i];
         let mut axes = [0, 1, 2];
         axes.sort_by_key(|i| Reverse(length(*i)));
         let wide = axes.into_iter().filter(|i| length(*i) > 1);
@@ -404,20 +418,20 @@ impl Part {
             return false;
         };
         let at = self.middle(axis);
-        let [below, above] = self.space.divided(axis, at);
+        let [below, above] = self.half_open_box.divided(axis, at);
         self.push(below, few, |e| e.is_below(axis, at), open);
         self.push(above, many, |e| e.is_above(axis, at), open);
         true
     }
 
     fn middle(&self, axis: usize) -> i32 {
-        self.space.low[axis].midpoint(self.space.high[axis])
+        self.half_open_box.low[axis].midpoint(self.half_open_box.high[axis])
     }
 
     /// Returns the numbers of elements that reach into the lower and into the upper half on an axis.
     fn counts(&self, axis: usize) -> [usize; 2] {
         let at = self.middle(axis);
-        let count = |[below, above]: [u32; 2], e: &Boxed| {
+        let count = |[below, above]: [u32; 2], e: &BoxedElement| {
             [
                 below + u32::from(e.is_below(axis, at)),
                 above + u32::from(e.is_above(axis, at)),
@@ -428,18 +442,18 @@ impl Part {
 
     fn push(
         &self,
-        space: Space,
+        half_open_box: HalfOpenBox,
         count: usize,
-        reaches: impl Fn(&&Boxed) -> bool,
+        reaches: impl Fn(&&BoxedElement) -> bool,
         open: &mut Vec<Self>,
     ) {
-        let mut elements: Vec<Boxed> = Vec::with_capacity(count);
+        let mut elements: Vec<BoxedElement> = Vec::with_capacity(count);
         elements.extend(self.elements.iter().filter(reaches));
-        let alone = |e: &Boxed| e.operand == elements[0].operand;
+        let alone = |e: &BoxedElement| e.operand == elements[0].operand;
         if !elements.iter().all(alone) {
             open.push(Self {
                 elements,
-                space,
+                half_open_box,
                 ..*self
             });
         }

@@ -1,6 +1,6 @@
 //! Directions in space as vectors of doubles.
 
-use super::Swept;
+use super::SweptElement;
 use crate::geometry::doubles::vector::{cross, dot};
 
 /// The padding of projections, as a share of the largest coordinate; far above their rounding errors.
@@ -25,7 +25,7 @@ pub fn unit(v: &[f64; 3]) -> Option<[f64; 3]> {
 }
 
 /// Returns the largest absolute coordinate of all corners, at least 1.
-pub fn largest_coordinate(elements: &[&Swept]) -> f64 {
+pub fn largest_coordinate(elements: &[&SweptElement]) -> f64 {
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
     let coordinates = corners.flatten().flatten();
     coordinates.fold(1.0f64, |m, x| m.max(x.abs()))

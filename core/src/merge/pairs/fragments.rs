@@ -4,10 +4,10 @@
 //! does not separate them. But a needle crosses few of the cells in its box, and its fragment in a cell has a
 //! small box.
 
-use super::boxes::{Boxed, Space};
+use super::boxes::{BoxedElement, HalfOpenBox};
 use super::clip::part_within;
 use super::direction::SLACK;
-use super::Swept;
+use super::SweptElement;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::Triangle;
 use crate::interrupt::spend;
@@ -42,8 +42,8 @@ pub struct Crowd {
 /// The fragments of elements in a cell, grouped by operand.
 pub struct Fragments {
     /// The fragments' boxes, numbered by the index of the element.
-    pub elements: Vec<Boxed>,
-    pub space: Space,
+    pub elements: Vec<BoxedElement>,
+    pub half_open_box: HalfOpenBox,
     /// The number of consecutive further divisions that may separate nothing.
     patience: u32,
 }
@@ -66,7 +66,7 @@ impl Division {
 impl Crowd {
     /// Starts the separation of elements; `swept` has their boxes before, and `boxed` after dropping `shift`
     /// low bits.
-    pub fn of(boxed: &[Boxed], swept: &[Swept], shift: u32) -> Self {
+    pub fn of(boxed: &[BoxedElement], swept: &[SweptElement], shift: u32) -> Self {
         let scale = 1.0 / as_double(1u64 << shift);
         let scaled = |corners: Triangle| corners.map(|p| p.map(|x| x * scale));
         let corners: Vec<Option<Triangle>> = swept.iter().map(|e| e.corners.map(scaled)).collect();
@@ -75,7 +75,7 @@ impl Crowd {
         let numbered = (0..).zip(boxed).map(|(number, e)| e.numbered(number));
         let all = Fragments {
             elements: numbered.collect(),
-            space: Space::around(boxed),
+            half_open_box: HalfOpenBox::around(boxed),
             patience: MAX_VAIN_DIVISIONS,
         };
         Self {
@@ -85,12 +85,12 @@ impl Crowd {
         }
     }
 
-    /// Clips the fragment `of` an element to the smaller cell `space`; `None` if nothing is left.
-    fn fragment(&self, of: &Boxed, space: &Space) -> Option<Boxed> {
+    /// Clips the fragment `of` an element to the smaller cell `half_open_box`; `None` if nothing is left.
+    fn fragment(&self, of: &BoxedElement, half_open_box: &HalfOpenBox) -> Option<BoxedElement> {
         let Some(corners) = &self.corners[of.number as usize] else {
             return Some(*of);
         };
-        let (low, high) = space.ends();
+        let (low, high) = half_open_box.ends();
         // A cell contains the points from the lattice point after its low end to the one after its high end.
         let low = low.map(|x| f64::from(x) + 1.0 - self.slack);
         let high = high.map(|x| f64::from(x) + 1.0 + self.slack);
@@ -107,27 +107,29 @@ impl Crowd {
         let places = (0..3).flat_map(|axis| whole.divisions(axis));
         let best = places.min_by(|a, b| a.left().total_cmp(&b.left()))?;
         let Division { axis, at, .. } = best;
-        let fragment = |e: &Boxed, space: &Space| {
+        let fragment = |e: &BoxedElement, half_open_box: &HalfOpenBox| {
             let crosses = e.is_below(axis, at) && e.is_above(axis, at);
             if crosses {
-                self.fragment(e, space)
+                self.fragment(e, half_open_box)
             } else {
                 Some(*e)
             }
         };
-        let part = |space: Space, patience: u32, reaches: fn(&Boxed, usize, i32) -> bool| {
+        let part = |half_open_box: HalfOpenBox,
+                    patience: u32,
+                    reaches: fn(&BoxedElement, usize, i32) -> bool| {
             let own = whole.elements.iter().filter(|e| reaches(e, axis, at));
             Fragments {
-                elements: own.filter_map(|e| fragment(e, &space)).collect(),
-                space,
+                elements: own.filter_map(|e| fragment(e, &half_open_box)).collect(),
+                half_open_box,
                 patience,
             }
         };
         let patience = whole.patience_after(&best)?;
-        let [below, above] = whole.space.divided(axis, at);
+        let [below, above] = whole.half_open_box.divided(axis, at);
         Some([
-            part(below, patience[0], Boxed::is_below),
-            part(above, patience[1], Boxed::is_above),
+            part(below, patience[0], BoxedElement::is_below),
+            part(above, patience[1], BoxedElement::is_above),
         ])
     }
 }
@@ -161,13 +163,13 @@ impl Fragments {
         if division.left() <= MAX_SHARE_OF_PAIRS * before {
             return Some([MAX_VAIN_DIVISIONS; 2]);
         }
-        let less = self.patience.checked_sub(1);
-        let less = less.filter(|_| division.left() <= before)?;
+        let difference = self.patience.checked_sub(1);
+        let difference = difference.filter(|_| division.left() <= before)?;
         let of_part = |own: f64| {
             if 2.0 * own <= before {
                 MAX_VAIN_DIVISIONS
             } else {
-                less
+                difference
             }
         };
         Some(division.pairs.map(of_part))
@@ -186,20 +188,20 @@ impl Fragments {
     }
 
     /// Returns the fragments of each operand as a slice.
-    fn runs(&self) -> impl Iterator<Item = &[Boxed]> {
+    fn runs(&self) -> impl Iterator<Item = &[BoxedElement]> {
         self.elements.chunk_by(|a, b| a.operand == b.operand)
     }
 
     /// Returns the candidate coordinates for dividing the cell on an axis, with the numbers of pairs on both
     /// sides.
     fn divisions(&self, axis: usize) -> impl Iterator<Item = Division> + use<> {
-        let (low, high) = self.space.ends();
+        let (low, high) = self.half_open_box.ends();
         let (low, length) = (low[axis], high[axis] - low[axis]);
         let scale = as_double(INTERVALS_PER_AXIS) / f64::from(length);
-        let first_from = |x: i32| as_place((f64::from(x - low) * scale).ceil());
+        let first_from = |x: i32| as_index((f64::from(x - low) * scale).ceil());
         let (mut below, mut above) = (Tally::default(), Tally::default());
         for run in self.runs() {
-            let ends = || run.iter().map(Boxed::ends);
+            let ends = || run.iter().map(BoxedElement::ends);
             below.add(ends().map(|(low, _)| first_from(low[axis])));
             above.add(ends().map(|(_, high)| INTERVALS_PER_AXIS - first_from(high[axis])));
         }
@@ -260,7 +262,7 @@ fn as_coordinate(x: f64) -> i32 {
     clippy::cast_possible_truncation,
     reason = "the cast saturates"
 )]
-fn as_place(x: f64) -> usize {
+fn as_index(x: f64) -> usize {
     (x as usize).min(INTERVALS_PER_AXIS)
 }
 
@@ -272,7 +274,7 @@ mod tests {
 
     /// A disc of needles from one corner to an arc of short walls; the needles are operand 0, and each wall
     /// is an operand of its own.
-    fn disc(sides: u32) -> Vec<Swept> {
+    fn disc(sides: u32) -> Vec<SweptElement> {
         let corner = |k: u32| {
             let (y, x) = (f64::from(k) / f64::from(sides) * std::f64::consts::PI).sin_cos();
             [x, y, 0.0].map(|x| (x * 1e6).round() + 1e6)
@@ -281,7 +283,7 @@ mod tests {
             let end = |i: usize, most: fn(f64, f64) -> f64| {
                 as_whole(most(corners[0][i], most(corners[1][i], corners[2][i])))
             };
-            Swept {
+            SweptElement {
                 operand,
                 low: each_axis(|i| end(i, f64::min)),
                 high: each_axis(|i| end(i, f64::max)),
@@ -297,9 +299,10 @@ mod tests {
         needles.chain((1..sides).map(wall)).collect()
     }
 
-    fn crowd(swept: &[Swept]) -> Crowd {
-        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
-        let boxes: Vec<Boxed> = (0..).zip(swept).map(boxed).collect();
+    fn crowd(swept: &[SweptElement]) -> Crowd {
+        let boxed =
+            |(k, e): (u32, &SweptElement)| BoxedElement::new(e.operand, k, [&e.low, &e.high], 0);
+        let boxes: Vec<BoxedElement> = (0..).zip(swept).map(boxed).collect();
         Crowd::of(&boxes, swept, 0)
     }
 

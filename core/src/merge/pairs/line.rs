@@ -2,7 +2,7 @@
 
 use super::direction::{frame, unit, Span, SLACK};
 use super::view::{views, View, SLOPE_ERROR};
-use super::Swept;
+use super::SweptElement;
 use crate::arith::convert::as_double;
 use crate::geometry::axes::each_axis;
 use crate::geometry::doubles::vector::{cross, dot};
@@ -15,22 +15,22 @@ pub const SLANTED_LINES_FROM: usize = 512;
 const MAX_COSINE_OF_LINES: f64 = 0.8;
 
 /// A line, the extents of elements along it, and how many elements overlap at a point of it on average.
-pub struct Line {
-    pub gauge: Gauge,
+pub struct MeasuredLine {
+    pub coordinate: LineCoordinate,
     pub spans: Vec<Span>,
     pub crowding: f64,
 }
 
 /// A function that gives each point of space a coordinate along a line.
 #[derive(Clone, Copy)]
-pub enum Gauge {
+pub enum LineCoordinate {
     /// The coordinate is the dot product with this unit vector.
     Along([f64; 3]),
     /// The coordinate is the slope of the point in this view.
-    Seen(View),
+    Slope(View),
 }
 
-impl Gauge {
+impl LineCoordinate {
     /// Returns true if the plane of two gauges may separate more elements than one gauge: they are far from
     /// parallel, and straight lines of space are straight in the plane.
     pub fn is_across(&self, other: &Self) -> bool {
@@ -44,17 +44,17 @@ impl Gauge {
     pub fn keeps_straight(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(_), Self::Along(_)) => true,
-            (Self::Seen(a), Self::Seen(b)) => a.shares_eye(b),
+            (Self::Slope(a), Self::Slope(b)) => a.shares_eye(b),
             _ => false,
         }
     }
 
     /// Returns the coordinates of a triangle's corners, or of a triangle with the same projection; `None` if
     /// the projection may be unbounded.
-    pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+    pub fn coordinates(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         match self {
             Self::Along(direction) => Some(corners.map(|p| dot(&p, direction))),
-            Self::Seen(view) => view.places(corners),
+            Self::Slope(view) => view.coordinates(corners),
         }
     }
 
@@ -63,15 +63,15 @@ impl Gauge {
     pub fn slack(&self, size: f64) -> f64 {
         match self {
             Self::Along(_) => size * SLACK,
-            Self::Seen(_) => SLOPE_ERROR,
+            Self::Slope(_) => SLOPE_ERROR,
         }
     }
 }
 
-impl Line {
+impl MeasuredLine {
     /// Returns the coordinate axes and, for many elements, lines along and across the main directions of long
     /// elements, and slopes seen from the corner that most elements of an operand share.
-    pub fn all(elements: &[&Swept]) -> Vec<Self> {
+    pub fn all(elements: &[&SweptElement]) -> Vec<Self> {
         let mut lines: Vec<Self> = (0..3).map(|axis| Self::axis(elements, axis)).collect();
         if elements.len() > SLANTED_LINES_FROM {
             let slanted = directions(elements);
@@ -85,29 +85,32 @@ impl Line {
         lines
     }
 
-    fn axis(elements: &[&Swept], axis: usize) -> Self {
+    fn axis(elements: &[&SweptElement], axis: usize) -> Self {
         let mut direction = [0.0; 3];
         direction[axis] = 1.0;
-        let span = |e: &&Swept| [as_double(e.low[axis]), as_double(e.high[axis])];
-        Self::new(Gauge::Along(direction), elements.iter().map(span).collect())
+        let span = |e: &&SweptElement| [as_double(e.low[axis]), as_double(e.high[axis])];
+        Self::new(
+            LineCoordinate::Along(direction),
+            elements.iter().map(span).collect(),
+        )
     }
 
     /// Measures elements along a direction; `None` if the corners of an element are not known.
-    fn slanted(elements: &[&Swept], direction: &[f64; 3]) -> Option<Self> {
+    fn slanted(elements: &[&SweptElement], direction: &[f64; 3]) -> Option<Self> {
         let spans = projections(elements, direction)?;
-        Some(Self::new(Gauge::Along(*direction), spans))
+        Some(Self::new(LineCoordinate::Along(*direction), spans))
     }
 
     /// Measures the slopes of elements in a view; `None` if no element is ahead of the eye point.
-    fn seen(elements: &[&Swept], view: &View) -> Option<Self> {
+    fn seen(elements: &[&SweptElement], view: &View) -> Option<Self> {
         let spans = view.spans(elements)?;
-        Some(Self::new(Gauge::Seen(*view), spans))
+        Some(Self::new(LineCoordinate::Slope(*view), spans))
     }
 
-    fn new(gauge: Gauge, spans: Vec<Span>) -> Self {
+    fn new(coordinate: LineCoordinate, spans: Vec<Span>) -> Self {
         let crowding = crowding(&spans);
         Self {
-            gauge,
+            coordinate,
             spans,
             crowding,
         }
@@ -125,9 +128,9 @@ fn crowding(spans: &[Span]) -> f64 {
 
 /// Returns unit vectors: the main direction of the first operand's elements and two directions perpendicular
 /// to it, the same three for all other elements, and the direction perpendicular to both main directions.
-fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
+fn directions(elements: &[&SweptElement]) -> Vec<[f64; 3]> {
     let own = elements.first().map_or(0, |e| e.operand);
-    let (first, others): (Vec<&Swept>, Vec<&Swept>) =
+    let (first, others): (Vec<&SweptElement>, Vec<&SweptElement>) =
         elements.iter().partition(|e| e.operand == own);
     let long = [direction_along(&first), direction_along(&others)];
     let mut found: Vec<[f64; 3]> = long.iter().flatten().flat_map(frame).collect();
@@ -138,7 +141,7 @@ fn directions(elements: &[&Swept]) -> Vec<[f64; 3]> {
 }
 
 /// Returns the mean direction of the elements' longest edges, as a unit vector; `None` if there is none.
-pub fn direction_along(elements: &[&Swept]) -> Option<[f64; 3]> {
+pub fn direction_along(elements: &[&SweptElement]) -> Option<[f64; 3]> {
     let mut long = [0.0f64; 3];
     let corners = elements.iter().filter_map(|e| e.corners.as_ref());
     for edge in corners.filter_map(longest_edge) {
@@ -159,7 +162,7 @@ pub fn longest_edge(corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
 
 /// Returns the extents of elements along a direction, padded for rounding; `None` if the corners of an
 /// element are not known.
-fn projections(elements: &[&Swept], direction: &[f64; 3]) -> Option<Vec<Span>> {
+fn projections(elements: &[&SweptElement], direction: &[f64; 3]) -> Option<Vec<Span>> {
     elements
         .iter()
         .map(|e| {

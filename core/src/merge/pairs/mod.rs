@@ -17,7 +17,7 @@ use std::cell::{Cell, RefCell};
 
 use crate::geometry::plane::Lattice;
 use boxes::each_once;
-pub use boxes::{shift_of, Boxed, Part};
+pub use boxes::{shift_of, BoxedElement, ElementsInBox};
 use divide::{divided, Groups};
 use fragments::{Crowd, Fragments};
 use view::share_corner;
@@ -25,7 +25,7 @@ use view::share_corner;
 /// An element (a triangle or a part of a face) for a sweep: its operand, its box, and three corners whose
 /// convex hull contains it.
 #[derive(Clone, Debug)]
-pub struct Swept {
+pub struct SweptElement {
     /// The index of the element's operand.
     pub operand: usize,
     /// The element's lowest coordinate on each axis inside the cell, relative to the cell's low corner.
@@ -43,26 +43,30 @@ pub struct Swept {
 ///
 /// Elements must be grouped by operand; `swept` returns the element with a number.
 pub fn pairs(
-    elements: Vec<Boxed>,
-    swept: impl Fn(u32) -> Swept,
+    elements: Vec<BoxedElement>,
+    swept: impl Fn(u32) -> SweptElement,
     meet: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
     let meet = RefCell::new(meet);
     let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
-    boxes::pairs(Part::of(elements, 0), found, |crowd, space| {
-        let some: Vec<Swept> = crowd.iter().map(|e| swept(e.number)).collect();
-        if share_corner(&some) {
-            return None;
-        }
-        let goes_on = Cell::new(true);
-        sweep::pairs(&some, |i, j| {
-            let (a, b) = (&crowd[i], &crowd[j]);
-            if goes_on.get() && space.owns(a, b) {
-                goes_on.set(found(a.number, b.number).is_some());
+    boxes::pairs(
+        ElementsInBox::of(elements, 0),
+        found,
+        |crowd, half_open_box| {
+            let some: Vec<SweptElement> = crowd.iter().map(|e| swept(e.number)).collect();
+            if share_corner(&some) {
+                return None;
             }
-        })?;
-        goes_on.get().then_some(())
-    })
+            let goes_on = Cell::new(true);
+            sweep::pairs(&some, |i, j| {
+                let (a, b) = (&crowd[i], &crowd[j]);
+                if goes_on.get() && half_open_box.owns(a, b) {
+                    goes_on.set(found(a.number, b.number).is_some());
+                }
+            })?;
+            goes_on.get().then_some(())
+        },
+    )
 }
 
 /// Calls `meet` for all pairs of elements of different operands that may meet, where many operands have few
@@ -77,18 +81,18 @@ pub fn pairs(
 ///
 /// # Example
 /// ```
-/// use bspcsg::merge::pairs::{pairs_of_many, Boxed, Part, Swept};
+/// use bspcsg::merge::pairs::{pairs_of_many, BoxedElement, ElementsInBox, SweptElement};
 ///
 /// let boxes = [(0, [0; 3], [2; 3]), (1, [1; 3], [3; 3]), (1, [8; 3], [9; 3])];
 /// let boxed = |(number, (operand, low, high)): (u32, &(usize, _, _))| {
-///     Boxed::new(*operand, number, [low, high], 0)
+///     BoxedElement::new(*operand, number, [low, high], 0)
 /// };
 /// let swept = |number: u32| {
 ///     let (operand, low, high) = boxes[number as usize];
-///     Swept { operand, low, high, corners: None }
+///     SweptElement { operand, low, high, corners: None }
 /// };
 /// let mut found = Vec::new();
-/// let all = Part::of((0..).zip(&boxes).map(boxed).collect(), 0);
+/// let all = ElementsInBox::of((0..).zip(&boxes).map(boxed).collect(), 0);
 /// pairs_of_many(all, swept, |a, b| {
 ///     found.push([a, b]);
 ///     Some(())
@@ -96,8 +100,8 @@ pub fn pairs(
 /// assert_eq!(found, [[0, 1]]);
 /// ```
 pub fn pairs_of_many(
-    part: Part,
-    swept: impl Fn(u32) -> Swept,
+    part: ElementsInBox,
+    swept: impl Fn(u32) -> SweptElement,
     meet: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
     let meet = RefCell::new(meet);
@@ -111,8 +115,8 @@ pub fn pairs_of_many(
     // Fragments of two elements may meet elsewhere than at the low corner of the boxes' intersection, so all
     // crowds are searched together.
     let crowded = each_once(crowded);
-    let all: Vec<Swept> = crowded.iter().map(|e| swept(e.number)).collect();
-    let meet = |a: &Boxed, b: &Boxed| {
+    let all: Vec<SweptElement> = crowded.iter().map(|e| swept(e.number)).collect();
+    let meet = |a: &BoxedElement, b: &BoxedElement| {
         let [a, b] = [a, b].map(|e| crowded[e.number as usize].number);
         found(a, b)
     };
@@ -122,9 +126,9 @@ pub fn pairs_of_many(
 
 /// Returns the fragment of an element, clipped to a cell, as an element for a sweep; `shift` bits were
 /// dropped from its box.
-fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
+fn swept_as(fragment: &BoxedElement, all: &[SweptElement], shift: u32) -> SweptElement {
     let (low, high) = fragment.ends();
-    Swept {
+    SweptElement {
         low: low.map(|x| i64::from(x) << shift),
         high: high.map(|x| (i64::from(x) + 1) << shift),
         ..all[fragment.number as usize].clone()
@@ -135,8 +139,8 @@ fn swept_as(fragment: &Boxed, all: &[Swept], shift: u32) -> Swept {
 /// `None` if `meet` does.
 fn compare(
     cell: Fragments,
-    swept: impl Fn(&Boxed) -> Swept,
-    meet: impl Fn(&Boxed, &Boxed) -> Option<()>,
+    swept: impl Fn(&BoxedElement) -> SweptElement,
+    meet: impl Fn(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let mut open = vec![cell.elements];
     while let Some(crowd) = open.pop() {
@@ -147,7 +151,7 @@ fn compare(
             sweep_groups((first, second), &swept, &meet)?;
             open.extend([first.to_vec(), second.to_vec()]);
         } else {
-            boxes::compare_all(&crowd, &cell.space, &meet)?;
+            boxes::compare_all(&crowd, &cell.half_open_box, &meet)?;
         }
     }
     Some(())
@@ -156,23 +160,23 @@ fn compare(
 /// Calls `meet` for the pairs of an element of the first group and one of the second that may meet; stops and
 /// returns `None` if `meet` does.
 fn sweep_groups(
-    (first, second): (&[Boxed], &[Boxed]),
-    swept: &impl Fn(&Boxed) -> Swept,
-    meet: &impl Fn(&Boxed, &Boxed) -> Option<()>,
+    (first, second): (&[BoxedElement], &[BoxedElement]),
+    swept: &impl Fn(&BoxedElement) -> SweptElement,
+    meet: &impl Fn(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let goes_on = Cell::new(true);
-    let meet = |a: &Boxed, b: &Boxed| {
+    let meet = |a: &BoxedElement, b: &BoxedElement| {
         if goes_on.get() {
             goes_on.set(meet(a, b).is_some());
         }
     };
     let of = |operand: usize| {
-        move |e: &Boxed| Swept {
+        move |e: &BoxedElement| SweptElement {
             operand,
             ..swept(e)
         }
     };
-    let some: Vec<Swept> = first
+    let some: Vec<SweptElement> = first
         .iter()
         .map(of(0))
         .chain(second.iter().map(of(1)))
@@ -245,11 +249,11 @@ mod tests {
         floor: i64,
     }
 
-    fn swept(operand: usize, corners: &[Lattice; 3], floor: i64) -> Swept {
+    fn swept(operand: usize, corners: &[Lattice; 3], floor: i64) -> SweptElement {
         let end = |i: usize, most: fn(i64, i64) -> i64| {
             corners.iter().map(|p| p[i]).reduce(most).unwrap_or(0)
         };
-        Swept {
+        SweptElement {
             operand,
             low: each_axis(|i| end(i, i64::min).max([floor, -REACH, -REACH][i])),
             high: each_axis(|i| end(i, i64::max).min(REACH)),
@@ -280,9 +284,11 @@ mod tests {
     /// Returns the pairs that `pairs` finds, the lower number first; `None` if it gives up.
     fn found(scene: &Scene) -> Option<HashSet<(usize, usize)>> {
         let triangles = scene.triangles.iter();
-        let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
+        let elements: Vec<SweptElement> =
+            triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
         let mut found = HashSet::new();
-        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
+        let boxed =
+            |(k, e): (u32, &SweptElement)| BoxedElement::new(e.operand, k, [&e.low, &e.high], 0);
         let boxes = (0..).zip(&elements).map(boxed).collect();
         let one = |k: u32| elements[k as usize].clone();
         pairs(boxes, one, |i, j| {
@@ -303,12 +309,14 @@ mod tests {
     /// Returns the pairs that `pairs_of_many` finds, the lower number first.
     fn found_of_many(scene: &Scene) -> HashSet<(usize, usize)> {
         let triangles = scene.triangles.iter();
-        let elements: Vec<Swept> = triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
-        let boxed = |(k, e): (u32, &Swept)| Boxed::new(e.operand, k, [&e.low, &e.high], 0);
+        let elements: Vec<SweptElement> =
+            triangles.map(|(k, t)| swept(*k, t, scene.floor)).collect();
+        let boxed =
+            |(k, e): (u32, &SweptElement)| BoxedElement::new(e.operand, k, [&e.low, &e.high], 0);
         let boxes = (0..).zip(&elements).map(boxed).collect();
         let mut found = HashSet::new();
         let one = |k: u32| elements[k as usize].clone();
-        pairs_of_many(Part::of(boxes, 0), one, |i, j| {
+        pairs_of_many(ElementsInBox::of(boxes, 0), one, |i, j| {
             found.insert((i.min(j) as usize, i.max(j) as usize));
             Some(())
         });

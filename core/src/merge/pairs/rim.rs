@@ -1,7 +1,7 @@
 //! Half-planes that bound the projections of triangles on a plane.
 
 use super::direction::Span;
-use super::line::Gauge;
+use super::line::LineCoordinate;
 
 /// A half-plane: the points with normal · point ≤ limit.
 #[derive(Clone, Copy)]
@@ -48,9 +48,13 @@ impl HalfPlane {
 
 /// Returns the half-planes at the edges of a triangle's projection on the plane of two gauges; `size` bounds
 /// the coordinates. If there is no projection with straight edges, returns the whole plane three times.
-pub fn rims(corners: Option<&[[f64; 3]; 3]>, plane: &[Gauge; 2], size: f64) -> [HalfPlane; 3] {
+pub fn rims(
+    corners: Option<&[[f64; 3]; 3]>,
+    plane: &[LineCoordinate; 2],
+    size: f64,
+) -> [HalfPlane; 3] {
     let seen = corners.filter(|_| plane[0].keeps_straight(&plane[1]));
-    let shadow = seen.and_then(|c| Some([plane[0].places(c)?, plane[1].places(c)?]));
+    let shadow = seen.and_then(|c| Some([plane[0].coordinates(c)?, plane[1].coordinates(c)?]));
     let Some([x, y]) = shadow else {
         return [HalfPlane::ALL; 3];
     };

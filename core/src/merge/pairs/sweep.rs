@@ -6,13 +6,13 @@
 //! edges of triangles exclude further boxes.
 
 use super::direction::{largest_coordinate, Span};
-use super::line::{longest_edge, Line, SLANTED_LINES_FROM};
+use super::line::{longest_edge, MeasuredLine, SLANTED_LINES_FROM};
 use super::rim::{rims, HalfPlane};
-use super::Swept;
+use super::SweptElement;
 use crate::arith::convert::as_double;
 use crate::geometry::doubles::vector::dot;
 use crate::interrupt::spend;
-use crate::mesh::tasks::{each, Worth};
+use crate::mesh::tasks::{each, WorkSize};
 
 /// The most pairs that a sweep may compare, at about a nanosecond each; a longer sweep costs more than
 /// halving the cell.
@@ -24,15 +24,15 @@ const PAIRS_PER_UNIT: usize = 16;
 /// Calls `meet` for all pairs of elements of different operands whose extents overlap along every line, the
 /// lower index first. Returns `None`, before any call, if more than `MAX_PAIRS_SWEPT` pairs would be
 /// compared.
-pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<()> {
-    let parties = parties(elements);
-    let sweeps = each(Worth::Task, parties.iter().collect(), |numbers| {
+pub fn pairs(elements: &[SweptElement], mut meet: impl FnMut(usize, usize)) -> Option<()> {
+    let groups = groups_by_length(elements);
+    let sweeps = each(WorkSize::Task, groups.iter().collect(), |numbers| {
         Sweep::of(elements, numbers)
     });
     if sweeps.iter().map(Sweep::cost).sum::<f64>() > MAX_PAIRS_SWEPT {
         return None;
     }
-    let found = each(Worth::Task, sweeps.iter().collect(), Sweep::run);
+    let found = each(WorkSize::Task, sweeps.iter().collect(), Sweep::run);
     found.into_iter().flatten().for_each(|(i, j)| meet(i, j));
     Some(())
 }
@@ -40,7 +40,7 @@ pub fn pairs(elements: &[Swept], mut meet: impl FnMut(usize, usize)) -> Option<(
 /// Returns groups of element indices to be swept separately: one group or, if two operands have many
 /// elements, up to four groups, each with the long or the short elements of each operand, because these suit
 /// different lines.
-fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
+fn groups_by_length(elements: &[SweptElement]) -> Vec<Vec<usize>> {
     let own = elements[0].operand;
     let (ours, others): (Vec<usize>, Vec<usize>) =
         (0..elements.len()).partition(|i| elements[*i].operand == own);
@@ -57,7 +57,7 @@ fn parties(elements: &[Swept]) -> Vec<Vec<usize>> {
 
 /// Divides elements into those at least half as long as the longest, and the shorter ones; empty groups are
 /// left out.
-fn by_length(elements: &[Swept], numbers: Vec<usize>) -> Vec<Vec<usize>> {
+fn by_length(elements: &[SweptElement], numbers: Vec<usize>) -> Vec<Vec<usize>> {
     let length = |i: &usize| {
         let edge = elements[*i].corners.as_ref().and_then(longest_edge);
         edge.map_or(0.0, |e| dot(&e, &e).sqrt())
@@ -93,14 +93,14 @@ struct SortedElements {
 }
 
 impl Sweep {
-    fn of(elements: &[Swept], numbers: &[usize]) -> Self {
-        let swept: Vec<&Swept> = numbers.iter().map(|i| &elements[*i]).collect();
-        let mut lines = Line::all(&swept);
+    fn of(elements: &[SweptElement], numbers: &[usize]) -> Self {
+        let swept: Vec<&SweptElement> = numbers.iter().map(|i| &elements[*i]).collect();
+        let mut lines = MeasuredLine::all(&swept);
         lines.sort_by(|a, b| a.crowding.total_cmp(&b.crowding));
         let first = lines.remove(0);
-        let across = |line: &Line| line.gauge.is_across(&first.gauge);
+        let across = |line: &MeasuredLine| line.coordinate.is_across(&first.coordinate);
         let second = lines.remove(lines.iter().position(across).unwrap_or(0));
-        let plane = [first.gauge, second.gauge];
+        let plane = [first.coordinate, second.coordinate];
         let size = largest_coordinate(&swept);
         let low = |i: &usize| first.spans[*i][0];
         let mut order: Vec<usize> = (0..numbers.len()).collect();
@@ -109,8 +109,9 @@ impl Sweep {
             operands.then(low(a).total_cmp(&low(b))).then(a.cmp(b))
         });
         let rim = |i: &usize| rims(swept[*i].corners.as_ref(), &plane, size);
-        let swath = |own: &[usize]| {
-            let ordered = |line: &Line| own.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
+        let sorted = |own: &[usize]| {
+            let ordered =
+                |line: &MeasuredLine| own.iter().map(|i| line.spans[*i]).collect::<Vec<Span>>();
             SortedElements {
                 first: ordered(&first),
                 second: ordered(&second),
@@ -121,7 +122,7 @@ impl Sweep {
         };
         let operands = order.chunk_by(|a, b| swept[*a].operand == swept[*b].operand);
         Self {
-            operands: operands.map(swath).collect(),
+            operands: operands.map(sorted).collect(),
             size: numbers.len(),
             crowding: first.crowding,
         }
@@ -136,10 +137,10 @@ impl Sweep {
     fn run(&self) -> Vec<(usize, usize)> {
         let mut found = Vec::new();
         let mut meet = |i: usize, j: usize| found.push((i.min(j), i.max(j)));
-        for (k, swath) in self.operands.iter().enumerate() {
+        for (k, sorted) in self.operands.iter().enumerate() {
             for other in &self.operands[k + 1..] {
-                swath.meet_those_after(other, true, &mut meet);
-                other.meet_those_after(swath, false, &mut meet);
+                sorted.report_pairs_after(other, true, &mut meet);
+                other.report_pairs_after(sorted, false, &mut meet);
             }
         }
         found
@@ -149,7 +150,7 @@ impl Sweep {
 impl SortedElements {
     /// Calls `meet` for each element and those overlapping elements of `other` that begin after it along the
     /// best line, or also at the same coordinate if `level` is true.
-    fn meet_those_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
+    fn report_pairs_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
         let mut start = 0;
         for (at, [low, high]) in self.first.iter().enumerate() {
             let before = |span: &Span| span[0] < *low || !level && span[0] <= *low;

@@ -6,9 +6,9 @@
 use rustc_hash::FxHashMap;
 
 use super::direction::{frame, largest_coordinate, unit, Span, SLACK};
-use super::Swept;
+use super::SweptElement;
 use crate::arith::convert::as_double;
-use crate::geometry::doubles::vector::{dot, less};
+use crate::geometry::doubles::vector::{difference, dot};
 
 /// An operand's elements count as a fan if at least one in this many has a corner at the apex.
 const FAN_IF_ONE_IN: usize = 4;
@@ -39,9 +39,9 @@ pub struct View {
 ///
 /// An apex that elements of two operands share inside the cell gives no view, because no slope separates
 /// these elements.
-pub fn views(elements: &[&Swept]) -> Vec<View> {
+pub fn views(elements: &[&SweptElement]) -> Vec<View> {
     let own = elements.first().map_or(0, |e| e.operand);
-    let (first, others): (Vec<&Swept>, Vec<&Swept>) =
+    let (first, others): (Vec<&SweptElement>, Vec<&SweptElement>) =
         elements.iter().partition(|e| e.operand == own);
     let apexes = [&first, &others].into_iter().filter_map(|e| apex(e));
     let mut eyes: Vec<[f64; 3]> = apexes.collect();
@@ -63,7 +63,7 @@ pub fn views(elements: &[&Swept]) -> Vec<View> {
 }
 
 /// Returns the corner that the most elements share, if they are a fan; otherwise `None`.
-fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
+fn apex(elements: &[&SweptElement]) -> Option<[f64; 3]> {
     let mut counts: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     for corner in elements.iter().filter_map(|e| e.corners.as_ref()).flatten() {
         *counts.entry(bits(corner)).or_default() += 1;
@@ -76,12 +76,12 @@ fn apex(elements: &[&Swept]) -> Option<[f64; 3]> {
 
 /// Returns the bits of a point's coordinates, equal for equal points: coordinates are whole numbers, and zero
 /// always has the same sign.
-fn bits(place: &[f64; 3]) -> [u64; 3] {
-    place.map(f64::to_bits)
+fn bits(point: &[f64; 3]) -> [u64; 3] {
+    point.map(f64::to_bits)
 }
 
 /// Returns true if elements of different operands share a corner inside the cell.
-pub fn share_corner(elements: &[Swept]) -> bool {
+pub fn share_corner(elements: &[SweptElement]) -> bool {
     let mut owners: FxHashMap<[u64; 3], usize> = FxHashMap::default();
     elements.iter().any(|e| {
         let mut within = e.corners.iter().flatten().filter(|p| e.is_at(p));
@@ -89,35 +89,35 @@ pub fn share_corner(elements: &[Swept]) -> bool {
     })
 }
 
-/// Returns true if elements of different operands share the corner `place` inside the cell.
-fn is_shared(elements: &[&Swept], place: &[f64; 3]) -> bool {
-    let touches = |e: &&&Swept| e.is_at(place) && e.has(place);
+/// Returns true if elements of different operands share the corner `point` inside the cell.
+fn is_shared(elements: &[&SweptElement], point: &[f64; 3]) -> bool {
+    let touches = |e: &&&SweptElement| e.is_at(point) && e.has(point);
     let mut operands = elements.iter().filter(touches).map(|e| e.operand);
     let first = operands.next();
     operands.any(|operand| Some(operand) != first)
 }
 
-impl Swept {
+impl SweptElement {
     /// Returns true if a point lies in the element's box inside the cell.
-    fn is_at(&self, place: &[f64; 3]) -> bool {
+    fn is_at(&self, point: &[f64; 3]) -> bool {
         let within = |i: usize| as_double(self.low[i])..=as_double(self.high[i]);
-        (0..3).all(|i| within(i).contains(&place[i]))
+        (0..3).all(|i| within(i).contains(&point[i]))
     }
 
     /// Returns true if a point is one of the element's corners.
-    fn has(&self, place: &[f64; 3]) -> bool {
+    fn has(&self, point: &[f64; 3]) -> bool {
         let corners = self.corners.iter().flatten();
-        corners.map(bits).any(|corner| corner == bits(place))
+        corners.map(bits).any(|corner| corner == bits(point))
     }
 }
 
 /// Returns the mean direction in which triangles with a corner at `eye` extend; `None` if there is no such
 /// direction.
-fn middle(elements: &[&Swept], eye: &[f64; 3]) -> Option<[f64; 3]> {
+fn middle(elements: &[&SweptElement], eye: &[f64; 3]) -> Option<[f64; 3]> {
     let mut sum = [0.0f64; 3];
     let around = elements.iter().filter(|e| e.has(eye));
     for p in around.filter_map(|e| e.corners.as_ref()).flatten() {
-        if let Some(toward) = unit(&less(p, eye)) {
+        if let Some(toward) = unit(&difference(p, eye)) {
             (0..3).for_each(|i| sum[i] += toward[i]);
         }
     }
@@ -132,19 +132,19 @@ impl View {
 
     /// Returns the slopes of a triangle's corners; a corner at the eye gets the slope of another corner.
     /// `None` if a corner is neither at the eye nor ahead.
-    pub fn places(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
+    pub fn coordinates(&self, corners: &[[f64; 3]; 3]) -> Option<[f64; 3]> {
         let at_eye = |p: &[f64; 3]| bits(p) == bits(&self.eye);
         let seen = corners.iter().find(|p| !at_eye(p))?;
-        let mut places = [0.0; 3];
-        for (place, corner) in places.iter_mut().zip(corners) {
-            *place = self.slope(if at_eye(corner) { seen } else { corner })?;
+        let mut coordinates = [0.0; 3];
+        for (point, corner) in coordinates.iter_mut().zip(corners) {
+            *point = self.slope(if at_eye(corner) { seen } else { corner })?;
         }
-        Some(places)
+        Some(coordinates)
     }
 
     /// Returns the slope of a point; `None` if the point is not ahead.
     fn slope(&self, p: &[f64; 3]) -> Option<f64> {
-        let toward = less(p, &self.eye);
+        let toward = difference(p, &self.eye);
         let depth = dot(&toward, &self.ahead);
         let slope = dot(&toward, &self.across) / depth;
         (depth > MIN_DEPTH_AHEAD * self.size && slope.abs() < MAX_SLOPE_AHEAD).then_some(slope)
@@ -155,11 +155,14 @@ impl View {
     ///
     /// A slope is a quotient of linear functions. So on a triangle that is ahead, its extremes are at
     /// corners; on a triangle with a corner at the eye, it is constant along each line from that corner.
-    pub fn spans(&self, elements: &[&Swept]) -> Option<Vec<Span>> {
-        let span = |e: &&Swept| {
-            let places = self.places(e.corners.as_ref()?)?;
-            let least = places.iter().copied().fold(f64::INFINITY, f64::min);
-            let most = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    pub fn spans(&self, elements: &[&SweptElement]) -> Option<Vec<Span>> {
+        let span = |e: &&SweptElement| {
+            let coordinates = self.coordinates(e.corners.as_ref()?)?;
+            let least = coordinates.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = coordinates
+                .iter()
+                .copied()
+                .fold(f64::NEG_INFINITY, f64::max);
             Some([least - SLOPE_ERROR, most + SLOPE_ERROR])
         };
         let spans: Vec<Option<Span>> = elements.iter().map(span).collect();

@@ -24,9 +24,9 @@ pub struct BuildOptions {
     pub own: Vec<Row>,
 }
 
-pub fn lenience_of((triangulate_bent, drop_flat): (bool, bool)) -> Lenience {
+pub fn lenience_of((triangulate_nonplanar, drop_flat): (bool, bool)) -> Lenience {
     Lenience {
-        triangulate_bent,
+        triangulate_nonplanar,
         drop_flat,
     }
 }

@@ -213,7 +213,7 @@ impl<S: Affine> FacetTree<S> {
     }
 
     pub fn coefficients(&self, node: NodeId) -> Option<Vec<BigInt>> {
-        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node.place())?.hyperplane);
+        let [a, b, c, d] = S::exact(&self.tree.nodes().get(node.index())?.hyperplane);
         let mut all: Vec<BigInt> = [a, b, c].into_iter().take(S::DIM).collect();
         all.push(d);
         Some(all)
@@ -305,7 +305,7 @@ impl<S: Affine> FacetTree<S> {
     pub fn whole(&self, margin: f64) -> Result<Polytope<S>> {
         let steps = (margin / self.units([1.0; 3])[0])
             .round()
-            .clamp(1.0, S::REACH as f64) as i64;
+            .clamp(1.0, S::MAX_COORDINATE as f64) as i64;
         grown_box(&self.facets, steps)
     }
 
@@ -322,7 +322,7 @@ impl<S: Affine> FacetTree<S> {
                 let region = self.tree.region(node, &whole);
                 match (region, half_of(side)) {
                     (Some(region), Some(half)) => {
-                        let cut = &self.tree.nodes()[node.place()].hyperplane;
+                        let cut = &self.tree.nodes()[node.index()].hyperplane;
                         let [minus, plus] = region.divided(cut);
                         if half == Half::Minus {
                             minus
@@ -343,7 +343,7 @@ impl<S: Affine> FacetTree<S> {
         let span = self
             .tree
             .region(node, &whole)
-            .and_then(|r| r.span(&self.tree.nodes()[node.place()].hyperplane));
+            .and_then(|r| r.span(&self.tree.nodes()[node.index()].hyperplane));
         Ok(span.map_or_else(Vec::new, |s| self.positions(&s)))
     }
 }
@@ -363,7 +363,7 @@ fn half_of(side: i8) -> Option<Half> {
 /// The box of facets grown by a number of steps; the unit box if there are none.
 fn grown_box<S: Affine>(facets: &[Facet], margin: i64) -> Result<Polytope<S>> {
     let corners = || facets.iter().flat_map(|f| &f.corners);
-    let reach = |k: i64| k.clamp(-S::REACH, S::REACH);
+    let reach = |k: i64| k.clamp(-S::MAX_COORDINATE, S::MAX_COORDINATE);
     let low = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).min().unwrap_or(0) - margin));
     let high = [0, 1, 2].map(|i| reach(corners().map(|c| c[i]).max().unwrap_or(0) + margin));
     Polytope::cuboid(&low, &high).ok_or_else(|| {

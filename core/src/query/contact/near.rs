@@ -4,7 +4,7 @@ use crate::arith::convert::{as_double, as_number, as_whole};
 use crate::geometry::axes::each_axis;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
-use crate::merge::pairs::{pairs_of_many, shift_of, Boxed, Part, Swept};
+use crate::merge::pairs::{pairs_of_many, shift_of, BoxedElement, ElementsInBox, SweptElement};
 
 /// A box of lattice points, its ends included.
 #[derive(Clone, Copy)]
@@ -101,12 +101,12 @@ pub fn near_pairs(
     let (origin, shift) = (around.low, shift_of(around.size()));
     let boxed = |(number, element): (usize, &Element)| {
         let [low, high] = element.space.from(&origin);
-        Boxed::new(element.operand, as_number(number), [&low, &high], shift)
+        BoxedElement::new(element.operand, as_number(number), [&low, &high], shift)
     };
     let swept = |number: u32| {
         let element = &elements[number as usize];
         let [low, high] = element.space.from(&origin);
-        Swept {
+        SweptElement {
             operand: element.operand,
             low,
             high,
@@ -114,7 +114,7 @@ pub fn near_pairs(
         }
     };
     let boxes = elements.iter().enumerate().map(boxed).collect();
-    pairs_of_many(Part::of(boxes, shift), swept, meet)
+    pairs_of_many(ElementsInBox::of(boxes, shift), swept, meet)
 }
 
 /// Corners relative to a point, if they are lattice points.

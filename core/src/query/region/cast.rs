@@ -62,7 +62,7 @@ fn connected(
     whole: &Segment2,
     mut pieces: Vec<Segment2>,
 ) -> Vec<[Point2; 2]> {
-    pieces.sort_by(|a, b| whole.along(&a.points()[0], &b.points()[0]));
+    pieces.sort_by(|a, b| whole.order_along(&a.points()[0], &b.points()[0]));
     let mut stretches: Vec<[Point2; 2]> = Vec::new();
     for piece in pieces {
         let [from, to] = *piece.points();

@@ -63,7 +63,7 @@ impl Sections {
         let crossings: Vec<Crossing> = self
             .triangles
             .iter()
-            .map(|triangle| triangle.map(VertexId::place))
+            .map(|triangle| triangle.map(VertexId::index))
             .filter(|[a, b, c]| below[*a] != below[*b] || below[*b] != below[*c])
             .filter_map(|corners| Crossing::of(corners, &below))
             .collect();

@@ -1,6 +1,6 @@
 //! The trait of spaces whose hyperplanes rays stab.
 
-use crate::arith::bounds::REACH;
+use crate::arith::bounds::MAX_COORDINATE;
 use crate::arith::Int;
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::plane::Plane;
@@ -15,12 +15,12 @@ use std::sync::Arc;
 /// A space of `D` dimensions whose facets have `D` lattice corners.
 pub trait Cast<const D: usize>: Space {
     /// Lattice coordinates are at most this large in magnitude.
-    const REACH: i64;
+    const MAX_COORDINATE: i64;
 
     /// The whole facet as a fragment.
     ///
     /// # Errors
-    /// `TooLarge` beyond [`Self::REACH`]; `Internal` for a facet without extent.
+    /// `TooLarge` beyond [`Self::MAX_COORDINATE`]; `Internal` for a facet without extent.
     fn fragment(corners: &[[i64; D]; D]) -> Result<Self::Fragment>;
 
     /// Normal n and offset c of n·x + c = 0, positive on the plus side.
@@ -37,7 +37,7 @@ fn without_extent() -> Error {
 }
 
 impl Cast<1> for Dim1 {
-    const REACH: i64 = REACH - 1;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE - 1;
 
     fn fragment(corners: &[[i64; 1]; 1]) -> Result<Point1> {
         Ok(Point1::new(corners[0][0], Direction::Below))
@@ -56,7 +56,7 @@ impl Cast<1> for Dim1 {
 }
 
 impl Cast<2> for Dim2 {
-    const REACH: i64 = REACH;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE;
 
     fn fragment(corners: &[[i64; 2]; 2]) -> Result<Segment2> {
         let [from, to] = *corners;
@@ -85,7 +85,7 @@ impl Cast<2> for Dim2 {
 }
 
 impl Cast<3> for Dim3 {
-    const REACH: i64 = REACH - 1;
+    const MAX_COORDINATE: i64 = MAX_COORDINATE - 1;
 
     fn fragment(corners: &[[i64; 3]; 3]) -> Result<Polygon> {
         let [a, b, c] = corners;

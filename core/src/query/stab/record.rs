@@ -71,7 +71,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
     fn follow(&self, record: &Record) -> Option<()> {
         let mut nodes = self.nodes_mut();
         for (at, facets, child) in record.cuts() {
-            if child.place() != nodes.all.len() {
+            if child.index() != nodes.all.len() {
                 return None;
             }
             nodes.divide_by(self.scene(), at, *facets.first()?)?;

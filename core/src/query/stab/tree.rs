@@ -64,7 +64,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         let mut list = Heap::default();
         for (facet, corners) in (0..).zip(scene.facets()) {
             poll();
-            let beyond = |c: &f64| c.abs() > S::REACH as f64;
+            let beyond = |c: &f64| c.abs() > S::MAX_COORDINATE as f64;
             if corners.iter().flatten().any(beyond) {
                 // Reports what is wrong.
                 S::fragment(&lattice(corners))?;
@@ -169,7 +169,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
         // Ascending in each leaf, because a count changes no later place.
         for hit in &pending.hits {
             // Another ray may have divided the leaf meanwhile.
-            let Content::Leaf(list) = &mut nodes.all[hit.node.place()].content else {
+            let Content::Leaf(list) = &mut nodes.all[hit.node.index()].content else {
                 continue;
             };
             if let Some(place) = list.place(hit.facet, hit.place) {
@@ -210,7 +210,7 @@ impl<S: Cast<D>, const D: usize> StabTree<S, D> {
 impl<S: Cast<D>, const D: usize> Nodes<S, D> {
     /// Divides a leaf at its most hit fragment; one with a single fragment stays.
     fn divide(&mut self, scene: &Scene<D>, at: NodeId) -> Option<()> {
-        let Content::Leaf(list) = &self.all[at.place()].content else {
+        let Content::Leaf(list) = &self.all[at.index()].content else {
             return None;
         };
         let [top, _, ..] = list.entries() else {
@@ -222,8 +222,8 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
 
     /// Divides a leaf at the fragment of this facet; `None` if there is no such leaf or fragment.
     pub(super) fn divide_by(&mut self, scene: &Scene<D>, at: NodeId, facet: u32) -> Option<()> {
-        let (first, depth) = (self.all.len(), self.all.get(at.place())?.depth + 1);
-        let Content::Leaf(list) = &mut self.all[at.place()].content else {
+        let (first, depth) = (self.all.len(), self.all.get(at.index())?.depth + 1);
+        let Content::Leaf(list) = &mut self.all[at.index()].content else {
             return None;
         };
         let place = list.entries().iter().position(|e| e.facet == facet)?;
@@ -232,8 +232,8 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
         let mut entries = std::mem::take(list).into_entries();
         entries.remove(place);
         let (inner, halves) = parts::<S, D>(facet, &pivot, entries, scene, children);
-        self.all[at.place()].content = Content::Inner(Box::new(inner));
-        self.all[at.place()].forget_places();
+        self.all[at.index()].content = Content::Inner(Box::new(inner));
+        self.all[at.index()].forget_places();
         self.all.extend(halves.map(|half| Node::leaf(half, depth)));
         self.subdivisions += 1;
         Some(())
@@ -242,11 +242,11 @@ impl<S: Cast<D>, const D: usize> Nodes<S, D> {
     /// The event of the latest division.
     fn division(&self, scene: &Scene<D>, node: NodeId) -> StabEvent {
         let number = |facet: &u32| scene.number(*facet);
-        let list = |child: NodeId| match &self.all[child.place()].content {
+        let list = |child: NodeId| match &self.all[child.index()].content {
             Content::Leaf(list) => list.entries().iter().map(|e| number(&e.facet)).collect(),
             Content::Inner(_) => Vec::new(),
         };
-        let (coplanar, children) = match &self.all[node.place()].content {
+        let (coplanar, children) = match &self.all[node.index()].content {
             Content::Inner(inner) => (inner.coplanar.iter().map(number).collect(), inner.children),
             Content::Leaf(_) => (Vec::new(), [node; 2]),
         };

@@ -49,7 +49,7 @@ pub fn build_watched<S: Affine, W: Watcher<Division>>(
     };
     builder.push(OpenRegion {
         pieces,
-        place: None,
+        parent: None,
         depth: 0,
         region,
         old: root,
@@ -105,7 +105,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
         let [minus, plus] = self.distribute(open.pieces, &hyperplane, node);
         self.watcher.notify(|| Division {
             node,
-            place: open.place,
+            place: open.parent,
             depth: open.depth,
             cut,
             reason,
@@ -116,20 +116,20 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             split: crossing(&self.tree.crossings[crossed..]),
             coplanar: coplanar(&self.tree.fragments[start..]),
         });
-        self.link(open.place, node);
+        self.link(open.parent, node);
         self.tree.nodes.push(Node {
             hyperplane,
             cut,
             coplanar: narrow(start)?..narrow(self.tree.fragments.len())?,
             minus: None,
             plus: None,
-            parent: open.place,
+            parent: open.parent,
             depth: open.depth,
         });
         let chooser = &self.chooser;
         let side = |half, pieces, region| OpenRegion {
             pieces,
-            place: Some((node, half)),
+            parent: Some((node, half)),
             depth: open.depth + 1,
             region,
             old: chooser.below(open.old, half),
@@ -148,11 +148,11 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 
     /// Enters a node as the child of its parent, on the given side; `None` stands for the root.
-    fn link(&mut self, place: Option<(NodeId, Half)>, node: NodeId) {
-        let Some((above, half)) = place else {
+    fn link(&mut self, parent: Option<(NodeId, Half)>, node: NodeId) {
+        let Some((above, half)) = parent else {
             return;
         };
-        let above = &mut self.tree.nodes[above.place()];
+        let above = &mut self.tree.nodes[above.index()];
         match half {
             Half::Minus => above.minus = Some(node),
             Half::Plus => above.plus = Some(node),

@@ -82,7 +82,7 @@ impl<S: Affine> Chooser<S> {
             Self::Policy { policy, top } => Ok(by_policy(policy, *top, open, watcher)),
             Self::Asked(ask) => asked(ask, open, own, watcher),
             Self::Lines(lines) => Ok(through_ends(lines, pieces, own)),
-            Self::Grown(tree, rest) => match open.old.and_then(|n| tree.nodes().get(n.place())) {
+            Self::Grown(tree, rest) => match open.old.and_then(|n| tree.nodes().get(n.index())) {
                 Some(node) => Ok((node.cut, node.hyperplane.clone(), Reason::Given)),
                 None => rest.choose(open, own, watcher),
             },
@@ -175,22 +175,22 @@ fn asked<S: Affine>(
     let shown: Vec<usize> = spaced(pieces.len(), ask.sample).collect();
     let candidates: Vec<Candidate> = shown
         .iter()
-        .map(|&place| {
-            let tally = Tally::of(pieces, S::hyperplane(&pieces[place].fragment));
-            tally.candidate(pieces[place].number, tally.splits as f64)
+        .map(|&index| {
+            let tally = Tally::of(pieces, S::hyperplane(&pieces[index].fragment));
+            tally.candidate(pieces[index].number, tally.splits as f64)
         })
         .collect();
     for candidate in &candidates {
         watcher.notify(|| *candidate);
     }
     match (ask.answer)(open.depth, pieces.len(), &candidates)? {
-        Answer::Candidate(place) => {
-            let place = shown.get(place).ok_or_else(|| {
+        Answer::Candidate(index) => {
+            let index = shown.get(index).ok_or_else(|| {
                 let count = shown.len();
-                let text = format!("the policy chose candidate {place} of {count}");
+                let text = format!("the policy chose candidate {index} of {count}");
                 Error::new(ErrorKind::IndexOutOfRange, text)
             })?;
-            Ok(supporting(&pieces[*place], Reason::Asked))
+            Ok(supporting(&pieces[*index], Reason::Asked))
         }
         Answer::Hyperplane(cut) => {
             if Tally::of(pieces, &cut).larger() >= pieces.len() {
@@ -212,12 +212,12 @@ fn through_ends<S: Affine>(
     pieces: &[Piece<S>],
     own: &mut Vec<S::Hyperplane>,
 ) -> Chosen<S> {
-    let pivot = |place: usize| {
-        let larger = Tally::of(pieces, S::hyperplane(&pieces[place].fragment)).larger();
-        (larger, place)
+    let pivot = |index: usize| {
+        let larger = Tally::of(pieces, S::hyperplane(&pieces[index].fragment)).larger();
+        (larger, index)
     };
     let supported = spaced(pieces.len(), lines.sample).map(pivot).min();
-    let (least, place) = supported.unwrap_or((usize::MAX, 0));
+    let (least, index) = supported.unwrap_or((usize::MAX, 0));
     let crossing = corner_cuts::<S>(lines, pieces)
         .map(|cut| (Tally::of(pieces, &cut).larger(), cut))
         .min_by_key(|(larger, _)| *larger);
@@ -226,7 +226,7 @@ fn through_ends<S: Affine>(
             own.push(cut.clone());
             (NodeCut::Own((own.len() - 1) as u32), cut, Reason::Ends)
         }
-        _ => supporting(&pieces[place], Reason::Ends),
+        _ => supporting(&pieces[index], Reason::Ends),
     }
 }
 

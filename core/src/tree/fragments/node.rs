@@ -112,7 +112,7 @@ impl<S: Affine> FragmentTree<S> {
 
     /// The child on one side of a node; `None` if no facet lies there.
     pub fn child(&self, node: NodeId, half: Half) -> Option<NodeId> {
-        let node = self.nodes.get(node.place())?;
+        let node = self.nodes.get(node.index())?;
         match half {
             Half::Minus => node.minus,
             Half::Plus => node.plus,
@@ -127,9 +127,9 @@ impl<S: Affine> FragmentTree<S> {
     /// One division of a region for each cut above the node.
     pub fn region(&self, node: NodeId, whole: &Polytope<S>) -> Option<Polytope<S>> {
         let mut way = Vec::new();
-        let mut next = self.nodes.get(node.place())?.parent;
+        let mut next = self.nodes.get(node.index())?.parent;
         while let Some((above, half)) = next {
-            let above = self.nodes.get(above.place())?;
+            let above = self.nodes.get(above.index())?;
             way.push((&above.hyperplane, half));
             next = above.parent;
         }

@@ -58,14 +58,14 @@ impl<S: Affine> Plan<S> {
 
 /// A callback that chooses the hyperplane for a region from its depth, its number of pieces and the
 /// candidates.
-pub type Answering<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
+pub type AnswerCallback<S> = Box<dyn FnMut(u32, usize, &[Candidate]) -> Result<Answer<S>> + Send>;
 
 /// A callback that chooses hyperplanes, and the number of candidates that it receives.
 pub struct Ask<S: Affine> {
     /// The number of candidates, evenly spaced in the region's list of pieces; there is at least one.
     pub sample: Sample,
     /// The callback; each candidate's score is the number of pieces that it cuts.
-    pub answer: Answering<S>,
+    pub answer: AnswerCallback<S>,
 }
 
 /// The hyperplane that a callback chooses.
@@ -88,7 +88,7 @@ pub struct Lines {
 /// A region that is not yet divided.
 pub(super) struct OpenRegion<S: Affine> {
     pub(super) pieces: Vec<Piece<S>>,
-    pub(super) place: Option<(NodeId, Half)>,
+    pub(super) parent: Option<(NodeId, Half)>,
     pub(super) depth: u32,
     pub(super) region: Option<Polytope<S>>,
     /// The node with the same region in the existing tree that the new tree extends, if any.

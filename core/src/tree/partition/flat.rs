@@ -80,7 +80,7 @@ impl<S: Space> Flat<S> {
 
     /// Return the label of the leaf with this number; `None` for an inner node.
     pub fn label(&self, node: NodeId) -> Option<Label> {
-        match &self.nodes[node.place()] {
+        match &self.nodes[node.index()] {
             FlatNode::Leaf(label) => Some(*label),
             FlatNode::Cut(_) => None,
         }
@@ -89,7 +89,7 @@ impl<S: Space> Flat<S> {
     /// The number of the leaf that a path from the root reaches if `reference` picks the side of each cut.
     pub fn leaf_at(&self, reference: impl Fn(&S::Hyperplane) -> Half) -> NodeId {
         let mut at = NodeId::ROOT;
-        while let FlatNode::Cut(node) = &self.nodes[at.place()] {
+        while let FlatNode::Cut(node) = &self.nodes[at.index()] {
             at = match reference(node.cut.hyperplane()) {
                 Half::Minus => node.minus,
                 Half::Plus => node.plus,
@@ -107,7 +107,7 @@ impl<S: Space> Flat<S> {
         let mut pending = vec![(node, piece)];
         while let Some((at, piece)) = pending.pop() {
             poll();
-            let FlatNode::Cut(node) = &self.nodes[at.place()] else {
+            let FlatNode::Cut(node) = &self.nodes[at.index()] else {
                 found.push((piece, at));
                 continue;
             };
@@ -158,7 +158,7 @@ impl<S: Space> Flat<S> {
             trees[i] = match node {
                 FlatNode::Leaf(_) => PartitionTree::Leaf(label(NodeId::of(i))),
                 FlatNode::Cut(node) => {
-                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at.place()].clone());
+                    let [minus, plus] = [node.minus, node.plus].map(|at| trees[at.index()].clone());
                     node.cut.with_children(minus, plus)
                 }
             };

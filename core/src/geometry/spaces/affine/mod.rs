@@ -26,7 +26,7 @@ pub trait Affine: Space {
     const EVERYTHING: Self::Frame;
 
     /// The largest coordinate, in magnitude, of a hyperplane across an axis.
-    const REACH: i64;
+    const MAX_COORDINATE: i64;
 
     /// The convex fragment with these corners; `None` if it has no relative interior.
     ///
@@ -42,7 +42,7 @@ pub trait Affine: Space {
 
     /// The hyperplane x[axis] = at, with smaller coordinates on its minus side.
     ///
-    /// `None` if |at| exceeds [`Affine::REACH`] or there is no such axis.
+    /// `None` if |at| exceeds [`Affine::MAX_COORDINATE`] or there is no such axis.
     fn axis_cut(axis: usize, at: i64) -> Option<Self::Hyperplane>;
 
     /// The corners of a fragment in order, each coordinate within a few units in the last place.

@@ -11,7 +11,8 @@ pub struct Polytope<S: Affine> {
 }
 
 impl<S: Affine> Polytope<S> {
-    /// The box from the lattice point `low` to `high`; `None` if it is flat or exceeds [`Affine::REACH`].
+    /// The box from the lattice point `low` to `high`; `None` if it is flat or exceeds
+    /// [`Affine::MAX_COORDINATE`].
     ///
     /// # Example
     /// ```

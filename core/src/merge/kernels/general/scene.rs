@@ -15,9 +15,9 @@ use crate::geometry::plane::Lattice;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::kernels::problem::Listed;
+use crate::merge::kernels::problem::ListedOperand;
 use crate::merge::lists::list::{List, PartRecord, Record, Sources};
-use crate::merge::pairs::Swept;
+use crate::merge::pairs::SweptElement;
 use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
@@ -46,7 +46,7 @@ pub(super) struct Element<'a> {
     pub(super) operand: usize,
     /// The winding number behind the face minus the number in front of it.
     pub(super) weight: i32,
-    pub(super) place: Place<'a>,
+    pub(super) kind: ElementKind<'a>,
     /// True if all of the element is known to lie in the cell.
     inside: bool,
     pub(super) low: Lattice,
@@ -54,7 +54,7 @@ pub(super) struct Element<'a> {
 }
 
 /// The kind of an element, with its geometry.
-pub(super) enum Place<'a> {
+pub(super) enum ElementKind<'a> {
     Face(Triangle<'a>),
     /// The face of a half-space: the slot of the half-space, and the part of its plane in the cell.
     Plane(Slot, Box<Face<'a>>),
@@ -81,7 +81,7 @@ pub(super) struct Triangle<'a> {
 }
 
 impl<'a> Scene<'a> {
-    pub(super) fn new(cell: &'a Cell, operands: &'a [Listed], sources: &'a Sources) -> Self {
+    pub(super) fn new(cell: &'a Cell, operands: &'a [ListedOperand], sources: &'a Sources) -> Self {
         let mut scene = Self {
             cell,
             corner: cell.corner(),
@@ -112,14 +112,14 @@ impl<'a> Scene<'a> {
             let part = self.parts.len();
             let slot = sources.slot(&p.element.part.source);
             self.parts.push((&p.element.part, slot));
-            let inside = self.cell.holds(&p.element.part.home);
+            let inside = self.cell.contains(&p.element.part.home);
             if self.is_apart(operand, &p.element.part) {
                 let pieces = OnceCell::new();
                 let [low, high] = p.element.part.enclosing();
                 self.elements.push(Element {
                     operand,
                     weight: p.element.orientation.signed(1),
-                    place: Place::Part(part, ApartPart { record: p, pieces }),
+                    kind: ElementKind::Part(part, ApartPart { record: p, pieces }),
                     inside,
                     low,
                     high,
@@ -132,7 +132,10 @@ impl<'a> Scene<'a> {
                 self.elements.push(Element {
                     operand,
                     weight: p.element.orientation.signed(1),
-                    place: Place::Piece(part, Box::new(Face::new(Cow::Borrowed(&piece.polygon)))),
+                    kind: ElementKind::Piece(
+                        part,
+                        Box::new(Face::new(Cow::Borrowed(&piece.polygon))),
+                    ),
                     inside,
                     low,
                     high,
@@ -155,13 +158,13 @@ impl<'a> Scene<'a> {
     /// Returns a triangle that contains the element, for quick tests: an element apart from a face is apart
     /// from the pieces of this face, too. The face of a half-space is never known to be apart.
     pub(super) fn near(&self, element: &Element) -> NearTriangle {
-        let corners = match &element.place {
-            Place::Face(triangle) => Some(triangle.corners),
-            Place::Piece(part, _) | Place::Part(part, _) => {
+        let corners = match &element.kind {
+            ElementKind::Face(triangle) => Some(triangle.corners),
+            ElementKind::Piece(part, _) | ElementKind::Part(part, _) => {
                 let part = self.parts[*part].0;
                 part.source.mesh().map(|mesh| mesh.corners(part.face))
             }
-            Place::Plane(..) => None,
+            ElementKind::Plane(..) => None,
         };
         corners.map_or(NearTriangle::UNKNOWN, |c| NearTriangle::of(&c))
     }
@@ -183,7 +186,7 @@ impl<'a> Scene<'a> {
 
 /// The name of a point that several elements of an operand may share.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum Name {
+pub(super) enum PointName {
     /// A vertex of a mesh, by the mesh's slot and the vertex's number.
     Vertex(Slot, VertexId),
     /// A corner of a part that is no vertex of its face, by a number for its exact position.
@@ -222,7 +225,7 @@ impl ApartPart<'_> {
         &self.record.element.part
     }
 
-    fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+    fn change_on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
         let pieces = self.pieces.get_or_init(|| {
             let pieces = self.record.pieces().iter();
             pieces
@@ -232,7 +235,7 @@ impl ApartPart<'_> {
         let mut sum = 0;
         for piece in pieces {
             poll();
-            let Filtered::Certain(change) = piece.on_path(from, to) else {
+            let Filtered::Certain(change) = piece.change_on_path(from, to) else {
                 return Filtered::Doubtful;
             };
             sum += change;
@@ -243,8 +246,8 @@ impl ApartPart<'_> {
 
 impl Triangle<'_> {
     /// Returns the name of the vertex at a corner.
-    pub(super) fn name(&self, corner: usize) -> Name {
-        Name::Vertex(self.face.slot, self.vertices[corner])
+    pub(super) fn name(&self, corner: usize) -> PointName {
+        PointName::Vertex(self.face.slot, self.vertices[corner])
     }
 
     /// Returns the number of vertices of the face's mesh.
@@ -255,7 +258,7 @@ impl Triangle<'_> {
     /// Returns the vertices at the ends of one of the face's edges, given by its end points; `None` if an end
     /// is no corner of the face.
     pub(super) fn ends_of(&self, edge: [&Lattice; 2]) -> Option<[VertexId; 2]> {
-        let at = |place: &Lattice| self.corners.iter().position(|c| c == place);
+        let at = |point: &Lattice| self.corners.iter().position(|c| c == point);
         Some([self.vertices[at(edge[0])?], self.vertices[at(edge[1])?]])
     }
 }
@@ -269,8 +272,8 @@ impl<'a> Element<'a> {
         sources: &'a Sources,
     ) -> Option<Self> {
         let source = sources.get(record.slot());
-        let place = match source.shape() {
-            Shape::Mesh(mesh) => Place::Face(Triangle {
+        let kind = match source.shape() {
+            Shape::Mesh(mesh) => ElementKind::Face(Triangle {
                 source,
                 face: SourceFace::new(record.slot(), record.face),
                 vertices: mesh.vertices_of(record.face),
@@ -279,15 +282,15 @@ impl<'a> Element<'a> {
             }),
             Shape::HalfSpace(plane) => {
                 let polygon = Polygon::span(plane, cell)?;
-                Place::Plane(record.slot(), Box::new(Face::new(Cow::Owned(polygon))))
+                ElementKind::Plane(record.slot(), Box::new(Face::new(Cow::Owned(polygon))))
             }
         };
         let (low, high) = source.face_box(record.face);
         Some(Self {
             operand,
             weight: record.orientation().signed(1),
-            place,
-            inside: cell.holds_box(&low, &high),
+            kind,
+            inside: cell.contains_box(&low, &high),
             low,
             high,
         })
@@ -295,10 +298,10 @@ impl<'a> Element<'a> {
 
     /// Returns the indices of the corners of a whole face that lie in the cell; none for other elements.
     pub(super) fn vertices_in(&self, cell: &Cell) -> impl Iterator<Item = usize> {
-        let inside = match &self.place {
-            Place::Face(_) if self.inside => [true; 3],
-            Place::Face(triangle) => triangle.corners.map(|p| cell.holds_box(&p, &p)),
-            Place::Plane(..) | Place::Piece(..) | Place::Part(..) => [false; 3],
+        let inside = match &self.kind {
+            ElementKind::Face(_) if self.inside => [true; 3],
+            ElementKind::Face(triangle) => triangle.corners.map(|p| cell.contains_box(&p, &p)),
+            ElementKind::Plane(..) | ElementKind::Piece(..) | ElementKind::Part(..) => [false; 3],
         };
         (0..3).filter(move |i| inside[*i])
     }
@@ -306,7 +309,7 @@ impl<'a> Element<'a> {
     /// Returns the low and the high corner of the element's box, clipped to the cell extended by one step,
     /// relative to the cell's low corner.
     pub(super) fn extent(&self, cell: &Cell) -> [Lattice; 2] {
-        if self.inside && matches!(self.place, Place::Face(_)) {
+        if self.inside && matches!(self.kind, ElementKind::Face(_)) {
             return [&self.low, &self.high].map(|p| each_axis(|i| p[i] - cell.low()[i]));
         }
         let (low, high) = (cell.low(), cell.high());
@@ -315,46 +318,46 @@ impl<'a> Element<'a> {
     }
 
     /// Returns the element in the form that the search for pairs uses.
-    pub(super) fn swept(&self, cell: &Cell) -> Swept {
+    pub(super) fn swept(&self, cell: &Cell) -> SweptElement {
         let origin = cell.low();
         let relative = |p: &Lattice| each_axis(|i| as_double(p[i] - origin[i]));
         let [low, high] = self.extent(cell);
-        Swept {
+        SweptElement {
             operand: self.operand,
             low,
             high,
-            corners: match &self.place {
-                Place::Face(t) => Some(each_axis(|i| relative(&t.corners[i]))),
-                Place::Plane(..) | Place::Piece(..) | Place::Part(..) => None,
+            corners: match &self.kind {
+                ElementKind::Face(t) => Some(each_axis(|i| relative(&t.corners[i]))),
+                ElementKind::Plane(..) | ElementKind::Piece(..) | ElementKind::Part(..) => None,
             },
         }
     }
 
     /// Returns true if the element is a part whose box meets no box of another operand.
     pub(super) fn is_apart(&self) -> bool {
-        matches!(self.place, Place::Part(..))
+        matches!(self.kind, ElementKind::Part(..))
     }
 
     /// Returns the change of the winding number where a path crosses the element, or that it is doubtful, as
-    /// [`Face::on_path`].
-    pub(super) fn on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
-        match &self.place {
-            Place::Part(_, part) => part.on_path(from, to),
+    /// [`Face::change_on_path`].
+    pub(super) fn change_on_path(&self, from: &Lattice, to: &Vertex) -> Filtered<i32> {
+        match &self.kind {
+            ElementKind::Part(_, part) => part.change_on_path(from, to),
             _ => self
                 .shape()
-                .map_or(Filtered::Certain(0), |s| s.on_path(from, to)),
+                .map_or(Filtered::Certain(0), |s| s.change_on_path(from, to)),
         }
     }
 
     /// Returns the element as a convex polygon; `None` for a part that is apart from all other operands.
     pub(super) fn shape(&self) -> Option<&Face<'a>> {
-        Some(match &self.place {
-            Place::Face(t) => t.shape.get_or_init(|| {
+        Some(match &self.kind {
+            ElementKind::Face(t) => t.shape.get_or_init(|| {
                 let plane = t.source.plane(t.face.id);
                 Box::new(Face::new(Cow::Owned(Polygon::triangle(&t.corners, plane))))
             }),
-            Place::Plane(_, shape) | Place::Piece(_, shape) => shape,
-            Place::Part(..) => return None,
+            ElementKind::Plane(_, shape) | ElementKind::Piece(_, shape) => shape,
+            ElementKind::Part(..) => return None,
         })
     }
 
@@ -371,7 +374,7 @@ impl<'a> Element<'a> {
 mod tests {
     use super::*;
     use crate::merge::expression::Term;
-    use crate::merge::kernels::general::fates::Fate;
+    use crate::merge::kernels::general::cut_status::CutStatus;
     use crate::merge::scenes::{crossing, made_of, tetrahedra, tetrahedron, Shared};
 
     #[test]
@@ -399,19 +402,19 @@ mod tests {
         // the first may meet the small one.
         let apart = |e: &&Element| e.is_apart();
         assert_eq!(scene.elements.iter().filter(apart).count(), 3);
-        let fates = scene.fates().expect("general position");
+        let statuses = scene.cut_statuses().expect("general position");
         let uncut = scene
             .elements
             .iter()
-            .zip(&fates)
+            .zip(&statuses)
             .filter(|(e, _)| e.is_apart());
         assert!(uncut
             .clone()
-            .all(|(_, fate)| matches!(fate, Fate::Uncut(_))));
+            .all(|(_, status)| matches!(status, CutStatus::Uncut(_))));
         let winding = |point: Lattice| {
             let point = Vertex::lattice(point);
             let crossed = scene.of_operand(0).iter().map(|e| {
-                let Filtered::Certain(change) = e.on_path(&scene.corner, &point) else {
+                let Filtered::Certain(change) = e.change_on_path(&scene.corner, &point) else {
                     panic!("the path is in general position");
                 };
                 e.weight * change

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::contact::{Face, Special};
+use super::contact::{Degenerate, Face};
 use super::points::Points;
 use super::Labels;
 use crate::arith::Sign;
@@ -12,12 +12,12 @@ use crate::geometry::polygon::{Carrier, Polygon, Sides};
 use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::geometry::winding::path::determinant;
-use crate::merge::division::Spot;
+use crate::merge::division::PositionInPolygon;
 
 /// The segment in which a face of another operand crosses an element; the minus side of that face is on its
 /// left.
 pub(super) struct Segment {
-    pub(super) ends: [End; 2],
+    pub(super) ends: [SegmentEnd; 2],
     /// The index of the other operand.
     pub(super) operand: usize,
     /// The plane of the crossing face.
@@ -28,10 +28,10 @@ pub(super) struct Segment {
 
 /// An end of a segment on an element.
 #[derive(Clone)]
-pub(super) struct End {
+pub(super) struct SegmentEnd {
     pub(super) at: Arc<Vertex>,
     /// Whether the end is a corner of the element, on one of its sides, or inside.
-    pub(super) spot: Spot,
+    pub(super) position: PositionInPolygon,
 }
 
 /// A face of another operand that may cross a given element.
@@ -68,7 +68,7 @@ impl Crossed<'_> {
         &self,
         other: &Crosser,
         points: &mut Points,
-    ) -> Result<Option<Segment>, Special> {
+    ) -> Result<Option<Segment>, Degenerate> {
         let has_corner = other.ours.contains(&Side::On) || other.theirs.contains(&Side::On);
         let ends = if has_corner {
             self.ends_by_order(other, points)?
@@ -89,7 +89,11 @@ impl Crossed<'_> {
     /// Along the common line of both planes, with the face's minus side on the left, the element reaches from
     /// x to x′ and the face from y to y′. If both borders meet in a point, the segment ends on the element's
     /// border. A single point is no segment.
-    fn ends(&self, other: &Crosser, points: &mut Points) -> Result<Option<[End; 2]>, Special> {
+    fn ends(
+        &self,
+        other: &Crosser,
+        points: &mut Points,
+    ) -> Result<Option<[SegmentEnd; 2]>, Degenerate> {
         let face = &other.face.polygon;
         let [x, x_end] = [rise(&other.ours)?, fall(&other.ours)?].map(|p| p.edge);
         let [y, y_end] = [fall(&other.theirs)?, rise(&other.theirs)?].map(|p| p.edge);
@@ -107,8 +111,12 @@ impl Crossed<'_> {
             } else {
                 points.at((face, theirs), (self.polygon.support(), self.number))
             };
-            let spot = if here { Spot::Side(own) } else { Spot::Inside };
-            at.map(|at| End { at, spot }).ok_or(Special)
+            let position = if here {
+                PositionInPolygon::Side(own)
+            } else {
+                PositionInPolygon::Inside
+            };
+            at.map(|at| SegmentEnd { at, position }).ok_or(Degenerate)
         };
         Ok(Some([
             end(starts_here, x, y)?,
@@ -122,23 +130,23 @@ impl Crossed<'_> {
         &self,
         other: &Crosser,
         points: &mut Points,
-    ) -> Result<Option<[End; 2]>, Special> {
+    ) -> Result<Option<[SegmentEnd; 2]>, Degenerate> {
         let ours = (self.polygon, self.number);
         let theirs = (&*other.face.polygon, other.number);
         let mut end = |change: Change, of: (&Polygon, u32), across: (&Polygon, u32)| {
             let plane = (across.0.support(), across.1);
-            change.point(of.0, plane, points).ok_or(Special)
+            change.point(of.0, plane, points).ok_or(Degenerate)
         };
         let (rises, falls) = (rise(&other.ours)?, fall(&other.ours)?);
         let own = [end(rises, ours, theirs)?, end(falls, ours, theirs)?];
         let (falls, rises) = (fall(&other.theirs)?, rise(&other.theirs)?);
         let others = [end(falls, theirs, ours)?, end(rises, theirs, ours)?];
         let axis = own[0].at.axis_to(&own[1].at);
-        let order = |p: &End, q: &End| p.at.compare_along(&q.at, axis);
+        let order = |p: &SegmentEnd, q: &SegmentEnd| p.at.compare_along(&q.at, axis);
         let onward = order(&own[0], &own[1]);
         let [x, x_end] = own;
-        let [y, y_end] = others.map(|end| End {
-            spot: Spot::Inside,
+        let [y, y_end] = others.map(|end| SegmentEnd {
+            position: PositionInPolygon::Inside,
             ..end
         });
         let from = if order(&x, &y) == onward { y } else { x };
@@ -159,7 +167,7 @@ impl Crossed<'_> {
         other: &Crosser,
         rim: usize,
         points: &mut Points,
-    ) -> Result<Sign, Special> {
+    ) -> Result<Sign, Degenerate> {
         let face = &other.face.polygon;
         let carriers = (
             &self.polygon.corners()[edge].edge,
@@ -170,7 +178,7 @@ impl Crossed<'_> {
             return Ok(if rises { turn } else { -turn });
         }
         let plane = (face.support(), other.number);
-        let at = points.at((self.polygon, edge), plane).ok_or(Special)?;
+        let at = points.at((self.polygon, edge), plane).ok_or(Degenerate)?;
         Ok(-at.side_of(&other.face.rims()[rim]).sign())
     }
 }
@@ -189,31 +197,31 @@ impl Change {
         polygon: &Polygon,
         plane: (&Arc<Plane>, u32),
         points: &mut Points,
-    ) -> Option<End> {
+    ) -> Option<SegmentEnd> {
         let edge = self.edge;
         Some(if self.is_at_corner {
             let at = Arc::clone(&polygon.corners()[edge].at);
-            let spot = Spot::Corner(edge);
-            End { at, spot }
+            let position = PositionInPolygon::Corner(edge);
+            SegmentEnd { at, position }
         } else {
             let at = points.at((polygon, edge), plane)?;
-            let spot = Spot::Side(edge);
-            End { at, spot }
+            let position = PositionInPolygon::Side(edge);
+            SegmentEnd { at, position }
         })
     }
 }
 
 /// Returns where a polygon, whose corners lie on these sides of a plane, changes to the plus side.
-fn rise(sides: &[Side]) -> Result<Change, Special> {
+fn rise(sides: &[Side]) -> Result<Change, Degenerate> {
     change(sides, (Side::Minus, Side::Plus))
 }
 
 /// Returns where a polygon, whose corners lie on these sides of a plane, changes to the minus side.
-fn fall(sides: &[Side]) -> Result<Change, Special> {
+fn fall(sides: &[Side]) -> Result<Change, Degenerate> {
     change(sides, (Side::Plus, Side::Minus))
 }
 
-fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Special> {
+fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Degenerate> {
     let n = sides.len();
     let at = |edge: usize| {
         let (here, next) = (sides[edge], sides[(edge + 1) % n]);
@@ -221,7 +229,7 @@ fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Special> {
         let changes = next == to && (here == from || is_at_corner);
         changes.then_some(Change { edge, is_at_corner })
     };
-    (0..n).find_map(at).ok_or(Special)
+    (0..n).find_map(at).ok_or(Degenerate)
 }
 
 /// Returns the side on which the line from a to b passes the directed edge from c to d: the sign of the
@@ -262,9 +270,12 @@ mod tests {
         let ends = segment.ends;
         // The segment begins on an edge of the face, inside the element, and ends on the element's border.
         let [inner, outer] = [[1, 1, 0], [1, 7, 0]].map(Vertex::lattice);
-        let at_outer = ends.each_ref().map(|end| end.at.same(&outer));
-        assert!(ends.iter().any(|end| end.at.same(&inner)) && at_outer.contains(&true));
-        assert_eq!(ends.map(|end| end.spot != Spot::Inside), at_outer);
+        let at_outer = ends.each_ref().map(|end| end.at.equals(&outer));
+        assert!(ends.iter().any(|end| end.at.equals(&inner)) && at_outer.contains(&true));
+        assert_eq!(
+            ends.map(|end| end.position != PositionInPolygon::Inside),
+            at_outer
+        );
     }
 
     #[test]

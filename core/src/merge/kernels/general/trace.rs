@@ -9,15 +9,15 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap as HashMap;
 use smallvec::SmallVec;
 
-use super::contact::Special;
+use super::contact::Degenerate;
 use super::points::Points;
-use super::segment::{Crossed, Crosser, End, Segment};
+use super::segment::{Crossed, Crosser, Segment, SegmentEnd};
 use super::Labels;
 use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::division::{Defect, Division, Spot};
+use crate::merge::division::{Defect, Division, PositionInPolygon};
 
 /// An element divided by the surfaces of other operands.
 pub(super) struct Trace {
@@ -42,7 +42,7 @@ impl Trace {
         crossed: &Crossed,
         crossers: &[Crosser],
         points: &mut Points,
-    ) -> Result<Self, Special> {
+    ) -> Result<Self, Degenerate> {
         let mut segments = Vec::with_capacity(crossers.len());
         for crosser in crossers {
             poll();
@@ -88,45 +88,45 @@ impl Trace {
             return Vec::new();
         };
         let parts = &self.parts;
-        let holds = |labels: &Labels| parts.binary_search(labels).is_ok_and(|i| stays[i]);
-        let holds: Vec<bool> = labels.iter().map(holds).collect();
-        division.outline(&holds)
+        let is_kept = |labels: &Labels| parts.binary_search(labels).is_ok_and(|i| stays[i]);
+        let is_kept: Vec<bool> = labels.iter().map(is_kept).collect();
+        division.outline(&is_kept)
     }
 }
 
-impl From<Defect> for Special {
+impl From<Defect> for Degenerate {
     fn from(_: Defect) -> Self {
         Self
     }
 }
 
 /// Divides an element along segments.
-fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Special> {
+fn divided<'s>(polygon: &Polygon, segments: &'s [Segment]) -> Result<Division, Degenerate> {
     let corners = polygon.corners().iter();
     let corners = corners.map(|c| (Arc::clone(&c.at), c.edge.clone()));
     let mut division = Division::of(polygon.support(), corners)?;
-    let mut points: SmallVec<[(&Arc<Vertex>, Spot); 16]> = SmallVec::new();
+    let mut points: SmallVec<[(&Arc<Vertex>, PositionInPolygon); 16]> = SmallVec::new();
     let mut numbers: HashMap<*const Vertex, usize> = HashMap::default();
-    let number = |end: &'s End| {
+    let number = |end: &'s SegmentEnd| {
         let add = || {
-            points.push((&end.at, end.spot));
+            points.push((&end.at, end.position));
             points.len() - 1
         };
         *numbers.entry(Arc::as_ptr(&end.at)).or_insert_with(add)
     };
     let ends = segments.iter().flat_map(|s| &s.ends).map(number);
     let ends: SmallVec<[usize; 16]> = ends.collect();
-    let places = division.insert(&points)?;
+    let numbers = division.insert(&points)?;
     for (segment, ends) in segments.iter().zip(ends.chunks_exact(2)) {
         poll();
         let plane = Arc::clone(&segment.plane);
-        division.cut_along([0, 1].map(|i| places[ends[i]]), plane)?;
+        division.cut_along([0, 1].map(|i| numbers[ends[i]]), plane)?;
     }
     Ok(division)
 }
 
 /// Returns for each cell its label; an error if segments contradict each other.
-fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Special> {
+fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Degenerate> {
     let change = |cell: usize, edge: usize| {
         let along = division.along_edge(cell, edge);
         along.fold(0, |all, (segment, _)| all ^ segments[segment].bit())
@@ -138,14 +138,14 @@ fn labels(division: &Division, segments: &[Segment]) -> Result<Vec<Labels>, Spec
         *all ^= in_first;
     }
     let agree = |cell: usize| {
-        let mut mates = division.mates(cell);
-        mates.all(|(edge, mate)| {
+        let mut neighbours = division.neighbours(cell);
+        neighbours.all(|(edge, neighbour)| {
             are_of_different_operands(division, segments, cell, edge)
-                && labels[mate] == labels[cell] ^ change(cell, edge)
+                && labels[neighbour] == labels[cell] ^ change(cell, edge)
         }) && sides(division, segments, cell).all(|(bit, inside)| labels[cell] & bit == inside)
     };
     let is_certain = (0..labels.len()).all(agree);
-    is_certain.then_some(labels).ok_or(Special)
+    is_certain.then_some(labels).ok_or(Degenerate)
 }
 
 /// Returns true if all segments along an edge of a cell belong to different operands. Three coincident faces
@@ -184,7 +184,7 @@ fn sides<'a>(
     segments: &'a [Segment],
     cell: usize,
 ) -> impl Iterator<Item = (Labels, Labels)> + 'a {
-    let edges = division.mates(cell).map(|(edge, _)| edge);
+    let edges = division.neighbours(cell).map(|(edge, _)| edge);
     let along = edges.flat_map(move |edge| division.along_edge(cell, edge));
     along.map(|(segment, is_along)| {
         let segment = &segments[segment];

@@ -1,6 +1,6 @@
 //! Cuts a facet (a face perpendicular to an axis) into the pieces that bound the result.
 
-use super::facet::{Facet, ACROSS};
+use super::facet::{Facet, OTHER_AXES};
 use super::grid::Grid;
 use crate::geometry::cell::Cell;
 use crate::geometry::polygon::{Polygon, PolygonSplit};
@@ -19,7 +19,7 @@ pub(super) fn pieces(
     touched: &[u64],
     stay: &[u64],
 ) -> Vec<Polygon> {
-    let (row, bit) = ACROSS[facet.axis];
+    let (row, bit) = OTHER_AXES[facet.axis];
     let mut found = Vec::new();
     let mut rest = facet.polygon_in(cell);
     let mut start = 0;

@@ -67,10 +67,10 @@ struct Cover {
 }
 
 impl Cover {
-    fn with(self, place: u32, weight: i32) -> Self {
+    fn with(self, number: u32, weight: i32) -> Self {
         Self {
             weight: self.weight + weight,
-            first: Some(self.first.map_or(place, |first| first.min(place))),
+            first: Some(self.first.map_or(number, |first| first.min(number))),
         }
     }
 
@@ -103,7 +103,7 @@ impl Covered {
 /// A fragment that covers a part of a cell, and the indices of its edges that may cross the cell.
 #[derive(Clone)]
 struct Crossing {
-    place: u32,
+    number: u32,
     walls: SmallVec<[u32; 4]>,
 }
 
@@ -115,8 +115,8 @@ struct Partition {
 impl Partition {
     /// Divides the whole plane until no edge of a fragment crosses a cell.
     fn grow(&mut self) {
-        let all = (0u32..).zip(&self.shapes).map(|(place, shape)| Crossing {
-            place,
+        let all = (0u32..).zip(&self.shapes).map(|(number, shape)| Crossing {
+            number,
             walls: (0..as_number(shape.walls.len())).collect(),
         });
         let mut open = vec![(0, all.collect::<Vec<_>>())];
@@ -147,7 +147,7 @@ impl Partition {
             };
             if walls.is_empty() {
                 let cover = &mut self.cells[cell].cover;
-                *cover = cover.with(one.place, self.shapes[one.place as usize].weight);
+                *cover = cover.with(one.number, self.shapes[one.number as usize].weight);
             } else {
                 left.push(Crossing { walls, ..one });
             }
@@ -157,7 +157,7 @@ impl Partition {
 
     /// Returns the edges of a fragment that cross a cell; `None` if the cell lies outside the fragment.
     fn walls_across(&self, cell: usize, crossing: &Crossing) -> Option<SmallVec<[u32; 4]>> {
-        let shape = &self.shapes[crossing.place as usize];
+        let shape = &self.shapes[crossing.number as usize];
         let mut across = SmallVec::new();
         for &wall in &crossing.walls {
             let sides = self.cells[cell].region.sides(&shape.walls[wall as usize]);
@@ -175,7 +175,7 @@ impl Partition {
     fn halves(&self, cell: usize, crossing: &[Crossing]) -> Option<[Polygon; 2]> {
         let one = crossing.get(crossing.len() / 2)?;
         let wall = *one.walls.first()?;
-        let cut = &self.shapes[one.place as usize].walls[wall as usize];
+        let cut = &self.shapes[one.number as usize].walls[wall as usize];
         match self.cells[cell].region.split(cut) {
             PolygonSplit::Both(minus, plus) => Some([minus, plus]),
             _ => None,

@@ -55,7 +55,7 @@ fn by_planes(fragments: Vec<Fragment>) -> Vec<Vec<Fragment>> {
 fn overlapping(group: &[Fragment]) -> Vec<bool> {
     let extents: Vec<Extent> = group.iter().map(|f| extent(&f.polygon)).collect();
     let lie_beside = |i: usize, j: usize| {
-        extents[i].misses(&extents[j]) || group[i].polygon.lies_beside(&group[j].polygon)
+        extents[i].misses(&extents[j]) || group[i].polygon.is_separated_from(&group[j].polygon)
     };
     let mut overlaps = vec![false; group.len()];
     for i in 1..group.len() {

@@ -3,8 +3,8 @@
 use rustc_hash::{FxBuildHasher, FxHashMap as HashMap};
 
 use super::anchors::Anchor;
-use super::fates::Fate;
-use super::scene::{Element, Name, Place, Scene};
+use super::cut_status::CutStatus;
+use super::scene::{Element, ElementKind, PointName, Scene};
 use super::Labels;
 use crate::arith::convert::as_number;
 use crate::geometry::cell::Cell;
@@ -22,12 +22,12 @@ const MAX_VERTICES_PER_ELEMENT: usize = 16;
 
 /// Anchors (points that several elements of an operand share) with the known labels of the other operands
 /// there. All anchors of an element that nothing crosses have the same label.
-pub(super) struct Known {
+pub(super) struct KnownLabels {
     /// For each operand the numbers of its anchors at the vertices of one mesh, if enough of the mesh is in
     /// the cell.
     of_vertices: Vec<Option<(Slot, Vec<u32>)>>,
     /// The numbers of all other anchors, by operand and name.
-    numbers: HashMap<(u32, Name), u32>,
+    numbers: HashMap<(u32, PointName), u32>,
     sets: DisjointSets,
     /// The label at each anchor that represents its class of anchors with equal labels, if known.
     pub(super) labels: Vec<Option<Labels>>,
@@ -38,9 +38,9 @@ pub(super) struct Known {
     cuts: Vec<(u32, u32, u32)>,
 }
 
-impl Known {
+impl KnownLabels {
     /// Unites the anchors of each element that nothing crosses into classes; no label is known yet.
-    pub(super) fn new(scene: &Scene, fates: &[Fate]) -> Self {
+    pub(super) fn new(scene: &Scene, statuses: &[CutStatus]) -> Self {
         // A closed surface has half as many vertices as triangles.
         let count = scene.elements.len();
         let of_vertices: Vec<_> = (0..scene.corners.len())
@@ -56,17 +56,17 @@ impl Known {
             anchors: Vec::with_capacity(count),
             cuts: Vec::new(),
         };
-        for (element, fate) in scene.elements.iter().zip(fates) {
+        for (element, status) in scene.elements.iter().zip(statuses) {
             poll();
-            let anchor = known.enter(scene.cell, element, fate);
+            let anchor = known.enter(scene.cell, element, status);
             known.anchors.push(anchor);
         }
-        for (i, (element, fate)) in (0u32..).zip(scene.elements.iter().zip(fates)) {
+        for (i, (element, status)) in (0u32..).zip(scene.elements.iter().zip(statuses)) {
             poll();
-            if let Fate::Cut(cut) = fate {
-                for (place, anchor) in (0u32..).zip(&cut.anchors) {
+            if let CutStatus::Cut(cut) = status {
+                for (index, anchor) in (0u32..).zip(&cut.anchors) {
                     let root = known.root_of(element.operand, anchor.name);
-                    known.cuts.push((root, i, place));
+                    known.cuts.push((root, i, index));
                 }
             }
         }
@@ -76,19 +76,19 @@ impl Known {
 
     /// Unites the anchors of an element that nothing crosses into one class and returns a number of it;
     /// `NONE` for other elements.
-    fn enter(&mut self, cell: &Cell, element: &Element, fate: &Fate) -> u32 {
+    fn enter(&mut self, cell: &Cell, element: &Element, status: &CutStatus) -> u32 {
         let operand = element.operand;
-        match (fate, &element.place) {
-            (Fate::Untouched, Place::Face(triangle)) => {
+        match (status, &element.kind) {
+            (CutStatus::Untouched, ElementKind::Face(triangle)) => {
                 let names = element.vertices_in(cell).map(|i| triangle.name(i));
                 self.unite(operand, names)
             }
-            (Fate::Uncut(anchors), _) => self.unite(operand, anchors.iter().map(|a| a.name)),
+            (CutStatus::Uncut(anchors), _) => self.unite(operand, anchors.iter().map(|a| a.name)),
             _ => NONE,
         }
     }
 
-    fn unite(&mut self, operand: usize, names: impl Iterator<Item = Name>) -> u32 {
+    fn unite(&mut self, operand: usize, names: impl Iterator<Item = PointName>) -> u32 {
         names.fold(NONE, |a, name| {
             let b = self.root_of(operand, name);
             if a == NONE {
@@ -101,11 +101,11 @@ impl Known {
 
     /// Returns the number of the anchor that represents the class of the anchor with this name; adds the
     /// anchor if it is new.
-    pub(super) fn root_of(&mut self, operand: usize, name: Name) -> u32 {
+    pub(super) fn root_of(&mut self, operand: usize, name: PointName) -> u32 {
         let next = self.sets.end();
         let at = match (name, &mut self.of_vertices[operand]) {
-            (Name::Vertex(slot, vertex), Some((own, numbers))) if slot == *own => {
-                let number = &mut numbers[vertex.place()];
+            (PointName::Vertex(slot, vertex), Some((own, numbers))) if slot == *own => {
+                let number = &mut numbers[vertex.index()];
                 *number = next.min(*number);
                 *number
             }
@@ -123,20 +123,20 @@ impl Known {
 
     /// Returns the divided elements at an anchor, each with its part at the anchor and the label `label`
     /// there; `None` if an anchor is no corner of its element.
-    pub(super) fn cut_at(
+    pub(super) fn cut_elements_at(
         &self,
         root: usize,
-        fates: &[Fate],
+        statuses: &[CutStatus],
         label: Labels,
     ) -> Option<Vec<(usize, usize, Labels)>> {
         let start = self.cuts.partition_point(|c| (c.0 as usize) < root);
         let here = self.cuts[start..].iter();
         let here = here.take_while(|c| c.0 as usize == root);
-        here.map(|(_, i, place)| {
-            let Fate::Cut(cut) = &fates[*i as usize] else {
+        here.map(|(_, i, index)| {
+            let CutStatus::Cut(cut) = &statuses[*i as usize] else {
                 return None;
             };
-            let part = cut.part_at(&cut.anchors[*place as usize])?;
+            let part = cut.part_at(&cut.anchors[*index as usize])?;
             Some((*i as usize, part, label))
         })
         .collect()
@@ -151,29 +151,39 @@ impl Known {
         anchor: &Anchor,
     ) -> Option<Labels> {
         let root = self.root_of(operand, anchor.name);
-        self.known_or(root, || scene.count_at(operand, &anchor.place))
+        self.known_or_counted(root, || scene.count_label_at(operand, &anchor.position))
     }
 
     /// Returns the label of all other operands on an element that nothing crosses; counts it if it is not
     /// known. `None` if counting is doubtful.
-    pub(super) fn label_of(&mut self, scene: &Scene, i: usize, fate: &Fate) -> Option<Labels> {
+    pub(super) fn label_of(
+        &mut self,
+        scene: &Scene,
+        i: usize,
+        status: &CutStatus,
+    ) -> Option<Labels> {
         let element = &scene.elements[i];
         let root = self.sets.least(self.anchors[i]);
-        self.known_or(root, || match (fate, &element.place) {
-            (Fate::Uncut(anchors), _) => {
-                let count = |anchor: &Anchor| scene.count_at(element.operand, &anchor.place);
+        self.known_or_counted(root, || match (status, &element.kind) {
+            (CutStatus::Uncut(anchors), _) => {
+                let count =
+                    |anchor: &Anchor| scene.count_label_at(element.operand, &anchor.position);
                 anchors.iter().find_map(count)
             }
-            (_, Place::Face(triangle)) => {
+            (_, ElementKind::Face(triangle)) => {
                 let corners = &triangle.corners;
-                let count = |i: usize| scene.count_at_lattice(element.operand, &corners[i]);
+                let count = |i: usize| scene.count_label_at_lattice(element.operand, &corners[i]);
                 element.vertices_in(scene.cell).find_map(count)
             }
             _ => None,
         })
     }
 
-    fn known_or(&mut self, root: u32, count: impl FnOnce() -> Option<Labels>) -> Option<Labels> {
+    fn known_or_counted(
+        &mut self,
+        root: u32,
+        count: impl FnOnce() -> Option<Labels>,
+    ) -> Option<Labels> {
         let known = &mut self.labels[root as usize];
         if known.is_none() {
             *known = Some(count()?);
@@ -185,7 +195,7 @@ impl Known {
 /// Makes an empty table of anchor numbers for the vertices of the mesh of an operand's first element; `None`
 /// if this mesh has too many vertices for its elements in the cell.
 fn numbers_of_vertices(elements: &[Element]) -> Option<(Slot, Vec<u32>)> {
-    let Place::Face(triangle) = &elements.first()?.place else {
+    let ElementKind::Face(triangle) = &elements.first()?.kind else {
         return None;
     };
     let count = triangle.mesh_size();
@@ -205,9 +215,9 @@ mod tests {
         let operands = shared.operands();
         let roots = |count: usize| {
             let scene = Scene::new(&shared.cell, &operands[..count], &shared.sources);
-            let fates = scene.fates().expect("general position");
-            let mut known = Known::new(&scene, &fates);
-            let vertex = |v: u32| Name::Vertex(Slot(0), VertexId(v));
+            let statuses = scene.cut_statuses().expect("general position");
+            let mut known = KnownLabels::new(&scene, &statuses);
+            let vertex = |v: u32| PointName::Vertex(Slot(0), VertexId(v));
             [0, 1, 2, 3].map(|v| known.root_of(0, vertex(v)))
         };
         assert_eq!(roots(1), [0; 4]);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use super::anchors::{Anchor, Names};
+use super::anchors::{Anchor, PointNames};
 use super::contact::{contact, Contact};
 use super::points::Points;
 use super::scene::{Element, Scene};
@@ -15,17 +15,17 @@ use crate::geometry::apart::{are_apart, NearTriangle};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
-use crate::merge::pairs::{pairs, shift_of, Boxed};
+use crate::merge::pairs::{pairs, shift_of, BoxedElement};
 
 /// The numbers of the elements that may meet an element: rarely more than six.
 type Neighbours = SmallVec<[u32; 6]>;
 
 /// The number of the first pair of elements that is examined as soon as it is found; the pairs 32, 64 and so
 /// on follow. If many pairs are degenerate, the search so ends early.
-const FIRST_PAIR_LOOKED_AT: usize = 16;
+const FIRST_PAIR_EXAMINED: usize = 16;
 
 /// How the faces of other operands affect an element.
-pub(super) enum Fate {
+pub(super) enum CutStatus {
     /// The element does not meet the cell.
     Absent,
     /// The element is a whole face that no other operand is near, with a vertex in the cell.
@@ -38,13 +38,13 @@ pub(super) enum Fate {
 }
 
 /// The crossing points and the names of corners that all elements share.
-struct Made<'a> {
+struct SharedNames<'a> {
     points: Points,
-    names: Names<'a>,
+    names: PointNames<'a>,
 }
 
 /// The elements of other operands that an element meets.
-enum Meeting<'a> {
+enum NearElements<'a> {
     /// The element meets no other one; it may not even meet the cell.
     Apart,
     /// The element does not meet the cell.
@@ -63,49 +63,52 @@ pub(super) struct Cut {
 
 impl Scene<'_> {
     /// Returns how other operands affect each element; `None` if two elements touch in a degenerate position.
-    pub(super) fn fates(&self) -> Option<Vec<Fate>> {
+    pub(super) fn cut_statuses(&self) -> Option<Vec<CutStatus>> {
         let near = self.neighbours()?.into_iter().enumerate();
         // A cell with a degenerate position is refused before any element is divided.
-        let meetings: Option<Vec<Meeting>> = near.map(|(i, near)| self.meeting(i, &near)).collect();
-        let mut made = Made {
+        let all_near: Option<Vec<NearElements>> =
+            near.map(|(i, near)| self.near_elements(i, &near)).collect();
+        let mut shared = SharedNames {
             points: Points::default(),
-            names: Names::of(self),
+            names: PointNames::of(self),
         };
-        let meetings = meetings?.into_iter().enumerate();
-        let fate = |(i, meeting)| match meeting {
-            Meeting::Apart => self.fate_apart(i, &mut made),
-            Meeting::Absent => Some(Fate::Absent),
-            Meeting::Near(polygon, crossers) => self.fate(i, *polygon, &crossers, &mut made),
+        let all_near = all_near?.into_iter().enumerate();
+        let status = |(i, near)| match near {
+            NearElements::Apart => self.status_apart(i, &mut shared),
+            NearElements::Absent => Some(CutStatus::Absent),
+            NearElements::Near(polygon, crossers) => {
+                self.status_of(i, *polygon, &crossers, &mut shared)
+            }
         };
-        meetings.map(fate).collect()
+        all_near.map(status).collect()
     }
 
     /// Returns the elements of other operands that an element meets; `None` if it touches one in a degenerate
     /// position.
-    fn meeting(&self, i: usize, neighbours: &[u32]) -> Option<Meeting<'_>> {
+    fn near_elements(&self, i: usize, neighbours: &[u32]) -> Option<NearElements<'_>> {
         if neighbours.is_empty() {
-            return Some(Meeting::Apart);
+            return Some(NearElements::Apart);
         }
         let Some(polygon) = self.elements[i].polygon_in(self.cell) else {
-            return Some(Meeting::Absent);
+            return Some(NearElements::Absent);
         };
         let crossers = self.crossers(&polygon, neighbours)?;
-        Some(Meeting::Near(Box::new(polygon), crossers))
+        Some(NearElements::Near(Box::new(polygon), crossers))
     }
 
-    /// Returns the fate of an element that no other operand is near.
-    fn fate_apart(&self, i: usize, made: &mut Made) -> Option<Fate> {
+    /// Returns the cut status of an element that no other operand is near.
+    fn status_apart(&self, i: usize, shared: &mut SharedNames) -> Option<CutStatus> {
         let element = &self.elements[i];
         if element.vertices_in(self.cell).next().is_some() {
-            return Some(Fate::Untouched);
+            return Some(CutStatus::Untouched);
         }
-        let anchors = element.anchors(self.cell, &mut made.names);
+        let anchors = element.anchors(self.cell, &mut shared.names);
         if !anchors.is_empty() {
-            return Some(Fate::Uncut(anchors));
+            return Some(CutStatus::Uncut(anchors));
         }
         match element.polygon_in(self.cell) {
-            Some(polygon) => self.fate(i, polygon, &[], made),
-            None => Some(Fate::Absent),
+            Some(polygon) => self.status_of(i, polygon, &[], shared),
+            None => Some(CutStatus::Absent),
         }
     }
 
@@ -116,7 +119,7 @@ impl Scene<'_> {
         let shift = shift_of(1 << size);
         let boxed = |(number, element): (u32, &Element)| {
             let [low, high] = element.extent(self.cell);
-            Boxed::new(element.operand, number, [&low, &high], shift)
+            BoxedElement::new(element.operand, number, [&low, &high], shift)
         };
         let elements = (0..).zip(&self.elements);
         let boxes = elements.filter(|(_, e)| !e.is_apart()).map(boxed).collect();
@@ -133,8 +136,8 @@ impl Scene<'_> {
             found[i].push(b);
             found[j].push(a);
             count += 1;
-            if count >= FIRST_PAIR_LOOKED_AT && count.is_power_of_two() {
-                self.meeting(i, &[b])?;
+            if count >= FIRST_PAIR_EXAMINED && count.is_power_of_two() {
+                self.near_elements(i, &[b])?;
             }
             Some(())
         })?;
@@ -146,27 +149,27 @@ impl Scene<'_> {
         Some(found)
     }
 
-    fn fate(
+    fn status_of(
         &self,
         i: usize,
         polygon: Polygon,
         crossers: &[Crosser],
-        made: &mut Made,
-    ) -> Option<Fate> {
+        shared: &mut SharedNames,
+    ) -> Option<CutStatus> {
         let element = &self.elements[i];
-        let mut anchors = element.anchors(self.cell, &mut made.names);
+        let mut anchors = element.anchors(self.cell, &mut shared.names);
         if anchors.is_empty() {
-            anchors = element.anchors_at_walls(&polygon, &mut made.names);
+            anchors = element.anchors_at_walls(&polygon, &mut shared.names);
         }
         if !anchors.is_empty() && crossers.is_empty() {
-            return Some(Fate::Uncut(anchors));
+            return Some(CutStatus::Uncut(anchors));
         }
         let crossed = Crossed {
             polygon: &polygon,
             number: as_number(i),
         };
-        let trace = Trace::new(&crossed, crossers, &mut made.points).ok()?;
-        Some(Fate::Cut(Box::new(Cut {
+        let trace = Trace::new(&crossed, crossers, &mut shared.points).ok()?;
+        Some(CutStatus::Cut(Box::new(Cut {
             polygon,
             trace,
             anchors,
@@ -181,7 +184,7 @@ impl Scene<'_> {
             let other = &self.elements[*j as usize];
             let Some(face) = other.shape() else { continue };
             match contact(polygon, face) {
-                Contact::Special => return None,
+                Contact::Degenerate => return None,
                 Contact::None => {}
                 Contact::Crossing(ours, theirs) => crossers.push(Crosser {
                     face,
@@ -220,14 +223,16 @@ mod tests {
         let shared = crossing();
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
-        let fates = scene.fates().expect("general position");
-        let cut = |fate: &Fate| matches!(fate, Fate::Cut(_));
-        let cut: Vec<bool> = fates.iter().map(cut).collect();
+        let statuses = scene.cut_statuses().expect("general position");
+        let cut = |status: &CutStatus| matches!(status, CutStatus::Cut(_));
+        let cut: Vec<bool> = statuses.iter().map(cut).collect();
         // The divided faces are the face opposite the origin, and the three faces at the corner inside.
         assert_eq!(cut, [false, false, false, true, true, true, true, false]);
         let alone = Scene::new(&shared.cell, &operands[..1], &shared.sources);
-        let fates = alone.fates().expect("nothing meets");
-        assert!(fates.iter().all(|fate| matches!(fate, Fate::Untouched)));
+        let statuses = alone.cut_statuses().expect("nothing meets");
+        assert!(statuses
+            .iter()
+            .all(|status| matches!(status, CutStatus::Untouched)));
     }
 
     /// Returns for each face of a tetrahedron the number of edges of the part that is inside all operands
@@ -238,9 +243,9 @@ mod tests {
         let shared = Shared::of(&std::iter::once(floor).chain(others).collect::<Vec<_>>());
         let operands = shared.operands();
         let scene = Scene::new(&shared.cell, &operands, &shared.sources);
-        let fates = scene.fates().unwrap_or_default();
-        let edges = |fate: Fate| match fate {
-            Fate::Cut(mut cut) => {
+        let statuses = scene.cut_statuses().unwrap_or_default();
+        let edges = |status: CutStatus| match status {
+            CutStatus::Cut(mut cut) => {
                 let Trace {
                     parts, operands, ..
                 } = &cut.trace;
@@ -251,8 +256,8 @@ mod tests {
             }
             _ => None,
         };
-        let faces = fates.into_iter().take(4);
-        faces.map(|fate| edges(fate).unwrap_or(0)).collect()
+        let faces = statuses.into_iter().take(4);
+        faces.map(|status| edges(status).unwrap_or(0)).collect()
     }
 
     #[test]
