@@ -1,4 +1,4 @@
-//! Approximate places where triangles cross.
+//! Approximate points at which triangles cross.
 
 use std::cmp::Ordering;
 
@@ -14,10 +14,10 @@ pub fn places(faces: &Faces, found: &Faults) -> Vec<Point> {
     found.crossings.iter().map(place).collect()
 }
 
-/// The rounded middle of the segment that two triangles share; some corner if they share none.
+/// The rounded middle of the segment that two triangles share; the first corner of `p` if they share none.
 fn middle(p: &Triangle, q: &Triangle) -> Point {
     let mut ends: Vec<Point> = through(p, q).chain(through(q, p)).collect();
-    // All lie on one line, so lexicographic order is their order on it, and the common stretch lies
+    // All ends lie on one line, so lexicographic order is their order on it, and the common segment lies
     // between the inner two.
     ends.sort_by(in_order);
     match ends.len() {
@@ -26,7 +26,7 @@ fn middle(p: &Triangle, q: &Triangle) -> Point {
     }
 }
 
-/// The lexicographic order.
+/// Compares two points lexicographically.
 fn in_order(a: &Point, b: &Point) -> Ordering {
     let ordered = |i: usize| a[i].total_cmp(&b[i]);
     ordered(0).then_with(|| ordered(1)).then_with(|| ordered(2))

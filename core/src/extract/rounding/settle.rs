@@ -16,39 +16,40 @@ use crate::mesh::handle::VertexId;
 use crate::mesh::snap::snap_all;
 use crate::mesh::triangles::firsts;
 
-/// Rounds of finding and mending: each mends what it found, the next checks what that moved.
+/// The largest number of rounds: each mends the faults found, and the next one compares the triangles it
+/// changed.
 const MAX_ROUNDS: usize = 4;
 
-/// The most crossing pairs, per triangle, for which a moved mesh is mended. Surfaces that touched
-/// cross along curves, in fewer pairs than there are triangles. With more, they lie on each other
-/// as a whole, and no change as small as the rounding separates them.
+/// The largest number of crossing pairs per triangle for which a moved mesh is mended. Surfaces that touched
+/// cross along curves, in fewer pairs than there are triangles. If more pairs cross, whole surfaces
+/// coincide, and no change as small as the rounding separates them.
 const MAX_CROSSINGS_PER_TRIANGLE: usize = 1;
 
-/// A mesh whose vertices were rounded, closed by index.
+/// A triangle mesh, closed by index, whose vertices were rounded.
 #[derive(Clone, Debug)]
 pub struct Rounded {
     /// The vertices.
     pub vertices: Vec<Point>,
-    /// The triangles; those removed have one corner three times.
+    /// The triangles; a removed one has one corner three times.
     pub triangles: Vec<[VertexId; 3]>,
 }
 
 /// The outcome of settling a mesh.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
-    /// The number of triangles that were compared with all near them.
+    /// The number of triangles that were compared with all triangles near them.
     pub compared: usize,
     /// The triangles that were changed, ascending, including removed ones.
     pub mended: Vec<u32>,
-    /// Vertices moved to their exact places, ascending.
+    /// Vertices moved to their exact lattice points, ascending.
     pub moved: Vec<VertexId>,
     /// The faults that could not be mended.
     pub left: Faults,
-    /// The faults that exist on the lattice too, and stay.
+    /// Faults that surfaces have on the lattice, too; these are not mended.
     pub own: Faults,
 }
 
-/// Mends the faults found of changed triangles, ascending, as far as possible.
+/// Mends the faults `found` of the ascending triangles `changed`, as far as possible.
 ///
 /// `exact` gives the place of a vertex on the lattice, if its input had it elsewhere: there the
 /// surfaces do not cross. `given` marks vertices of inputs.
