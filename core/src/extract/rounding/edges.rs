@@ -28,8 +28,9 @@ pub fn crosses_at(
 
 /// Returns the pairs of triangles that meet along edges at which surfaces cross.
 ///
-/// # Cost A pass over the triangles; the sheets are sorted once for each edge and the triangle or edge that
-/// it meets.
+/// # Cost
+/// A pass over the triangles; the sheets are sorted once for each edge and the triangle or edge that it
+/// meets.
 pub fn crossing(faces: &Faces, mut pairs: Vec<([u32; 2], Meeting)>) -> Vec<[u32; 2]> {
     let there = AtEdges::of(faces, &pairs);
     let mut known = HashMap::default();

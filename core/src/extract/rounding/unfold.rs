@@ -31,7 +31,8 @@ pub struct Unfolded {
 
 /// Swaps edges between triangles of one plane until no swap corrects a triangle that faces the wrong way.
 ///
-/// # Order Triangles by their numbers, and in each triangle the edges from its first corner on.
+/// # Order
+/// Triangles by their numbers, and in each triangle the edges from its first corner on.
 pub fn unfold(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources) -> Unfolded {
     let turned = turned(mesh, exact, sources);
     if turned.is_empty() {

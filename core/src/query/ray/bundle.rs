@@ -1,15 +1,14 @@
 //! Bundles of similar rays, in single precision: a conservative test of which boxes they meet.
 //!
-//! # Error In the frame a scene lies in [−1, 1]. A ray is taken from where it enters this interval on its
-//! main axis. So it meets the scene only at main distances t from 0 to 2, and moves by at most t on each
-//! axis. Let u = 2^-24. The distance of a box's plane is a difference times an inverse that was rounded
-//! once: its relative error is below 4u, as if the plane had moved by 8u < 2^-21. An inverse that is cut at
+//! # Error
+//! In the frame a scene lies in [−1, 1]. A ray is taken from where it enters this interval on its main axis.
+//! So it meets the scene only at main distances t from 0 to 2, and moves by at most t on each axis. Let u =
+//! 2^-24. The distance of a box's plane is a difference times an inverse that was rounded once: its relative
+//! error is below 4u, as if the plane had moved by 8u < 2^-21. An inverse that is cut at
 //! [`MAX_INVERSE_SLOPE`] moves the ray by 2·2^-40. The start is found in doubles, with an error below 2^-49
 //! of its distance from the origin. The slack of [`Starts::views`] exceeds the sum of these errors and of
 //! rounding to single precision. So a ray that meets a box passes the test of each slab, which tries all
 //! starts within the slack.
-//! these errors and of rounding to single precision. So a ray that meets a box passes the test of
-//! each slab, which tries all starts within the slack.
 
 use super::cell::{above, Frame};
 use super::line::{Near, Ray};

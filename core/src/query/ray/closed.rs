@@ -10,7 +10,8 @@ use crate::mesh::import::import;
 /// Triangles must cancel along the lines of their edges, as many segments must end at each point as begin
 /// there, and the number of points on the line must be even.
 ///
-/// # Errors `NotClosed` with the indices in the input of facets at the border.
+/// # Errors
+/// `NotClosed` with the indices in the input of facets at the border.
 pub fn require_closed<const D: usize>(
     facets: &[Facet<D>],
     number: impl Fn(u32) -> u32,

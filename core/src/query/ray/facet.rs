@@ -24,7 +24,7 @@ type Weight = Int<DENOMINATOR_LIMBS>;
 pub struct Meeting<const D: usize> {
     /// The parameter along the ray, not negative.
     pub at: Ratio,
-    /// The last parameter at which the ray is on the facet: `at` unless it runs within it.
+    /// The last parameter at which the ray is on the facet: `at`, unless the ray runs in its hyperplane.
     pub until: Ratio,
     /// The barycentric weights, not negative; their sum is positive.
     pub weights: [Int<WEIGHT_LIMBS>; D],

@@ -137,7 +137,8 @@ impl<const D: usize> Scene<D> {
 
     /// Returns an error if the facets are not closed; decides it once.
     ///
-    /// # Errors `NotClosed` with the indices in the input of facets at the border.
+    /// # Errors
+    /// `NotClosed` with the indices in the input of facets at the border.
     pub fn require_closed(&self) -> Result<()> {
         if let Some(known) = self.closed.get() {
             return known.clone();

@@ -1,4 +1,4 @@
-//! Hyperplanes of lattice points.
+//! Hyperplanes with integer coefficients, or through lattice points.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! Trees of supporting hyperplanes that rays stab: grown by their use, or complete from the start.
+//! Trees of supporting hyperplanes over facets, which rays cause to grow, or which are complete from the
+//! start.
 //!
 //! # Source
 //! The augmented BSP tree: Ar, Montag, Tal 2002, "Deferred, self-organizing BSP trees"; lecture
@@ -20,7 +21,7 @@
 //! for _ in 0..3 {
 //!     tree.test_ray(&ray);
 //! }
-//! // The tree has grown where the rays went.
+//! The tree has grown along the rays.
 //! assert!(tree.shape().subdivisions > 0);
 //! # Ok::<(), bspcsg::error::Error>(())
 //! ```
