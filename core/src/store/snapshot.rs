@@ -397,7 +397,7 @@ impl SourceData {
         }
     }
 
-    /// The image of a source; these are its data.
+    /// Returns the image of a source under a motion, made of `self`, the data of the moved source.
     fn image(&self, source: &Source, motion: &Motion) -> Result<Arc<Source>> {
         let made = || Ok(Arc::new(self.source(source.pitch())?));
         // A source that bounds nothing becomes an empty mesh, even if its image is known.

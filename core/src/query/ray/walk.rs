@@ -36,9 +36,9 @@ const MAX_BUNDLE_WIDTH: f64 = 8.0;
 type Stack<'a, const D: usize> = SmallVec<[Open<'a, D>; 64]>;
 
 /// Visits the blocks that rays meet, each ray's nearest first, until the rest lie farther than its limit.
+///
 /// `depth` gives the limit of a ray, in lattice steps along its main axis. `visit` gets the number of a ray
 /// and a block, and returns the new limit.
-/// main axis. `visit` gets the number of a ray and a block, and returns the new limit.
 pub fn walk<const D: usize>(
     scene: &Scene<D>,
     rays: &[Ray<D>],

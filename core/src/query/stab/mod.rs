@@ -21,7 +21,7 @@
 //! for _ in 0..3 {
 //!     tree.test_ray(&ray);
 //! }
-//! The tree has grown along the rays.
+//! // The tree has grown where the rays went.
 //! assert!(tree.shape().subdivisions > 0);
 //! # Ok::<(), bspcsg::error::Error>(())
 //! ```
