@@ -11,7 +11,7 @@ use crate::mesh::handle::NodeId;
 /// When the leaves of a stab tree are divided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Growth {
-    /// As soon as a ray visits a leaf that has more visits than this number.
+    /// After a ray, if a leaf that it visited has more visits than this number.
     Visits(u64),
     /// Never by rays.
     Never,
