@@ -14,7 +14,7 @@ pub enum ErrorKind {
     NonFinite,
     /// A face names a vertex that does not exist.
     IndexOutOfRange,
-    /// An array does not have the shape it should.
+    /// An array does not have the shape that the call needs.
     Shape,
     /// A coordinate or coefficient does not fit the lattice.
     TooLarge,
@@ -26,7 +26,7 @@ pub enum ErrorKind {
     Unbounded,
     /// The caller asked to stop.
     Cancelled,
-    /// A half-space needs a finite normal that is not zero.
+    /// The normal of a half-space, or the direction of a ray, is zero or not finite.
     BadNormal,
     /// Operands are on lattices of different pitch.
     PitchMismatch,

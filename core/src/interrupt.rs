@@ -33,7 +33,7 @@ const NO_CALL: u64 = 0;
 
 static NEXT: AtomicU64 = AtomicU64::new(1);
 
-/// The number of calls that are being stopped.
+/// The number of calls that were stopped and have not ended.
 static STOPPING: AtomicUsize = AtomicUsize::new(0);
 
 static STOPPED: Mutex<Vec<u64>> = Mutex::new(Vec::new());

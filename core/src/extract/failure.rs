@@ -12,13 +12,13 @@ use crate::tree::solid::Solid;
 pub(super) enum Failure {
     /// Faces cross or overlap each other.
     Overlap(Overlap),
-    /// Anything else.
+    /// The core refuses the solid for another reason.
     Refused(Error),
 }
 
 /// Faces found to cross or overlap each other.
 pub(super) struct Overlap {
-    /// A sign of the failure, in words.
+    /// What was found, as a text for the error message.
     pub(super) sign: String,
     /// The faces at which the failure was found.
     pub(super) faces: Vec<OrientedFace>,

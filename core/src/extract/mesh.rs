@@ -114,7 +114,7 @@ pub fn numbers_left(used: &[bool]) -> Vec<VertexId> {
     used.iter().scan(0, number).collect()
 }
 
-/// A triangle mesh in doubles.
+/// A closed triangle mesh in doubles.
 #[derive(Debug, Default)]
 pub struct Mesh {
     /// Vertices in model units.

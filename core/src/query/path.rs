@@ -54,7 +54,7 @@ pub fn locate<S: Affine>(tree: &FragmentTree<S>, point: &Viewpoint) -> Vec<Point
 /// An event on a ray's path through a tree; parameters are in model units per length of the direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum RayEvent {
-    /// An inner node is visited.
+    /// The ray visits an inner node.
     Visit {
         /// The number of the node.
         node: NodeId,

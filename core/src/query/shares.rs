@@ -58,7 +58,7 @@ struct Partial {
     open: Vec<(u32, u32)>,
 }
 
-/// A point in homogeneous coordinates.
+/// A point in homogeneous coordinates, with its rounded position.
 struct Point {
     x: [BigInt; 3],
     weight: BigInt,
@@ -103,7 +103,7 @@ impl Shares {
         shares
     }
 
-    /// An upper bound on the bits of the sum's denominator.
+    /// Returns an upper bound on the bits of the denominator of the sum.
     pub fn denominator_bits(&self) -> u64 {
         let used = self.weights.iter().zip(&self.uses).filter(|w| *w.1 > 0);
         used.map(|(weight, _)| weight.bits()).sum()

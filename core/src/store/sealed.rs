@@ -75,7 +75,7 @@ pub fn seal(kind: Kind, value: &impl Serialize) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A value from bytes, also of earlier versions.
+/// Decodes a value from sealed bytes, also from those of earlier versions.
 ///
 /// # Errors
 /// `BadSnapshot`.

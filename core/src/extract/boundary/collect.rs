@@ -21,7 +21,7 @@ use crate::tree::solid::Solid;
 /// A source face of which only a part belongs to the boundary of a solid.
 #[derive(Debug)]
 pub struct CutFace {
-    /// The face.
+    /// The face and its orientation in the boundary.
     pub face: OrientedFace,
     /// The outline of the part that is boundary, counterclockwise in the orientation of the face's source.
     pub outline: Outline,
@@ -38,7 +38,7 @@ pub struct Boundary {
     pub near: Vec<SourceFace>,
 }
 
-/// Above this number of faces several threads share the work.
+/// If more faces than this are to be processed, several threads share the work.
 const PARALLEL_FROM: usize = 256;
 
 /// Listings are sorted, not counted by face, if there are fewer than one for this many faces.
@@ -105,8 +105,8 @@ impl Collector<'_> {
             && (self.fill_box(run, source) || covers(self.root, source, first))
     }
 
-    /// Return whether the cells of the leaves that list a face fill its box; may return false
-    /// negatives.
+    /// Returns true only if the cells of the leaves that list a face fill the face's bounding box; may
+    /// return false negatives.
     fn fill_box(&self, run: &[Spanning], source: &Source) -> bool {
         let leaves = run.chunk_by(|a, b| a.leaf == b.leaf).map(|s| s[0].leaf);
         fill(
@@ -235,7 +235,7 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Return whether every leaf that a face meets lists it; may return false negatives.
+/// Returns true only if every leaf that a face meets lists it; may return false negatives.
 fn covers(root: &Branch, source: &Source, face: OrientedFace) -> bool {
     let (low, high) = source.face_box(face.id());
     if !root.cell.holds_box(&low, &high) {

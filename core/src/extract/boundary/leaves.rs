@@ -24,15 +24,15 @@ use crate::tree::node::{Branch, Deferred, Group, Node, Part};
 /// A face that a leaf lists, though it extends beyond the leaf's cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Spanning {
-    /// The face.
+    /// The face and its orientation in the boundary.
     pub face: OrientedFace,
-    /// The number of the leaf.
+    /// The number of the leaf that lists the face.
     pub leaf: u32,
 }
 
 /// A part of a face that belongs to the boundary of a solid.
 pub struct Piece<'a> {
-    /// The face.
+    /// The face and its orientation in the boundary.
     pub face: OrientedFace,
     extent: Extent<'a>,
 }
@@ -312,7 +312,7 @@ impl Fates {
         Slot::all().zip(self.0.iter().map(Vec::as_slice))
     }
 
-    /// The number of sources.
+    /// The number of sources of the solid.
     pub fn sources(&self) -> usize {
         self.0.len()
     }

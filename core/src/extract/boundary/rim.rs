@@ -175,7 +175,7 @@ impl Around {
     }
 }
 
-/// The vertices where a source's faces of different fates meet, and the whole faces there.
+/// The vertices at which faces of one source have different fates, and the whole faces with such a corner.
 #[derive(Debug, Default)]
 pub struct Rim {
     /// For each vertex, those of the bits `KEPT`, `TURNED`, `OTHER` and `OPEN` that apply.

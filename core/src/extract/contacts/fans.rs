@@ -45,7 +45,7 @@ pub struct Split {
 pub enum Error {
     /// A corner is not the index of a vertex, or two corners of the triangle are the same.
     BadTriangle {
-        /// Index of the triangle.
+        /// The number of the triangle.
         triangle: usize,
     },
     /// The edge is not used equally often in both directions.
@@ -53,7 +53,7 @@ pub enum Error {
         /// The edge's vertices, the lower number first.
         edge: [VertexId; 2],
     },
-    /// Triangles or copies of vertices cannot be counted in 32 bits.
+    /// There are too many triangles, or too many copies of vertices, to count them in 32 bits.
     TooMany,
 }
 
@@ -153,7 +153,7 @@ struct Surface<'a> {
 struct Crowded {
     /// The edge's vertices, the lower number first.
     ends: [VertexId; 2],
-    /// The half-edges from the lower to the higher vertex.
+    /// The half-edges that run from the lower to the higher vertex.
     forward: Vec<usize>,
 }
 

@@ -27,7 +27,7 @@ pub(in crate::extract) struct Assembly<'a> {
     pub(in crate::extract) vertices: Vec<Corner>,
     pub(in crate::extract) triangles: Vec<[VertexId; 3]>,
     pub(in crate::extract) faces: Vec<OrientedFace>,
-    /// The triangles at the start, which are untouched faces of sources.
+    /// The triangles at the start of `triangles`, which are untouched faces of sources.
     pub(in crate::extract) untouched: Untouched,
     /// True if areas are compared, because faces of one plane might overlap.
     pub(in crate::extract) verify: bool,
@@ -125,7 +125,7 @@ impl<'a> Assembly<'a> {
         })
     }
 
-    /// The faces of the triangles at a vertex.
+    /// Returns the faces that the triangles at a vertex lie in.
     pub(in crate::extract) fn faces_at(&self, vertex: VertexId) -> Vec<OrientedFace> {
         let around = self.triangles.iter().zip(&self.faces);
         let around = around.filter(|(triangle, _)| triangle.contains(&vertex));

@@ -12,7 +12,7 @@ use crate::mesh::handle::{FaceId, OrientedFace, Slot, SourceFace, VertexId};
 use crate::mesh::tasks::{each_chunk, in_pool, CHUNK};
 use crate::mesh::triangles::TriangleMesh;
 
-/// The triangles at the start of a mesh, which are untouched faces of sources.
+/// The untouched faces of sources among the triangles of a mesh; they come first.
 #[derive(Debug, Default)]
 pub struct Untouched {
     /// The vertices that only triangles of untouched faces use.

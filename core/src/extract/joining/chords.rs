@@ -14,10 +14,10 @@ use crate::interrupt::poll;
 use crate::merge::lists::list::Sources;
 use crate::mesh::handle::OrientedFace;
 
-/// An edge of a surface that lies in the middle of a face.
+/// An edge of a surface that lies inside a face of the same surface.
 #[derive(Clone, Debug)]
 pub struct EdgeContact {
-    /// The ends of the edge.
+    /// The two ends of the edge.
     pub ends: [Arc<Vertex>; 2],
     /// The two faces that share the edge.
     pub beside: [OrientedFace; 2],

@@ -21,7 +21,7 @@ pub struct PlaneGroup {
 }
 
 impl PlaneGroup {
-    /// The edges of the outline.
+    /// The edges of the polygon's outline.
     pub fn edges(&self) -> &[BareEdge] {
         self.outline.edges()
     }

@@ -25,11 +25,11 @@ struct Gathered {
     plane: Arc<Plane>,
     patch: u32,
     faces: SmallVec<[OrientedFace; 2]>,
-    /// The outlines of cut faces.
+    /// The outlines of the cut faces in the group.
     cut: SmallVec<[Outline; 1]>,
     /// The edges of whole faces that joined the group.
     whole: Vec<OutlineEdge>,
-    /// The chords that divide the group afterwards.
+    /// The chords that divide the polygon of the group.
     chords: Vec<Chord>,
 }
 
@@ -238,7 +238,8 @@ impl Grouping<'_> {
         self.open.push((face, group));
     }
 
-    /// Absorbs the whole faces that continue a group's faces in its plane across an edge.
+    /// Moves whole faces into groups if they share an edge and the plane with a face of the group; repeats
+    /// this.
     fn spread(&mut self) {
         while let Some((face, group)) = self.open.pop() {
             poll();

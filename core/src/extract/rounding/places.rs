@@ -8,7 +8,7 @@ use crate::geometry::doubles::vector::{dot, less, normal};
 use crate::geometry::doubles::{Point, Triangle};
 use crate::mesh::faces::Faces;
 
-/// For each pair of triangles that cross, a point near the middle of their intersection.
+/// Returns, for each pair of triangles that cross, a point near the middle of their intersection.
 pub fn places(faces: &Faces, found: &Faults) -> Vec<Point> {
     let place = |[t, u]: &[u32; 2]| middle(&faces.corners(*t), &faces.corners(*u));
     found.crossings.iter().map(place).collect()
@@ -32,7 +32,7 @@ fn in_order(a: &Point, b: &Point) -> Ordering {
     ordered(0).then_with(|| ordered(1)).then_with(|| ordered(2))
 }
 
-/// The points in which the edges of a triangle pass through the plane of another.
+/// Yields the points in which the edges of a triangle pass through the plane of another triangle.
 fn through<'a>(t: &'a Triangle, plane: &Triangle) -> impl Iterator<Item = Point> + 'a {
     let across = normal(plane);
     let heights = t.map(|c| dot(&less(&c, &plane[0]), &across));

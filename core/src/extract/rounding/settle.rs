@@ -34,7 +34,7 @@ pub struct Rounded {
     pub triangles: Vec<[VertexId; 3]>,
 }
 
-/// The outcome of settling a mesh.
+/// The result of removing the crossings that rounding made.
 #[derive(Clone, Debug, Default)]
 pub struct Settled {
     /// The number of triangles that were compared with all triangles near them.
@@ -43,7 +43,7 @@ pub struct Settled {
     pub mended: Vec<u32>,
     /// Vertices moved to their exact lattice points, ascending.
     pub moved: Vec<VertexId>,
-    /// The faults that could not be mended.
+    /// The crossings and flat triangles that could not be mended.
     pub left: Faults,
     /// Faults that surfaces have on the lattice, too; these are not mended.
     pub own: Faults,

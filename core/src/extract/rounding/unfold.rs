@@ -23,7 +23,7 @@ const MAX_SWAPS_PER_TRIANGLE: usize = 8;
 /// The triangles that edge swaps changed, and those that they could not correct.
 #[derive(Debug, Default)]
 pub struct Unfolded {
-    /// Triangles made by swapping an edge.
+    /// The triangles that were made by swapping an edge, ascending.
     pub repaired: Vec<u64>,
     /// Triangles that still have no area or face opposite to their planes.
     pub left: Vec<u64>,

@@ -37,7 +37,7 @@ pub fn proved(
     (kept.into_iter().map(|(edit, _)| edit).collect(), acts)
 }
 
-/// Changes that are being tried.
+/// Changes that are tried together, with the triangles before them, so that they can be undone.
 struct Trial<'a> {
     vertices: &'a [Point],
     triangles: &'a mut [[VertexId; 3]],

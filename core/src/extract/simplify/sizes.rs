@@ -52,7 +52,7 @@ pub fn is_small(corners: &Triangle, tolerance: f64) -> bool {
     height(corners) <= tolerance || lengths(corners).iter().any(|l| *l <= tolerance)
 }
 
-/// Six times the volume that a triangle's edge p → q sweeps when its third corner moves.
+/// Six times the volume that a triangle with the edge p → q sweeps when its third corner moves.
 pub fn swept(from: &Point, to: &Point, [p, q]: [&Point; 2]) -> f64 {
     dot(&less(to, from), &cross(&less(p, from), &less(q, from))).abs()
 }

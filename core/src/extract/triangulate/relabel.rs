@@ -14,7 +14,7 @@ pub(super) struct Relabelled<'a, P> {
 }
 
 impl<'a, P: Planar> Relabelled<'a, P> {
-    /// Renumbers the ends of `edges`; fails if an edge ends where none begins.
+    /// Renumbers the ends of `edges`; returns an error if an edge ends where no edge begins.
     pub(super) fn new(
         points: &'a P,
         edges: &[(u32, u32)],

@@ -18,20 +18,20 @@ use crate::interrupt::poll;
 
 const NONE: usize = usize::MAX;
 
-/// The shape of the region at a corner, in the order in which corners of one vertex are visited.
+/// The kind of a corner for the sweep, in the order in which corners of one vertex are visited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// An interval closes.
+    /// An interval of the sweep line inside the region ends at the corner.
     End,
-    /// An interval's lower edge is replaced.
+    /// The lower edge of an interval ends at the corner, and another one continues it.
     Lower,
-    /// An interval's upper edge is replaced.
+    /// The upper edge of an interval ends at the corner, and another one continues it.
     Upper,
-    /// Two intervals become one.
+    /// Two intervals become one at the corner.
     Merge,
-    /// One interval becomes two.
+    /// One interval becomes two at the corner.
     Split,
-    /// An interval opens.
+    /// An interval of the sweep line inside the region starts at the corner.
     Start,
 }
 
@@ -46,7 +46,7 @@ struct Node {
 struct Interval {
     lower: usize,
     upper: usize,
-    /// Ends of the chain, and its rightmost node.
+    /// The lowest, the highest and the rightmost node of the chain.
     bottom: usize,
     top: usize,
     last: usize,
@@ -59,7 +59,7 @@ struct Sweep<'a, P> {
     intervals: Vec<Interval>,
     /// For each edge the interval that it bounds.
     interval_of: Vec<usize>,
-    /// Open intervals, bottom to top.
+    /// The open intervals, from bottom to top.
     order: Order,
     triangles: Vec<[u32; 3]>,
 }

@@ -260,7 +260,7 @@ impl<'a> Folds<'a> {
 
 /// The flat parts of a surface: coplanar triangles that are connected across edges.
 struct FlatParts {
-    /// The triangles, grouped by part.
+    /// The triangles, grouped by flat part.
     order: Vec<u32>,
     /// The index in `order` at which each part starts; the last entry is the end.
     starts: Vec<usize>,
@@ -286,12 +286,12 @@ impl FlatParts {
         Self { order, starts, of }
     }
 
-    /// The numbers of all parts.
+    /// The numbers of all flat parts.
     fn all(&self) -> std::ops::Range<u32> {
         0..as_number(self.starts.len() - 1)
     }
 
-    /// The triangles of a part.
+    /// The triangles of a flat part.
     fn triangles(&self, part: u32) -> &[u32] {
         let [start, end] = [0, 1].map(|i| self.starts[part as usize + i]);
         &self.order[start..end]

@@ -11,7 +11,7 @@ use crate::geometry::side::Side;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 
-/// A triangle of exact corners.
+/// A triangle with exact corners, and its plane.
 pub struct Facet {
     /// The corners.
     pub corners: [Vertex; 3],

@@ -6,7 +6,7 @@ use super::narrow::Narrow;
 use super::scene::{in_lengths, Scene};
 use crate::arith::{ratio_to_f64, Int};
 
-/// The part of a facet in which a ray meets it.
+/// The part of a facet that contains the point of a hit: its interior, an edge or a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// In the facet's relative interior.

@@ -42,7 +42,7 @@ impl<const D: usize> Block<D> {
         &self.facets[..self.len as usize]
     }
 
-    /// The corners of the facet in a lane.
+    /// The corners of the facet in a lane of the block.
     #[inline]
     pub fn lane(&self, lane: usize) -> Facet<D> {
         let mut facet = [[0.0; D]; D];

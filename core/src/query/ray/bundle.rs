@@ -160,7 +160,7 @@ fn most<const N: usize>(of: &[f32; N]) -> f32 {
     of.iter().fold(of[0], |a, b| if *b > a { *b } else { a })
 }
 
-/// Up to `N` rays of one octant, and the beam around them.
+/// Up to `N` similar rays with directions in one octant, and a beam that contains them.
 #[derive(Clone, Debug)]
 pub struct Bundle<const D: usize, const N: usize> {
     /// For each axis the side of a box that rays meet first: 1, the high side, if slopes are negative.

@@ -9,7 +9,7 @@ use super::cell::Span;
 /// The number of bins on each axis, whose borders are the candidate cuts.
 const BINS: usize = 16;
 
-/// About how many facets of a longer list are sampled to choose a cut.
+/// Of a longer list about this many facets are sampled to choose a cut.
 const FACETS_SAMPLED: usize = 4096;
 
 /// A list of at most this many facets makes two blocks: it is divided in the middle.

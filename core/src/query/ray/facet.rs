@@ -14,7 +14,7 @@ use crate::arith::{Int, Sign};
 /// The corners of a facet: a point in 1D, a segment in 2D, a triangle in 3D.
 pub type Facet<const D: usize> = [[f64; D]; D];
 
-/// Corners relative to a ray's origin.
+/// The corners of a facet relative to a ray's origin, in lattice steps.
 pub type Corners<const D: usize> = [[i64; D]; D];
 
 type Weight = Int<DENOMINATOR_LIMBS>;
@@ -116,7 +116,7 @@ fn product(a: i128, b: i128) -> Weight {
     Int::<2>::from_i128(a).mul_i128(b)
 }
 
-/// The cross product of two relative corners.
+/// The cross product of two corners relative to a ray's origin.
 fn normal<const D: usize>(a: &[i64; D], b: &[i64; D]) -> [i128; 3] {
     [0, 1, 2].map(|k| minor(a, b, (k + 1) % 3, (k + 2) % 3))
 }
@@ -137,7 +137,7 @@ fn determinant<const D: usize>(v: &Corners<D>) -> Int<NUMERATOR_LIMBS> {
     }
 }
 
-/// The sign of a zero weight of a corner after the origin moves by (ε, ε², ε³).
+/// Returns the sign that a zero weight of a corner gets when the origin moves by (ε, ε², ε³).
 ///
 /// In space w = d · (a × b) with the opposite edge from a to b, which grows by ε⃗ · ((a − b) × d);
 /// in the plane w₀ = d × b and w₁ = a × d, which grow by ∓ d × ε⃗.

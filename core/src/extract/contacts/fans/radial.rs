@@ -7,7 +7,7 @@ use crate::mesh::handle::VertexId;
 
 use super::Radial;
 
-/// Products of two normal components, and sums of three of them, in bits: 2 · 120 + 2 < 256.
+/// An integer wide enough for sums of three products of two normal components: 2 · 120 + 2 < 256 bits.
 type Wide = Int<4>;
 
 /// A triangle at an edge, to be sorted by its angle around the edge.

@@ -22,7 +22,7 @@ use crate::interrupt::spend;
 const MAX_CHANGES_PER_FAULT: usize = 120;
 
 impl Mending {
-    /// Removes faults until none is left or no change helps.
+    /// Removes crossings and flat triangles until none is left, or no change helps.
     pub fn run(&mut self) {
         let mut open: Vec<[u32; 2]> = self.faults();
         while let Some(fault) = open.pop() {
