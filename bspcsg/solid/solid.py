@@ -281,33 +281,6 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         """Complement: everything outside."""
         return from_node(*complement(Placed(self._node, self._factors)))
 
-    @uncounted
-    def equals(self, other: "Solid") -> bool:
-        """Say whether both are the same set of points, exactly; so says ``==``, too."""
-        return (self ^ of_kind(Solid, other, "other")).is_empty
-
-    @uncounted
-    def isdisjoint(self, other: "Solid") -> bool:
-        """Say whether the two have no volume in common; contact is allowed."""
-        return (self & of_kind(Solid, other, "other")).is_empty
-
-    def _is_alike(self, other: object) -> bool:
-        return isinstance(other, Solid)
-
-    @uncounted
-    def _size_key(self) -> object:
-        if self.normalized().is_bounded:
-            return residues_of_volume(self)
-        outside = self._outside()
-        # If both are unbounded, no cheap test can distinguish solids.
-        bounded = outside.is_bounded
-        return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
-
-    @counted
-    def _moved(self, factors: Factors) -> "Solid":
-        kept = tuple(factor for factor in factors if not factor.is_identity)
-        return from_node(self._node, self._factors.under(kept)) if kept else self
-
     # Results
 
     @property
@@ -372,32 +345,76 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
                 )
         return self if self._reduced is None else self._reduced
 
-    @counted
-    def tagged(self, **values: Any) -> "Solid":
-        """Return the solid with face attributes that have one value on all faces.
+    # History
 
-        Parameters
-        ----------
-        **values : number, text or array
-            Values by attribute name; they replace attributes of the same name. ``color`` is one
-            colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
-            255. Half-spaces have no faces, so they stay without attributes.
+    @property
+    def last_operation(self) -> "LastOperation | None":
+        """The operation that made this solid; None for a mesh, a loaded or a copied solid.
 
-        Raises
-        ------
-        InvalidParameterError
-            If the colour is invalid.
+        Only the last evaluation is kept, with its program and operands. If each result of a chain
+        is queried, one operation is kept, however long the chain. If only the last result is
+        queried, the whole chain was one operation, and that is kept.
+        """
+        content = evaluate(self._node)
+        if not isinstance(content, TreeLeaf) or content.record is None:
+            return None
+        record = content.record
+        operands = tuple(from_leaf(leaf) for leaf in record.leaves)
+        program = [(name, list(lines)) for name, lines in record.program]
+        return LastOperation(program, operands, from_node(self._node))
+
+    def profile(self) -> Profile:
+        """Return the profile of the solid's evaluation, stage by stage; empty for a mesh.
+
+        Operations on two different unchanged meshes take the fast path; `Profile.handed_on` has the
+        reason why an evaluation could not.
 
         Examples
         --------
         >>> import bspcsg as csg
-        >>> part = csg.cube(2).tagged(layer=1) - csg.cube(1).tagged(layer=2)
-        >>> sorted({*part.to_mesh().face_attributes["layer"].tolist()})
-        [1, 2]
+        >>> part = csg.cube(2) - csg.cube(1).translate(1.5, 1.5, 1.5)
+        >>> [stage.name for stage in part.profile().stages]
+        ['candidates', 'contacts', 'faces']
         """
-        leaf = self._leaf()
-        told = tagged(leaf, values)
-        return self if told is leaf else from_leaf(told)
+        content = evaluate(self._node)
+        return Profile.of(content.result) if isinstance(content, TreeLeaf) else Profile()
+
+    # Queries
+
+    @uncounted
+    def equals(self, other: "Solid") -> bool:
+        """Say whether both are the same set of points, exactly; so says ``==``, too."""
+        return (self ^ of_kind(Solid, other, "other")).is_empty
+
+    @uncounted
+    def isdisjoint(self, other: "Solid") -> bool:
+        """Say whether the two have no volume in common; contact is allowed."""
+        return (self & of_kind(Solid, other, "other")).is_empty
+
+    def _is_alike(self, other: object) -> bool:
+        return isinstance(other, Solid)
+
+    @uncounted
+    def _size_key(self) -> object:
+        if self.normalized().is_bounded:
+            return residues_of_volume(self)
+        outside = self._outside()
+        # If both are unbounded, no cheap test can distinguish solids.
+        bounded = outside.is_bounded
+        return ("outside", residues_of_volume(outside)) if bounded else "unbounded"
+
+    @uncounted
+    def _outside(self) -> "Solid":
+        return (~self).normalized()
+
+    # Motions
+
+    @counted
+    def _moved(self, factors: Factors) -> "Solid":
+        kept = tuple(factor for factor in factors if not factor.is_identity)
+        return from_node(self._node, self._factors.under(kept)) if kept else self
+
+    # Modelling
 
     @counted
     def simplify(self, tolerance: float) -> "Solid":
@@ -455,43 +472,32 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         given = self._leaf().given_pitch
         return self if tree is None else from_leaf(TreeLeaf(tree, given_pitch=given))
 
-    @uncounted
-    def _outside(self) -> "Solid":
-        return (~self).normalized()
+    @counted
+    def tagged(self, **values: Any) -> "Solid":
+        """Return the solid with face attributes that have one value on all faces.
 
-    # History
+        Parameters
+        ----------
+        **values : number, text or array
+            Values by attribute name; they replace attributes of the same name. ``color`` is one
+            colour: ``"orange"``, ``"#ff8800"``, floats from 0 to 1, or whole numbers from 0 to
+            255. Half-spaces have no faces, so they stay without attributes.
 
-    @property
-    def last_operation(self) -> "LastOperation | None":
-        """The operation that made this solid; None for a mesh, a loaded or a copied solid.
-
-        Only the last evaluation is kept, with its program and operands. If each result of a chain
-        is queried, one operation is kept, however long the chain. If only the last result is
-        queried, the whole chain was one operation, and that is kept.
-        """
-        content = evaluate(self._node)
-        if not isinstance(content, TreeLeaf) or content.record is None:
-            return None
-        record = content.record
-        operands = tuple(from_leaf(leaf) for leaf in record.leaves)
-        program = [(name, list(lines)) for name, lines in record.program]
-        return LastOperation(program, operands, from_node(self._node))
-
-    def profile(self) -> Profile:
-        """Return the profile of the solid's evaluation, stage by stage; empty for a mesh.
-
-        Operations on two different unchanged meshes take the fast path; `Profile.handed_on` has the
-        reason why an evaluation could not.
+        Raises
+        ------
+        InvalidParameterError
+            If the colour is invalid.
 
         Examples
         --------
         >>> import bspcsg as csg
-        >>> part = csg.cube(2) - csg.cube(1).translate(1.5, 1.5, 1.5)
-        >>> [stage.name for stage in part.profile().stages]
-        ['candidates', 'contacts', 'faces']
+        >>> part = csg.cube(2).tagged(layer=1) - csg.cube(1).tagged(layer=2)
+        >>> sorted({*part.to_mesh().face_attributes["layer"].tolist()})
+        [1, 2]
         """
-        content = evaluate(self._node)
-        return Profile.of(content.result) if isinstance(content, TreeLeaf) else Profile()
+        leaf = self._leaf()
+        told = tagged(leaf, values)
+        return self if told is leaf else from_leaf(told)
 
     # As a value
 
