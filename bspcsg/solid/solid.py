@@ -11,16 +11,16 @@ kept and the expression released. There are two guarantees, used by two kinds of
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 from .._core import Tree
-from .._types import ProgramLine, WindingRule
+from .._types import ProgramLine, Scalar, Vector, WindingRule
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
-from ..errors import BspcsgError, core_errors
+from ..errors import BspcsgError, core_errors, deprecated
 from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
-from ..mesh import interop, visuals
+from ..mesh import interop, leaving, visuals
 from ..mesh.mesh import Mesh
 from ..owned import owning
 from ..parameters import (
@@ -32,7 +32,6 @@ from ..parameters import (
     truth_value,
     winding_rule,
 )
-from .convertible import Convertible
 from .counting import count, counted, uncounted
 from .describe import describe
 from .edged import Edged
@@ -48,7 +47,7 @@ from .leaf import (
     tagged,
     tree_of,
 )
-from .measure import residues_of_volume
+from .measure import Measured, residues_of_volume
 from .modelled import Modelled
 from .movable import Movable
 from .point_set import PointSet
@@ -56,13 +55,20 @@ from .profile import Profile
 from .program import Operator
 from .source_attributes import SourceAttributes, inherited, later_attributes
 
+if TYPE_CHECKING:
+    import manifold3d
+    import trimesh
+
+    from ..bsp import Region
+    from ..verify.check import CheckReport
+
 #: The largest number of faces of a result whose mesh is made for `repr`, which takes some
 #: hundredths of a second.
 _MAX_FACES_FOR_REPR = 20_000
 
 
 @owning
-class Solid(Convertible, Edged, Modelled, Movable, PointSet):
+class Solid(Measured, Edged, Modelled, Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
     A point is inside if the winding number of the faces satisfies the rule; faces may cross,
@@ -235,6 +241,13 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         if interop.are_empty(arrays):
             return cls.empty()
         return cls(*arrays, **{**visuals.attributes_from(mesh, *arrays), **options})
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str], **options: Any) -> "Solid":
+        """Read a mesh file; the suffix names the format (see `bspcsg.load`)."""
+        from ..io import load
+
+        return load(path, **options)
 
     @classmethod
     @counted
@@ -498,6 +511,159 @@ class Solid(Convertible, Edged, Modelled, Movable, PointSet):
         leaf = self._leaf()
         told = tagged(leaf, values)
         return self if told is leaf else from_leaf(told)
+
+    # Conversion
+
+    @overload
+    def slice(
+        self,
+        offset: Scalar = 0.0,
+        normal: str | Vector = (0, 0, 1),
+        *,
+        origin: Vector | None = None,
+    ) -> "Region": ...
+    @overload
+    def slice(self, offset: Vector, normal: str | Vector = (0, 0, 1)) -> "list[Region]": ...
+    def slice(
+        self, offset: Any = 0.0, normal: str | Vector = (0, 0, 1), *, origin: Vector | None = None
+    ) -> "Region | list[Region]":
+        """Return the section by a plane as a region of the plane (`bspcsg.Region`).
+
+        The boundary is cut exactly, by the plane that `half_space` uses for these numbers: the
+        given plane if it contains lattice points, else the nearest parallel one that does. Each
+        corner of the section is rounded to the nearest lattice point, so corners with lattice
+        coordinates are exact.
+
+        Parameters
+        ----------
+        offset : float or (n,) float
+            The plane consists of the points x with ``normal . x == offset``: by default a height z.
+            Several offsets give a list of sections.
+        normal : "x", "y", "z" or (3,) float
+            Need not have unit length. The region is seen from where it points: z gives coordinates
+            (x, y), x gives (y, z), y gives (z, x), negative axes exchange the two; for others see
+            `bspcsg.bsp.plane_frame`, whose coordinates are rounded once more.
+        origin : (3,) float, optional
+            A point of the plane, instead of `offset`.
+
+        Raises
+        ------
+        InvalidMeshError
+            If the normal is zero or a number is not finite.
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        A face in the plane counts as above it: the section is the limit from the minus side. For a
+        box standing on z = 0 it is empty at z = 0 and full at the top.
+        """
+        from ..bsp.sets.slicing import slice_solid
+
+        return slice_solid(self, offset, normal, origin=origin)
+
+    @uncounted
+    def project(self) -> "Region":
+        """Return the projection along z onto the plane z = 0: all (x, y) of points of the solid.
+
+        To project along another direction, rotate the solid first.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+
+        Notes
+        -----
+        The mesh is projected: corners off the lattice are first rounded to it.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> csg.torus(3, 1, segments=4).rotate(90, "x").project().bounds.tolist()
+        [[-4.0, -1.0], [4.0, 1.0]]
+        """
+        from ..modelling.planar.shadows import shadow
+
+        return shadow(self)
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """Return a `trimesh.Trimesh` with the same vertices and faces, and the attributes.
+
+        The visual has ``"color"``, or a single material with texture coordinates ``"uv"`` of
+        vertices; else faces show the colours of their materials. All other arrays of vertices and
+        faces keep their names, and the metadata have the materials and the values of corners.
+        `Solid.from_mesh` reads all of that back.
+
+        Warns
+        -----
+        LossWarning
+            If a trimesh cannot show an attribute: colours of corners, pictures of several
+            materials.
+        """
+        return leaving.trimesh_of(self.normalized().to_mesh())
+
+    def to_manifold(self) -> "manifold3d.Manifold":
+        """Return a `manifold3d.Manifold`; ask its ``status()`` whether it was accepted.
+
+        Numeric attributes become vertex properties: ``"properties"`` first, then the others in
+        order, colours as four numbers from 0 to 1. `Solid.from_mesh` restores their names, also
+        after Manifold's operations, if all operands had the same attributes.
+
+        Warns
+        -----
+        LossWarning
+            If an attribute is text, as materials are, or not finite.
+        """
+        return leaving.manifold_of(self.normalized().to_mesh())
+
+    def to_csg(self, *, flat: bool = False) -> str:
+        """Return the expression that made the solid as a `.csg` script (see `bspcsg.csg.dumps`)."""
+        from ..csg.loading import dumps
+
+        return dumps(self, flat=flat)
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write the mesh to a file; the suffix names the format (see `bspcsg.save`)."""
+        from ..io import save
+
+        save(self, path, **options)
+
+    def show(self) -> None:
+        """Show the solid in a notebook or in a browser (see `bspcsg.show`)."""
+        from ..script.run import show
+
+        show(self)
+
+    @uncounted
+    def validate(self, **options: Any) -> "CheckReport":
+        """Compare the operation that made this solid with manifold3d (see `bspcsg.validate`)."""
+        from ..verify.check import check_result
+
+        return check_result(self, **options)
+
+    def check(self, **options: Any) -> "CheckReport":
+        """Call `validate`; deprecated."""
+        deprecated("Solid.check", "validate")
+        return self.validate(**options)
+
+    def _repr_html_(self) -> str | None:
+        """Return the HTML for a notebook: an interactive view, or the reason why there is none."""
+        from ..report.viewer.notebook import solid_html
+
+        return solid_html(self)
+
+    def _repr_svg_(self) -> str | None:
+        """Return a picture as SVG, for notebooks that show neither HTML nor PNG."""
+        from ..report.viewer.notebook import solid_svg
+
+        return solid_svg(self)
+
+    def _repr_png_(self) -> bytes | None:
+        """Return a picture as PNG, for notebooks that show nothing else; None without Pillow."""
+        from ..report.viewer.notebook import solid_png
+
+        return solid_png(self)
 
     # As a value
 
