@@ -11,13 +11,14 @@ kept and the expression released. There are two guarantees, used by two kinds of
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any, overload
 
 from .._core import Tree
-from .._types import FloatArray, ProgramLine, Scalar, Vector, WindingRule
+from .._types import FloatArray, ProgramLine, Scalar, SideArray, Vector, WindingRule
 from ..attributes.attributes import Attributes, Given
 from ..attributes.material import Material
-from ..errors import BspcsgError, core_errors, deprecated
+from ..errors import BspcsgError, Finding, core_errors, deprecated
 from ..geometry.chain import UNMOVED, FactorChain, common_prefix
 from ..geometry.transform import Factors
 from ..mesh import interop, leaving, visuals
@@ -48,12 +49,22 @@ from .leaf import (
     tagged,
     tree_of,
 )
-from .measure import Measured, residues_of_volume
+from .measure import (
+    LONGEST_VOLUME,
+    exact_volume,
+    findings_of,
+    residues_of_volume,
+    rounded_volume,
+    volume_near,
+    volume_residues,
+)
 from .movable import Movable
 from .point_set import PointSet
 from .profile import Profile
 from .program import Operator
+from .sides import sides_of
 from .source_attributes import SourceAttributes, inherited, later_attributes
+from .triangles import Triangles, triangles_of
 
 if TYPE_CHECKING:
     import manifold3d
@@ -71,7 +82,7 @@ _MAX_FACES_FOR_REPR = 20_000
 
 
 @owning
-class Solid(Measured, Movable, PointSet):
+class Solid(Movable, PointSet):
     """A closed triangle mesh as a set of points.
 
     A point is inside if the winding number of the faces satisfies the rule; faces may cross,
@@ -335,6 +346,7 @@ class Solid(Measured, Movable, PointSet):
         return _mesh_of(self.tree, self._source_attributes)
 
     def _divided_mesh(self) -> Mesh:
+        """Return the reduced boundary, with faces divided where edges lie inside them."""
         reduced = self.normalized()
         with core_errors():
             divided = reduced.tree.divided()
@@ -360,6 +372,53 @@ class Solid(Measured, Movable, PointSet):
                     TreeLeaf(reduced, source_attributes=source_attributes, given_pitch=given)
                 )
         return self if self._reduced is None else self._reduced
+
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices of the mesh, (n, 3) float64, in model units, read-only."""
+        return self.to_mesh().vertices
+
+    @property
+    def faces(self) -> Triangles:
+        """Triangles of the mesh, (m, 3) int64, indices of `vertices`, read-only.
+
+        Call it, as ``solid.faces()``, to select faces: flat ones, and round ones such as the wall
+        of a bore (see `FaceSelection`). Neighbouring facets belong to one round face if they bend
+        by at most 30 degrees, or another ``angle``, and neither is more than twice as wide as the
+        other; ``all=True`` returns the facets one by one.
+
+        Examples
+        --------
+        >>> import bspcsg as csg
+        >>> part = csg.cylinder(10, d=8)
+        >>> part.faces.shape, len(part.faces()), len(part.faces(all=True))
+        ((124, 3), 3, 34)
+        >>> part.faces().sort_by("z")[-1].normal.tolist()
+        [[0.0, 0.0, 1.0]]
+        """
+        return triangles_of(self, self.to_mesh().faces)
+
+    @property
+    def sources(self) -> tuple[int, ...]:
+        """Identities of the input meshes, in the order of their numbers in `Mesh.source`."""
+        return tuple(self.tree.sources)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """The findings about the inputs and the mesh, which is made and checked for this.
+
+        "self_overlap" means that the mesh is not the boundary of the solid, and names triangles
+        that cross or overlap others; `normalized` returns the solid with its boundary as mesh.
+        "crossing" means that an input crosses itself by less than a step of the lattice. "flat"
+        names triangles with area on the lattice, but none in the doubles of the mesh. The mesh's
+        `certificate` has no other faults.
+        """
+        return findings_of(self)
+
+    @property
+    def pitch(self) -> int:
+        """Exponent of the lattice step: it is ``10**pitch`` model units."""
+        return self.tree.pitch
 
     # History
 
@@ -396,6 +455,16 @@ class Solid(Measured, Movable, PointSet):
         return Profile.of(content.result) if isinstance(content, TreeLeaf) else Profile()
 
     # Queries
+
+    @property
+    def is_empty(self) -> bool:
+        """True if the solid has no volume."""
+        return self.normalized().tree.is_empty
+
+    @property
+    def is_bounded(self) -> bool:
+        """True if the solid fits into some box."""
+        return self.tree.is_bounded
 
     @uncounted
     def equals(self, other: "Solid") -> bool:
@@ -442,7 +511,23 @@ class Solid(Measured, Movable, PointSet):
 
     @uncounted
     def _outside(self) -> "Solid":
+        """Return the complement with its reduced boundary."""
         return (~self).normalized()
+
+    def classify(self, points: Any) -> SideArray:
+        """Classify points as inside, outside or on the boundary, exactly.
+
+        Parameters
+        ----------
+        points : (k, 3) array_like of float
+            In model units; snapped to the lattice. For a bounded solid, points may lie anywhere.
+
+        Returns
+        -------
+        (k,) int8
+            +1 inside, 0 on the boundary, -1 outside.
+        """
+        return sides_of(interop.points_array(points), self.normalized().tree)
 
     def min_gap(self, other: "Solid") -> float:
         """Return the least distance between points of the two solids, in model units.
@@ -532,6 +617,106 @@ class Solid(Measured, Movable, PointSet):
         return ray_cast(self, origin, direction)
 
     # Measures
+
+    @property
+    def volume(self) -> float:
+        """Volume of the set in cubic model units, rounded once."""
+        return rounded_volume(self)
+
+    @property
+    def volume_exact(self) -> Fraction:
+        """Volume of the set in cubic model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity; so for all measures.
+        LimitError
+            If it might be a fraction of more than 200 000 digits; see `exact_volume`.
+        """
+        return self.exact_volume()
+
+    def exact_volume(self, most_digits: int = LONGEST_VOLUME) -> Fraction:
+        """Return the volume of the set in cubic model units, exactly.
+
+        The denominator grows by that of about one constructed corner for each corner. Reducing the
+        fraction takes time quadratic in the number of digits, and cannot be interrupted.
+
+        Parameters
+        ----------
+        most_digits : int
+            The largest allowed number of decimal digits of numerator and denominator.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid reaches to infinity.
+        LimitError
+            If they might have more digits; the message has the number.
+        """
+        return exact_volume(self, most_digits)
+
+    @property
+    def volume_near(self) -> Fraction:
+        """Volume to within 2**-100 cubic lattice steps; deprecated, see `exact_volume`."""
+        deprecated("Solid.volume_near", "volume or exact_volume")
+        return volume_near(self)
+
+    @property
+    def volume_residues(self) -> tuple[int, int] | None:
+        """Six times the volume modulo two primes; deprecated, compare solids by ``==``."""
+        deprecated("Solid.volume_residues", "== or exact_volume")
+        return volume_residues(self)
+
+    @property
+    def area(self) -> float:
+        """Surface area in square model units, the same as that of the complement.
+
+        Raises
+        ------
+        UnboundedError
+            If the solid and its complement both reach to infinity.
+        """
+        reduced = self.normalized()
+        return (reduced if reduced.is_bounded else self._outside()).to_mesh().area
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of volume, (3,) float64, in model units; NaN for the empty set."""
+        return self.normalized().to_mesh().centroid
+
+    @property
+    def inertia(self) -> FloatArray:
+        """Moments of inertia about the centroid at density 1, (3, 3) float64; NaN if empty.
+
+        In model units to the fifth power.
+        """
+        return self.normalized().to_mesh().inertia
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 3) float64, or None for the empty set."""
+        return self.normalized().to_mesh().bounds
+
+    @property
+    def euler_number(self) -> int:
+        """Vertices - edges + faces of the mesh."""
+        return self.normalized().to_mesh().euler_number
+
+    @property
+    def surface_count(self) -> int:
+        """Number of connected surfaces; the wall of a closed cavity is one of its own.
+
+        This number was formerly `components`, which now has the parts, each with its cavities.
+        Surfaces that touch only in a point or an edge count separately, even if the edge lies
+        inside a face that belongs to both and that the mesh does not divide there.
+        """
+        return self._divided_mesh().surface_count
+
+    @property
+    def genus(self) -> int:
+        """Number of handles, summed over all connected surfaces."""
+        return self._divided_mesh().genus
 
     def normals(self, sharp_angle: Scalar = 30.0) -> FloatArray:
         """Return unit normals for shading, one for each corner of each triangle.
@@ -1432,6 +1617,7 @@ class Solid(Measured, Movable, PointSet):
             return None
 
     def _alias(self) -> "Solid":
+        """Return a copy as another object, with all cached results."""
         other = from_node(self._node, self._factors)
         other._placed, other._mesh, other._reduced = self._placed, self._mesh, self._reduced
         return other
