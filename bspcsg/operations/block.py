@@ -53,7 +53,7 @@ class Block:
     @property
     def solids(self) -> tuple[Solid, ...]:
         """The solids that count so far, in order."""
-        return tuple(solid for solid in self._ledger.solids if isinstance(solid, Solid))
+        return self._ledger.solids
 
     @property
     def solid(self) -> Solid:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any, Self, TypeVar, get_args
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import Scalar, SetOp, WindingRule
+from ..._types import FloatArray, Scalar, SetOp, WindingRule
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...mesh import interop
 from ...owned import owning
@@ -28,17 +28,17 @@ from ...parameters import (
 from ..trees.asking import pairs_of
 from ..trees.facets import chosen_pitch
 from .boundary import boundary_arrays
-from .pieces import BuildPolicy, NormalAndOffset, SplitCase
+from .nearest import nearest_on_boundary
+from .pieces import BuildPolicy, NodeTable, NormalAndOffset, Pieces, SplitCase
 from .rows import hyperplane, hyperplane_row, hyperplane_rows
 from .trace import MergeTrace, merge_trace
-from .tree_queries import TreeQueries
 from .tree_set import TreeSet, set_of
 
 Set = TypeVar("Set", bound=TreeSet)
 
 
 @owning
-class ObjectTree(TreeQueries):
+class ObjectTree(TreeSet):
     """A set of points as a partition tree; an immutable value.
 
     ``==``, ``<=``, ``<``, ``in`` and the like compare sets of points exactly, like those of
@@ -238,6 +238,58 @@ class ObjectTree(TreeQueries):
         outside = ~self
         # If both are unbounded, no cheap test can distinguish sets.
         return self.dimension, -outside.measure - 1 if outside.is_bounded else None
+
+    # Queries
+
+    def nearest(self, points: Any) -> tuple[FloatArray, FloatArray]:
+        """Return the nearest boundary point of each point, and its distance.
+
+        Parameters
+        ----------
+        points : (k, d) array_like of float
+            In model units; on the line (k,) will do.
+
+        Returns
+        -------
+        nearest : (k, d) float64
+            Rounded; of several, the one on the first piece of the boundary.
+        distance : (k,) float64
+
+        Raises
+        ------
+        InvalidMeshError
+            If the set has no boundary, or a point is not finite.
+        """
+        return nearest_on_boundary(self, points)
+
+    def boundary(self) -> Pieces:
+        """Return the boundary in convex pieces, with the nodes in whose cuts they lie.
+
+        The pieces of an unbounded set end at the border of the lattice.
+        """
+        with core_errors():
+            return Pieces(*self._tree.boundary())
+
+    def cells(self) -> Pieces:
+        """Return the faces of the leaves that are inside: a decomposition into convex cells.
+
+        Raises
+        ------
+        UnboundedError
+            If the set reaches to infinity.
+        """
+        with core_errors():
+            return Pieces(*self._tree.cells())
+
+    @property
+    def nodes(self) -> NodeTable:
+        """The inner nodes as arrays; none if the tree is a leaf."""
+        with core_errors():
+            return NodeTable(*self._tree.nodes, tuple(map(tuple, self._tree.hyperplanes())))
+
+    def stats(self) -> dict[str, int]:
+        """Return the numbers of inner nodes, leaves and coplanar fragments, and the depth."""
+        return self._tree.stats()
 
     # Division by a hyperplane
 

@@ -19,10 +19,6 @@ SplitCase: TypeAlias = Literal[
 NormalAndOffset: TypeAlias = tuple[Any, Scalar]
 
 
-#: Vertices, offsets and owners, as `Pieces` holds them.
-PieceArrays: TypeAlias = tuple[FloatArray, IndexArray, IndexArray]
-
-
 @dataclass(frozen=True, eq=False)
 class Pieces:
     """Convex pieces in order: points (1D), segments (2D), polygons (3D).

@@ -1,14 +1,16 @@
 """`Region`: a set of points in the plane with polygonal boundary, as an immutable value."""
 
+import math
 import os
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from fractions import Fraction
 from typing import Any, Literal, Self, TypeAlias
 
 import numpy as np
 
 from ..._core import ObjectTree as CoreTree
-from ..._types import FloatArray, Scalar, Vector, WindingRule
+from ..._types import FloatArray, Scalar, SetOp, Vector, WindingRule
 from ...errors import FormatError, LimitError, UnboundedError, core_errors, invalid_parameter
 from ...geometry import transform
 from ...geometry.arrays import doubles
@@ -36,9 +38,20 @@ from ...shapes.sweep import unit_circle
 from ...solid.solid import Solid
 from ..trees.facets import chosen_pitch
 from .boundary import segment_rows
-from .loops import closed_loops, loop_segments, moved_points
+from .flat_set import FlatSet
+from .loops import Outline, closed_loops, loop_segments, moved_points
 from .objects import ObjectTree
-from .plane_queries import PlaneQueries, on_one_lattice, vector2
+from .plane_queries import (
+    cast_line,
+    convex_parts,
+    exact_centroid,
+    exact_outlines,
+    on_one_lattice,
+    outlines_of,
+    rounded_area,
+    vector2,
+)
+from .tree_set import TreeSet
 
 #: The rules that say which winding numbers count as inside, in the plane.
 FillRule: TypeAlias = WindingRule | Literal["negative"]
@@ -47,7 +60,7 @@ _AXES = {"x": (1.0, 0.0), "y": (0.0, 1.0)}
 
 
 @owning
-class Region(PlaneQueries):
+class Region(FlatSet):
     """A polygonal set of the plane.
 
     A point is inside if the winding number of the outlines satisfies the rule; outlines may cross,
@@ -86,7 +99,7 @@ class Region(PlaneQueries):
     (20.0, 2)
     """
 
-    __slots__ = ()
+    __slots__ = ("_outlines",)
 
     def __init__(
         self, outlines: Any = (), *, winding: FillRule = "positive", pitch: int | None = None
@@ -95,6 +108,10 @@ class Region(PlaneQueries):
         points = np.concatenate(loops) if loops else np.zeros((0, 2))
         rows = loop_segments(loops).reshape(-1, 4)
         self._set(_built(rows, chosen_pitch(pitch, points), winding))
+
+    def _set(self, tree: CoreTree) -> None:
+        super()._set(tree)
+        self._outlines: tuple[Outline, ...] | None = None
 
     # Making
 
@@ -273,6 +290,44 @@ class Region(PlaneQueries):
         with core_errors():
             return cls._of(trees[0].composed(trees[1:]))
 
+    # Set operations
+
+    def _merged(self, other: TreeSet, op: SetOp) -> Self:
+        """Return a result by the faster method: a sweep over the boundaries, or merged trees."""
+        try:
+            a, b = self.tree._aligned(other)
+        except LimitError:
+            a, b = on_one_lattice([self.tree, other.tree])
+        with core_errors():
+            return self._of(a.combined(b, op))
+
+    # Outlines and parts
+
+    @property
+    def outlines(self) -> tuple[Outline, ...]:
+        """The boundary as nested simple loops: outer ones counterclockwise, holes clockwise.
+
+        Collinear edges are joined. Loops touch each other only in corners, and if a corner of one
+        lies on another, the other has a corner there, too. The loops depend only on the set.
+
+        Raises
+        ------
+        UnboundedError
+            If the region reaches to infinity.
+        """
+        if self._outlines is None:
+            self._outlines = outlines_of(self._tree)
+        return self._outlines
+
+    @property
+    def exact_outlines(self) -> list[list[tuple[Fraction, Fraction]]]:
+        """The corners of the outlines in model units, not rounded."""
+        return exact_outlines(self._tree)
+
+    def to_polygons(self) -> list[FloatArray]:
+        """Return the outlines as (n, 2) arrays; ``bspcsg.extrude`` and others take them."""
+        return [outline.points for outline in self.outlines]
+
     def decompose(self) -> list["Region"]:
         """Return the connected parts, each with its holes; see `components`.
 
@@ -304,6 +359,90 @@ class Region(PlaneQueries):
             if outline.is_hole:
                 parts[outline.parent].append(outline.points)
         return list(parts.values())
+
+    def convex_parts(self) -> list[FloatArray]:
+        """Return the region divided into convex polygons: the inside leaves of its tree.
+
+        Returns
+        -------
+        list of (n, 2) float64
+            Counterclockwise, in the order of the leaves, rounded.
+        """
+        return convex_parts(self.tree.cells())
+
+    # Measures
+
+    @property
+    def area_exact(self) -> Fraction:
+        """Area in square model units, exactly.
+
+        Raises
+        ------
+        UnboundedError
+            If the region reaches to infinity; so for all measures.
+        """
+        return self.measure
+
+    @property
+    def area(self) -> float:
+        """Area in square model units, rounded once."""
+        return rounded_area(self._tree)
+
+    @property
+    def perimeter(self) -> float:
+        """Length of the boundary in model units, the same as that of the complement.
+
+        Raises
+        ------
+        UnboundedError
+            If the region and its complement both reach to infinity.
+        """
+        inner = self if self.is_bounded else ~self
+        return math.fsum(outline.length for outline in inner.outlines)
+
+    @property
+    def centroid_exact(self) -> tuple[Fraction, Fraction] | None:
+        """Centre of area (barycentre), exactly; None for the empty set."""
+        return exact_centroid(self._tree)
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Centre of area, (2,) float64, each coordinate rounded once; NaN for the empty set."""
+        exact = self.centroid_exact
+        return np.full(2, np.nan) if exact is None else np.array([float(c) for c in exact])
+
+    @property
+    def bounds(self) -> FloatArray | None:
+        """Lowest and highest coordinates, (2, 2) float64, or None for the empty set."""
+        if self.is_empty:
+            return None
+        points = np.concatenate(self.to_polygons())
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+    # Questions
+
+    def cast(self, origin: Vector, direction: Vector) -> FloatArray:
+        """Return the stretches of a line inside the region.
+
+        Parameters
+        ----------
+        origin, direction : (2,) float
+            The origin is snapped to the lattice, the direction rounded to 53 bits.
+
+        Returns
+        -------
+        (k, 2) float64
+            Entry and exit of each stretch in the order of the line, as multiples t of `direction`
+            from `origin`; infinite if the stretch is. Stretches along the boundary do not count,
+            and a single boundary point separates two stretches. The order is exact, each t is
+            rounded.
+
+        Raises
+        ------
+        InvalidParameterError
+            If the direction is zero or a number is not finite.
+        """
+        return cast_line(self._tree, origin, direction)
 
     # Transforms
 
@@ -697,6 +836,8 @@ class Region(PlaneQueries):
         from ...report.viewer.notebook import region_png
 
         return region_png(self)
+
+    # As a value
 
     def __repr__(self) -> str:
         """Say how large it is, as far as that is cheap."""

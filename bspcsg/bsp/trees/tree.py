@@ -2,7 +2,7 @@
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, Self
 
@@ -15,7 +15,6 @@ from ...formats.atomic import write_file
 from ...formats.source import whole_content
 from ...geometry.arrays import doubles
 from ...geometry.polygon import convex_corners
-from ...owned import owning
 from ...parameters import at_least, not_negative, shown, word
 from .asking import Chooser, asked_tree, lattice_rows
 from .cost import Query, Stats, cost, stats
@@ -24,8 +23,8 @@ from .facets import chosen_pitch, corners_of, mesh_triangles, vector_rows
 from .fragments import Fragments
 from .leaf_form import LeafForm, leaf_form
 from .moving import moved_core
-from .node import Leaf, Node, RegionShape, Side
-from .order import Ordered
+from .node import Leaf, Node, RegionShape, Side, Visitor
+from .order import back_to_front, far_to_near, front_to_back, near_to_far, visit, walk
 from .policy import Policy, checked_policy, core_options
 from .trace import Construction, PointTrace, RayCosts, RayTrace, division, point_trace, ray_trace
 
@@ -40,8 +39,7 @@ MARGIN = 0.05
 _MAX_NODES_DRAWN = 10_000
 
 
-@owning
-class PartitionTree(Ordered):
+class PartitionTree:
     """A binary space partition tree over points, segments or polygons.
 
     Each node v has a hyperplane H(v), the coplanar set S(v) of fragments that lie in it, and two
@@ -263,8 +261,9 @@ class PartitionTree(Ordered):
         return tuple(tuple(row) for row in self.core.own())
 
     @property
-    def _tree(self) -> "PartitionTree":
-        return self
+    def root(self) -> Node | None:
+        """The root, None if there are no facets."""
+        return Node(self, 0) if len(self) else None
 
     @property
     def nodes(self) -> tuple[Node, ...]:
@@ -309,6 +308,56 @@ class PartitionTree(Ordered):
         if self.dimension == 1:
             return np.sort(np.concatenate(walls).ravel())
         return convex_corners(walls) if self.dimension == 2 else walls
+
+    # Traversals
+
+    def back_to_front(self, *, eye: Any = None, direction: Any = None) -> Fragments:
+        """Return the fragments so that none hides one that comes after it.
+
+        Parameters
+        ----------
+        eye : (d,) array_like, optional
+            The viewpoint, in model units. It is not snapped: sides are decided for these doubles.
+        direction : (d,) array_like, optional
+            Instead of an eye: the direction of view of a parallel projection, away from the viewer.
+
+        Returns
+        -------
+        Fragments
+            Farthest first. Where the eye lies in a node's hyperplane, its fragments are seen
+            edge-on and neither side hides the other; the plus side comes first.
+
+        Raises
+        ------
+        InvalidParameterError
+            If not exactly one of the two is given, one is not finite, or the direction is zero.
+
+        Notes
+        -----
+        Fuchs, Kedem, Naylor 1980. Overlapping fragments of one coplanar set come in the order of
+        the construction.
+        """
+        return back_to_front(self, eye, direction)
+
+    def front_to_back(self, *, eye: Any = None, direction: Any = None) -> Fragments:
+        """Return the reverse of `back_to_front`: the nearest fragments first."""
+        return front_to_back(self, eye, direction)
+
+    def near_to_far(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
+        """Yield nodes and leaves from near to far: near side, node, far side."""
+        return near_to_far(self, eye, direction)
+
+    def far_to_near(self, *, eye: Any = None, direction: Any = None) -> Iterator[Node | Leaf]:
+        """Yield nodes and leaves in the reverse order of `near_to_far`."""
+        return far_to_near(self, eye, direction)
+
+    def walk(self, order: Literal["pre", "in", "post"] = "pre") -> Iterator[Node | Leaf]:
+        """Yield all nodes and leaves, minus before plus; a node before, between or after both."""
+        return walk(self, order)
+
+    def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
+        """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
+        visit(self, visitor, order)
 
     # Traces
 

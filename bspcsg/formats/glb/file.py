@@ -245,22 +245,33 @@ class Description:
         self._accessors.append({**accessor, "type": "SCALAR"})
         return len(self._accessors) - 1
 
-    def _roots(self) -> list[int]:
-        return list(range(len(self._names)))
-
-    def _nodes(self) -> list[dict[str, Any]]:
+    def _separate_nodes(self) -> list[dict[str, Any]]:
+        """Return a node for each object, in metres with y upwards."""
         matrix = TO_METRES.T.ravel().tolist()
         return [
             {**named, "mesh": number, "matrix": matrix} for number, named in enumerate(self._names)
         ]
 
-    def text(self, further: dict[str, Any] | None = None) -> bytes:
-        """Return the JSON."""
+    def text(
+        self, further: dict[str, Any] | None = None, nodes: list[dict[str, Any]] | None = None
+    ) -> bytes:
+        """Return the JSON.
+
+        Parameters
+        ----------
+        further : dict, optional
+            More entries of the whole, such as materials.
+        nodes : list of dict, optional
+            A tree of nodes as glTF has them, the root first; by default a root for each object.
+        """
+        roots = [0]
+        if nodes is None:
+            roots, nodes = list(range(len(self._names))), self._separate_nodes()
         asset = {"version": "2.0", "generator": "bspcsg", **self._extras}
         tree: dict[str, Any] = {"asset": asset, "scene": 0}
-        tree["scenes"] = [{"nodes": self._roots()} if self._names else {}]
+        tree["scenes"] = [{"nodes": roots} if self._names else {}]
         if self._names:
-            tree["nodes"] = self._nodes()
+            tree["nodes"] = nodes
             tree["meshes"] = [
                 {**named, "primitives": self._primitives[number]}
                 for number, named in enumerate(self._names)
@@ -270,26 +281,6 @@ class Description:
             tree["buffers"] = [{"byteLength": self._size}]
             tree |= further or {}
         return json.dumps(tree, separators=(",", ":"), ensure_ascii=False).encode()
-
-
-class SceneDescription(Description):
-    """The JSON of a file whose nodes are a tree.
-
-    Parameters
-    ----------
-    nodes : list of dict
-        As glTF has them; the first is the root.
-    """
-
-    def __init__(self, nodes: list[dict[str, Any]]) -> None:
-        super().__init__(False)
-        self._tree = nodes
-
-    def _nodes(self) -> list[dict[str, Any]]:
-        return self._tree
-
-    def _roots(self) -> list[int]:
-        return [0]
 
 
 def _primitive(number: int) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from ..raw import RawMesh
 from ..scene import SceneNode
 from ..source import Source
 from .container import Container, container_of, instances_of
-from .file import TO_METRES, TO_MILLIMETRES, SceneDescription, container
+from .file import TO_METRES, TO_MILLIMETRES, Description, container
 from .light import as_read
 from .nodes import local_matrix, places_of, triangles_of
 from .said import Pictures, called, kept, materials_of
@@ -143,7 +143,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
     Meshes have no names, since a tree has only names of nodes.
     """
     nodes: list[dict[str, Any]] = [{"matrix": TO_METRES.T.ravel().tolist()}]
-    described = SceneDescription(nodes)
+    described = Description(is_empty_set=False)
     taken: dict[str, Material] = {}
     meshes: dict[tuple[int, tuple[float, ...] | None], tuple[int, Attributes, RawMesh]] = {}
     waiting = [(root, 0)]
@@ -164,7 +164,7 @@ def encode(root: SceneNode) -> Iterator[bytes]:
     for _, said, mesh in meshes.values():
         described.add_object("", described.append_mesh(mesh.vertices, mesh.faces, said, pictures))
     further = pictures.described()
-    yield from container(described.text(further), described.blocks)
+    yield from container(described.text(further, nodes), described.blocks)
 
 
 def _attributes_of(mesh: RawMesh, color: tuple[float, ...] | None) -> Attributes:
