@@ -249,7 +249,7 @@ def _applied(op: SetOp, entries: Iterable[Any]) -> Any:
 
 
 def _balanced(merge: Callable[[Any, Any], Any], trees: Sequence[Any]) -> Any:
-    """Merge a list to one value: merge pairs of neighbours, then pairs of the results, and so on."""
+    """Merge a list to one value: merge pairs of neighbours, then of the results, and so on."""
     while len(trees) > 1:
         pairs = [trees[k : k + 2] for k in range(0, len(trees), 2)]
         trees = [merge(*pair) if len(pair) == 2 else pair[0] for pair in pairs]

@@ -107,7 +107,7 @@ def spur_gear(
 
 @dataclass(frozen=True)
 class _Form:
-    """The outline of a tooth: half of its angle as a function of the radius, in radians and modules.
+    """The outline of a tooth: half of its angle, in radians, for each radius, in modules.
 
     Parameters
     ----------
@@ -147,8 +147,8 @@ class _Form:
     def foot(self, radii: FloatArray) -> FloatArray:
         """Return half of a tooth's angle, in radians, at the foot, at each radius.
 
-        The foot is cut by the corner of the rack's tooth. While the gear rotates by an angle, the rack
-        moves by the length of that arc on the reference circle.
+        The foot is cut by the corner of the rack's tooth. While the gear rotates by an angle, the
+        rack moves by the length of that arc on the reference circle.
         """
         # The distance from the middle of the space between teeth to the corner of the rack's tooth.
         corner = (math.pi - self.thickness) / 2 - _DEDENDUM * math.tan(self.angle)
@@ -161,7 +161,7 @@ class _Form:
         along = self.reference * math.sin(self.angle) - _DEDENDUM / math.sin(self.angle)
         if along >= 0:
             return math.hypot(self.base, along)
-        # The rack's corner undercuts the flank, up to the radius at which its path leaves the flank.
+        # The rack's corner undercuts the flank, up to the radius where its path leaves the flank.
         radii = np.linspace(self.base, self.reference + _ADDENDUM, _RADII_TRIED)
         inside = np.flatnonzero(self.foot(radii) < self.flank(radii))
         low, high = radii[inside[-1]], radii[min(inside[-1] + 1, _RADII_TRIED - 1)]

@@ -48,7 +48,7 @@ class MetricSize:
 
     @property
     def pitch_diameter(self) -> float:
-        """The pitch diameter, at which ridges and grooves of the thread are equally wide (ISO 724)."""
+        """The diameter at which ridges and grooves of the thread are equally wide (ISO 724)."""
         return self.diameter - 2 * 3 / 8 * _HEIGHT * self.pitch
 
     @property
@@ -62,7 +62,7 @@ class MetricSize:
         return self.diameter - 2 * 17 / 24 * _HEIGHT * self.pitch
 
     def threaded(self, length: float) -> float:
-        """Return the length of the thread of a bolt of a given length, in millimetres (ISO 4014)."""
+        """Return the thread length of a bolt of a given length, in millimetres (ISO 4014)."""
         longer = 6 if length <= 125 else 12 if length <= 200 else 25
         return min(2 * self.diameter + longer, length)
 

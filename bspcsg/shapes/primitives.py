@@ -303,9 +303,9 @@ def half_space(normal: str | Vector, offset: Scalar = 0.0) -> Solid:
     arithmetic. When the half-space is combined with other solids, a plane that contains points of
     their common lattice stays exact, and is coplanar with faces that have their corners on it. Any
     other plane is moved to the nearest parallel plane that contains lattice points, by at most half
-    a step, and the finding ``half_space_rounded`` gives the distance. Normals of more than 106 bits,
-    after rotations by odd angles, are rounded to 61 bits, which the finding includes. A half-space
-    by itself chooses a lattice step down to 10**-12 if its plane needs it.
+    a step, and the finding ``half_space_rounded`` gives the distance. Normals of more than 106
+    bits, after rotations by odd angles, are rounded to 61 bits, which the finding includes. A
+    half-space by itself chooses a lattice step down to 10**-12 if its plane needs it.
 
     Examples
     --------

@@ -82,7 +82,7 @@ class RingLayout:
         self._starts = np.concatenate([[0], np.cumsum(sizes)])
 
     def ring(self, point: int) -> IndexArray:
-        """Return the vertex numbers of a profile point, (columns,); all equal if it is on the axis."""
+        """Return the vertex numbers of a profile point, (columns,); all equal on the axis."""
         start, end = self._starts[point : point + 2]
         return np.resize(np.arange(start, end), self._columns)
 
