@@ -1,4 +1,4 @@
-"""Names methods after the class that users know, and not after the class that defines them."""
+"""Copies of inherited methods that have the name of the inheriting class in error messages."""
 
 from types import CellType, FunctionType
 from typing import Any, TypeVar
@@ -7,9 +7,9 @@ _Kind = TypeVar("_Kind", bound=type)
 
 
 def owning(kind: _Kind) -> _Kind:
-    """Give a class copies of the public methods that it inherits from this package.
+    """Decorate a class: give it copies of the public methods that it inherits from this package.
 
-    Python's messages about calls, such as one about a missing argument, then name the class.
+    Python's error messages about calls, such as for a missing argument, then name this class.
     """
     for base in kind.__mro__[1:]:
         if base.__module__.partition(".")[0] != __package__:
@@ -22,7 +22,7 @@ def owning(kind: _Kind) -> _Kind:
 
 
 def _owned(held: object, kind: type) -> Any:
-    """Return a copy of a method; None for anything else."""
+    """Return a copy of a method for a class; None if the object is not a method."""
     if isinstance(held, FunctionType):
         return _copied(held, kind)
     if isinstance(held, (classmethod, staticmethod)) and isinstance(held.__func__, FunctionType):
@@ -31,7 +31,7 @@ def _owned(held: object, kind: type) -> Any:
 
 
 def _copied(function: FunctionType, kind: type) -> FunctionType:
-    """Return a copy of a function for another class, with a copy of what it wraps."""
+    """Return a copy of a function for another class; a wrapped function is copied, too."""
     cells, state = function.__closure__, dict(function.__dict__)
     wrapped = state.get("__wrapped__")
     if isinstance(wrapped, FunctionType) and cells:

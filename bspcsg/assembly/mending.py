@@ -1,4 +1,4 @@
-"""Repair of files with several objects, each separately, since objects that touch are two solids."""
+"""Repair of files with several objects: each separately, since objects that touch stay separate."""
 
 from typing import Any
 

@@ -144,7 +144,7 @@ class Assembly(Movable):
         return tuple(found)
 
     def _inherited(self, path: str, around: Part | None) -> Part:
-        """Return this node as a part, with transform, colour and density inherited from `around`."""
+        """Return this node as a part that inherits transform, colour and density from `around`."""
         outer = () if around is None else around.factors
         color = self.color if self.color is not None or around is None else around.color
         density = self.density if self.density is not None or around is None else around.density

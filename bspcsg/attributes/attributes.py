@@ -129,7 +129,7 @@ class Attributes:
         return replace(self, vertex=vertex, corner=corner, face=face)
 
     def reordered(self, order: list[int]) -> "Attributes":
-        """Return the attributes with the corners of every face permuted; `order` is as for indexing."""
+        """Return the attributes with the corners of every face permuted: corner order[k] as k."""
         corner = {name: values[:, order] for name, values in self.corner.items()}
         return replace(self, faces=self.faces[:, order], corner=corner)
 
@@ -191,7 +191,7 @@ class Attributes:
         return patches, [signature + value.tobytes() for value in kept]
 
     def _rows(self) -> tuple[npt.NDArray[np.uint8], BoolArray]:
-        """Return the bytes of all values at corner 0 of each face, and whether its corners agree."""
+        """Return the bytes of all values at corner 0 of each face, and if its corners agree."""
         count = len(self.faces)
         is_even = np.ones(count, dtype=bool)
         rows = [np.zeros((count, 1), dtype=np.uint8)]

@@ -138,7 +138,7 @@ def _of_texts(texts: npt.NDArray[np.str_], name: str) -> Bytes:
 
 
 def _alike(rows: Sequence[npt.NDArray[Any]]) -> list[npt.NDArray[Any]]:
-    """Return colours with equal numbers of components and one type: bytes if all are, else floats."""
+    """Return colours of equal width and one type: bytes if all are bytes, else floats."""
     width = max(map(len, rows))
     if any(row.dtype != np.uint8 for row in rows):
         rows = [as_floats(row) for row in rows]

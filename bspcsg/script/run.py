@@ -46,8 +46,8 @@ _SERVE = (
     " from bspcsg.script.run import serve; serve()"
 )
 
-#: The result of a script: a solid, or the operation that made it and its transform, which the pickle
-#: of a solid lacks.
+#: The result of a script: a solid, or the operation that made it and its transform, which the
+#: pickle of a solid lacks.
 _Made: TypeAlias = Solid | tuple[LastOperation, FactorChain]
 
 #: The solids that the script has passed to `show`; None in a process that is not such a child.
