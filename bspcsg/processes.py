@@ -81,7 +81,7 @@ def run_program(
     with watched() as read_by_child:
         start: list[str] = []
         if sys.platform == "linux":
-            # The setting to be killed with the parent persists when the process runs another program.
+            # The setting to be killed with the parent persists when the program is exchanged.
             start = [sys.executable, "-I", "-S", __file__, *map(str, read_by_child)]
         return subprocess.run(
             [*start, *command],
