@@ -200,7 +200,10 @@ class Assembly(Movable):
     # Operations, part by part
 
     def __sub__(self, tool: Any) -> "Assembly":
-        """Subtract a solid or an assembly from every part; parts far from it are unchanged."""
+        """Subtract a solid or an assembly from every part.
+
+        Parts whose bounding box does not meet the tool's bounding box are unchanged.
+        """
         other = _as_solid(tool)
         return self._each((), lambda part: part if are_apart(part, other) else part - other)
 

@@ -226,7 +226,7 @@ class _Cache:
     def _nothing_for(self, node: Node, error: BspcsgError) -> Geometry:
         """Return the empty set for a node that fails, with a warning.
 
-        Raise the error if it is not one for which nodes are omitted.
+        If the error is not one for which nodes are omitted, raise it.
         """
         placed = _placed(error, node, self.run.script)
         if not is_left_out(error, lenient=self.run.lenient):

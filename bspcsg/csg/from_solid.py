@@ -212,7 +212,7 @@ def _operation(operator: str, operands: Sequence[_Body | None]) -> _Body | None:
 
 
 def _common(bodies: Sequence[_Body]) -> _Body:
-    """Return the intersection of sets: the bounded ones minus the complements of the others."""
+    """Return the intersection of sets: the plain nodes minus the nodes of negated sets."""
     positive = [body for body in bodies if not body.negated]
     negative = [body for body in bodies if body.negated]
     if not positive:

@@ -86,9 +86,9 @@ def polished_pitch(kinds: Sequence[Sequence[FloatArray]], finest: int) -> int | 
 
 
 def _gain(parts: Sequence[FloatArray], pitch: int) -> int:
-    """Return the value of a lattice: features that parts share, less those that each loses.
+    """Return a score of a lattice: the number of features that parts share, less those they lose.
 
-    Features are the rows of the arrays; the result is up to a constant.
+    Features are the rows of the arrays; only differences of scores are meaningful.
     """
     rounded = [np.unique(np.round(rows, -pitch), axis=0) for rows in parts]
     # The sum counts twice: once for features that parts share, once for features not lost.

@@ -78,7 +78,7 @@ class Evaluation:
     told: set[str] = field(default_factory=set)
 
     def arguments(self, node: Node) -> Arguments:
-        """Return the arguments of a node, with names for those given by position."""
+        """Return the arguments of a node, with names for positional arguments."""
         return Arguments(node, self.script, RECIPES[node.name].takes.order)
 
     def tell_of_arguments(self, node: Node) -> None:

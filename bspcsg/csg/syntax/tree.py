@@ -229,7 +229,7 @@ class Node:
 
 
 def _head(node: Node) -> tuple[str, tuple[Argument, ...], str, int]:
-    """Return the fields of a node that equal nodes share, without its children but their number."""
+    """Return a node's name, arguments and modifiers, and the number of its children."""
     return node.name, node.arguments, node.modifiers, len(node.children)
 
 

@@ -33,7 +33,7 @@ _PAIRS_PER_BATCH = 1 << 16
 
 @uncounted
 def min_gap(solid: Solid, other: Solid) -> float:
-    """Return the least distance between two solids; infinity if one is empty, 0 if they touch."""
+    """Return the least distance between two solids; 0 if they touch, infinity if one is empty."""
     if solid.is_empty or of_kind(Solid, other, "other").is_empty:
         return math.inf
     found = _nearest(solid, other)

@@ -192,7 +192,7 @@ def _without_short_edges(points: IndexArray, faces: IndexArray) -> IndexArray:
 
 
 def _borrow_normals(normals: LongArray, faces: IndexArray) -> Marks:
-    """Replace zero normals by those of neighbouring faces, in place.
+    """Replace zero normals, in place, by normals of neighbouring faces.
 
     Return a mask, (n,) bool, that is True for each face with a nonzero normal.
     """

@@ -92,7 +92,7 @@ def _points(mesh: Mesh, handles: FloatArray, weights: FloatArray) -> FloatArray:
 def _weights(parts: int) -> FloatArray:
     """Return the barycentric coordinates, (3 parts², 3), of corners of a triangle's equal parts.
 
-    The order is that of `small_triangles`.
+    The corners are in the order of `small_triangles`.
     """
     places = np.array(small_triangles(parts), dtype=np.float64).reshape(-1, 2) / parts
     return np.column_stack([1 - places.sum(axis=1), places])

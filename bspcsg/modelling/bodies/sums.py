@@ -24,8 +24,8 @@ from .sweeping import sum_of_convex, swept
 #: The corners of each of several convex solids, as arrays of shape (n, 3).
 ConvexParts: TypeAlias = list[FloatArray]
 
-#: A solid still counts as convex if rounding made its hull larger by the first of these, relative
-#: to its volume, or moved its corners by the second, in lattice steps.
+#: Tolerances for convex solids: how much larger the hull may be, relative to the solid's volume,
+#: and how far rounding may move corners, in lattice steps.
 _LARGER, _MOVED = 1e-9, 4
 
 #: The largest product of the face counts of two solids that are not convex. Larger products would

@@ -96,7 +96,7 @@ def _tops_over_faces(solid: Polyhedron, tool: Polyhedron) -> IndexArray:
 
 
 def _walls_of_faces(solid: Polyhedron, tops: IndexArray, sums: _Sums) -> Iterator[IndexArray]:
-    """Yield the walls of the prism on each face; those along flat edges cancel and are omitted."""
+    """Yield the walls of the prism on each face, without walls along flat edges, which cancel."""
     start, end = (part[solid.sharp] for part in solid.ends)
     left, right = (side[solid.sharp] for side in solid.beside)
     yield from _wall(start, end, tops[left], sums)

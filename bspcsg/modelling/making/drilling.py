@@ -21,7 +21,7 @@ from .faces import FaceSelection, flat_face
 from .skeleton import Skeleton, flatness, skeleton_of
 
 #: A hole begins above its face, so that no thin skin remains: by this many times the rounding error
-#: of corners, or lattice steps if those are larger.
+#: of corners or the lattice step, whichever is larger.
 _BEFORE = 10
 
 

@@ -89,7 +89,7 @@ class FaceSelection(Selection):
         return self.normal
 
     def _sums(self, values: FloatArray) -> FloatArray:
-        """Return, for each selected face, the sum of the values of its triangles, (n,)."""
+        """Return the sum of the triangles' values over each selected face, (n,)."""
         of_triangle = self._surface[self._skeleton.face]
         sums = np.bincount(of_triangle, values, minlength=self._total())
         return np.asarray(sums[self._numbers], dtype=np.float64)

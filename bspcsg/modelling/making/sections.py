@@ -112,7 +112,8 @@ def aligned(low: Section, high: Section, place: int) -> Section:
 def _order(low: Sequence[FloatArray], high: Sequence[FloatArray], place: int) -> list[int]:
     """Return, for each outline or hole in `low`, the number of its partner in `high`.
 
-    Outlines are paired with outlines and holes with holes, those with the nearest middles first.
+    Outlines are paired with outlines and holes with holes; the pairs with the nearest middles are
+    formed first.
     """
     holes = [[runs_clockwise(c) for c in contours] for contours in (low, high)]
     if sorted(holes[0]) != sorted(holes[1]):

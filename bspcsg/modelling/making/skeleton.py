@@ -254,7 +254,7 @@ def members(face: IndexArray, chosen: IndexArray) -> tuple[IndexArray, IndexArra
 
 
 def groups(pairs: IndexArray, count: int) -> IndexArray:
-    """Return a group number for each of `count` items, of which the pairs connect some."""
+    """Return a group number for each of `count` items, equal for items that pairs connect."""
     loops = np.repeat(np.arange(count), 2).reshape(-1, 2)
     links = np.concatenate([loops, pairs])
     return surfaces_of(links[:, [0, 1, 1]], count)[:count]
