@@ -48,9 +48,9 @@ def threaded_rod(
 
     Notes
     -----
-    Crests are an eighth of the pitch wide, and roots are flat at the depth of the standard's round
-    root. All threads have the same phase: a nut fits its rod if it is moved along z by multiples of
-    the pitch, or by other lengths if it is also rotated.
+    Crests are an eighth of the thread's pitch wide. Roots are a sixth of it wide and as deep as the
+    standard's round root. All threads have the same phase: a nut fits its rod if it is translated
+    along z by multiples of the pitch, or by other lengths if it is also rotated.
 
     Examples
     --------
