@@ -1,8 +1,8 @@
-"""Mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio, in and out.
+"""Reading and writing of mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio.
 
-Everything is read and written in double precision where the format has it. A file that is cut off
-or contradicts itself is refused with its name and the line or byte. A file is written completely or
-not at all, and only after it was read back and compared with the mesh.
+Coordinates are read and written in double precision if the format has it. A truncated or
+inconsistent file is refused with its name and the line or byte. A file is written completely or not
+at all, and only after it was read back and compared with the mesh.
 """
 
 import os
@@ -26,7 +26,7 @@ from .parameters import file_path, of_kind, shown, text_value, truth_value
 from .solid.counting import counted
 from .solid.solid import Solid
 
-#: Suffixes of scripts, which `load` evaluates.
+#: The suffixes of scripts, which `load` evaluates.
 SCRIPTS = frozenset({".csg", ".json", ".scad"})
 
 __all__ = [
@@ -57,24 +57,25 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     Parameters
     ----------
     path : str or path
-        Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
-        `bspcsg.csg.load`).
+        The file, whose suffix is one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad``
+        (see `bspcsg.csg.load`).
         3MF and GLB are read in millimetres, the other formats in the unit in which they were
         written. A file that `save` wrote for the empty set is read as the empty set; any other file
         without faces is refused.
     **options
-        For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``, and ``attributes=False`` to
-        leave colours and the like in the file; for scripts as for `bspcsg.csg.load`.
+        For meshes, the options of `Solid`: ``pitch``, ``trusted``, ``winding``, and
+        ``attributes=False`` to ignore colours and other attributes; for scripts, the options of
+        `bspcsg.csg.load`.
 
     Raises
     ------
     FormatError
         If the file cannot be read in the format of its suffix.
     InvalidMeshError, LimitError
-        If the content is not a solid: the message names the file, `where` the faces.
+        If the content is not a solid. The message names the file, `where` lists the faces.
     """
     if Path(file_path(path)).suffix.lower() in SCRIPTS:
-        # Scripts import much that mesh files do not need.
+        # Import the evaluator of scripts only if needed, since it imports many modules.
         from . import csg
 
         return csg.load(path, **options)
@@ -83,16 +84,17 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
 
 @counted
 def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
-    """Return the solid in the bytes of a mesh file, or in one that is open for reading bytes.
+    """Read a solid from the bytes of a mesh file, or from a file object open in binary mode.
 
     Parameters
     ----------
     data : bytes or file
-        Materials and pictures next to it are read only if it is a file on disk.
+        The contents, or a file. Materials and pictures in other files are read only for a file on
+        disk.
     suffix : str
-        One of `FORMATS`, with or without its dot.
+        The format, one of `FORMATS`, with or without its dot.
     **options
-        As for `Solid`.
+        The options of `Solid`.
 
     Raises
     ------
@@ -116,7 +118,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
 
 
 def _is_on_disk(data: Any) -> bool:
-    """Say whether an object is a file on disk; members of archives have names, too."""
+    """Return True if an object has a file descriptor, unlike members of archives."""
     try:
         data.fileno()
     except (AttributeError, OSError):
@@ -131,28 +133,29 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     ----------
     solid : Solid
     path : str or path
-        Ending in one of `FORMATS`, or in ``.csg`` for the expression (see `bspcsg.csg.dump`).
-        Binary STL and GLB hold single precision; 3MF and GLB take the model as millimetres.
+        The file, whose suffix is one of `FORMATS`, or ``.csg`` for the expression (see
+        `bspcsg.csg.dump`). Binary STL and GLB store single precision; in 3MF and GLB, model units
+        are millimetres.
     text : bool
-        Write STL and PLY as text; OBJ and OFF always are.
+        True to write STL and PLY as text; OBJ and OFF are always text.
 
     Returns
     -------
     tuple of Finding
-        Findings about everything that the format could not keep.
+        Findings about all data that the format cannot store.
 
     Raises
     ------
     FormatError
-        If the format is unknown or cannot hold the coordinates, or the file cannot be written; code
-        ``"write_mismatch"`` if the file reads back as another mesh.
+        If the format is unknown or cannot store the coordinates, or the file cannot be written;
+        code ``"write_mismatch"`` if reading the file gives a different mesh.
     UnboundedError
         If the solid reaches to infinity.
 
     Warns
     -----
     LossWarning
-        If the format cannot store an attribute, or not all of a colour.
+        If the format cannot store an attribute, or only a part of a colour.
     """
     is_text = truth_value(text, "text")
     own = of_kind(Solid, solid, "solid")

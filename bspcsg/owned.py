@@ -1,4 +1,4 @@
-"""Names methods after the class that users know, and not after the class that defines them."""
+"""Copies of inherited methods that have the name of the inheriting class in error messages."""
 
 from types import FunctionType
 from typing import TypeVar
@@ -7,10 +7,10 @@ _Kind = TypeVar("_Kind", bound=type)
 
 
 def owning(kind: _Kind) -> _Kind:
-    """Give a class copies of the public methods that it inherits from this package.
+    """Decorate a class: give it copies of the public methods that it inherits from this package.
 
-    Python's messages about calls, such as one about a missing argument, then name the class. A
-    wrapped method would still name its own class, so what is inherited must not be wrapped.
+    Python's error messages about calls, such as for a missing argument, then name this class. A
+    wrapped method would still name its own class, so inherited methods must not be wrapped.
     """
     for base in kind.__mro__[1:]:
         if base.__module__.partition(".")[0] != __package__:
