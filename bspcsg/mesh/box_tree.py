@@ -72,7 +72,7 @@ class BoxTree:
         return near
 
     def members(self, leaves: IndexArray) -> tuple[IndexArray, IndexArray]:
-        """Return the members of all given leaves, and for each the index of its leaf in `leaves`."""
+        """Return the members of all given leaves, and each member's row in the array `leaves`."""
         places = leaves[:, None] * _LEAF_SIZE + np.arange(_LEAF_SIZE)
         rows = np.broadcast_to(np.arange(len(leaves))[:, None], places.shape)
         there = places < len(self.order)

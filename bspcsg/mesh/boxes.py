@@ -7,7 +7,7 @@ import numpy as np
 from .._types import FloatArray, IndexArray
 from .box_tree import BoxTree, Nearness
 
-#: The number of boxes that are searched for at a time: among a thousand nested boxes this takes 2 MB.
+#: The number of boxes in one search: among a thousand nested boxes, a search takes 2 MB.
 _BOXES_PER_BATCH = 256
 
 

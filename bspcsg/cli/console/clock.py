@@ -1,4 +1,4 @@
-"""The running time of the command, counted from its first line."""
+"""The running time of the command, measured from the start of the process."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""The verb that compares two files as sets: compare."""
+"""The verb `compare`, which compares two files as sets of points."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -103,7 +103,7 @@ def _write_page(
 
 
 def _within(found: "SetComparison", tolerance: float) -> bool:
-    """Say whether the sampled distance of the surfaces is within the tolerance."""
+    """Say whether sampled distance and thickest difference of two sets are within a tolerance."""
     return found.hausdorff is not None and max(found.hausdorff, found.difference.thickness) <= (
         tolerance
     )

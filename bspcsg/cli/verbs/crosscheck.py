@@ -1,4 +1,4 @@
-"""The verb that compares many results with other engines': crosscheck."""
+"""The verb `crosscheck`, which compares many results with those of other engines."""
 
 import fnmatch
 import os
@@ -41,10 +41,10 @@ Examples:
   bspcsg crosscheck model.csg cases.json --against pymeshlab,openscad
 """
 
-#: The largest number of failures that are listed at the end; the results file has all.
+#: The largest number of failures that are printed at the end; the results file has all failures.
 _MAX_FAILURES_LISTED = 20
 
-#: The largest number of reasons for refusing operands that are listed without -v.
+#: The largest number of reasons for refusing operands that are printed.
 _MAX_REASONS_LISTED = 3
 
 _FILE = FilePath()
@@ -163,7 +163,7 @@ def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Campaign:
-    """A campaign with the settings of the options."""
+    """The work of the verb `crosscheck`: it collects cases, runs them and writes reports."""
 
     def __init__(self, paths: tuple[Path, ...], settings: dict[str, Any]) -> None:
         self._paths, self._settings = paths, settings
@@ -257,7 +257,10 @@ class _Campaign:
         return cases
 
     def _usable(self, inputs: "CaseInputs", answering: "Answering") -> "CaseInputs":
-        """Drop meshes that are too large, and for random pairs also those that are no solids."""
+        """Drop meshes with too many triangles, and meshes that are no solids.
+
+        Without ``--max-triangles`` and ``--poses``, all inputs are returned unread.
+        """
         from dataclasses import replace
 
         from ...campaign.running.runner import survey
@@ -316,7 +319,7 @@ class _Campaign:
 
     @contextmanager
     def _progress(self, count: int) -> "Iterator[Callable[[CaseRecord], None]]":
-        """Yield a callback for each record, which moves a progress bar or prints a line."""
+        """Yield a function to call with each record: it moves a progress bar or prints a line."""
         if not sys.stderr.isatty() or self._out.verbosity < 0:
             yield lambda record: self._out.detail(_line(record))
             return
@@ -365,7 +368,7 @@ class _Campaign:
         self._out.result("" if self._out.as_json else self._text(records), document)
 
     def _tell_refused(self, records: "Sequence[CaseRecord]") -> None:
-        """Print why some cases were not compared, each reason once."""
+        """Print the reasons why cases were refused, each reason once."""
         refused = [record["reason"] for record in records if record["verdict"] == "refused"]
         reasons = list(dict.fromkeys(refused))
         for reason in reasons[:_MAX_REASONS_LISTED]:

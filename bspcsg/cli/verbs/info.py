@@ -1,4 +1,4 @@
-"""The verb that measures files: info."""
+"""The verb `info`, which prints counts, measures and findings of mesh files."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -49,7 +49,7 @@ def info(files: tuple[Path, ...], **given: Any) -> int:
 
 
 class _Entry:
-    """The facts printed about one file."""
+    """One file's mesh and diagnosis, or the error of reading it."""
 
     def __init__(
         self,

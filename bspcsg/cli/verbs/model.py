@@ -1,4 +1,4 @@
-"""The verbs that make one solid by something other than a set operation: hull, simplify."""
+"""The verbs `hull` and `simplify`, which make one solid of files without a set operation."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -69,7 +69,7 @@ def simplify(file: Path, **given: Any) -> int:
 
 
 class _OfFiles(Job):
-    """A job whose result is not compared with manifold3d."""
+    """A job that makes a solid of files, without comparing the result with manifold3d's."""
 
     def __init__(self, op: str, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__(op, check="off", **settings)
@@ -85,7 +85,7 @@ class _OfFiles(Job):
 
 
 class _Hull(_OfFiles):
-    """The hull of files."""
+    """The work of the verb `hull`: it makes the convex hull of all files together."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("hull", files, **settings)
@@ -98,7 +98,7 @@ class _Hull(_OfFiles):
 
 
 class _Simplified(_OfFiles):
-    """A job without an operation: it simplifies one file, as it does any result."""
+    """The work of the verb `simplify`: the solid of one file, which `Job.run` simplifies."""
 
     def __init__(self, files: tuple[Path, ...], **settings: Any) -> None:
         super().__init__("simplify", files, **settings)

@@ -1,4 +1,4 @@
-"""The verb that draws the shadow of a solid: project."""
+"""The verb `project`, which draws the shadow of a solid on the plane z = 0."""
 
 from pathlib import Path
 from typing import Any
@@ -34,7 +34,7 @@ def project(file: Path, target: Path, **given: Any) -> int:
 
 
 class _Projection(Drawing):
-    """One solid, seen from above."""
+    """The work of the verb `project`: it draws the region below and above a solid."""
 
     def drawn(self) -> tuple[bytes, str, dict[str, Any]]:
         region = self.inputs.solid(self.file).project()
