@@ -43,7 +43,7 @@ class Drawing(ABC):
         """Make the drawing: return its bytes, a text for the result line, and JSON values."""
 
     def sources(self) -> Sequence[Path]:
-        """Return the files that are read."""
+        """Return the input files."""
         return [self.file]
 
     def run(self) -> int:

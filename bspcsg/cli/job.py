@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MAX_EXACT_FACES, _MAX_EXACT_BITS = 500, 10_000
 
 
-#: The largest number of crossings that a certificate names.
+#: The largest number of crossings that the JSON document lists.
 _MAX_CROSSINGS_NAMED = 8
 
 
@@ -64,7 +64,7 @@ class Job(ABC):
 
     @abstractmethod
     def paths(self) -> Sequence[Path]:
-        """Return the files that are read."""
+        """Return the input files."""
 
     def refuse_inputs(self) -> None:
         """Raise an error if reading is certain to fail, and print a note about missing units."""
@@ -205,7 +205,7 @@ def mesh_values(mesh: "Mesh") -> dict[str, Any]:
 
 
 def certificate_values(mesh: "Mesh") -> dict[str, Any]:
-    """Return the certificate of a mesh as JSON values: counts, and the first crossings."""
+    """Return the exact check of a mesh as JSON values: counts of defects, and first crossings."""
     proof = mesh.certificate
     return {
         "ok": proof.ok,

@@ -23,7 +23,7 @@ def blocks(count: int, together: int = ROWS_PER_BLOCK) -> Iterator[slice]:
 
 
 def listed(values: npt.NDArray[Any]) -> Iterator[Any]:
-    """Yield the rows of an array as Python numbers or lists of numbers."""
+    """Yield the rows of an array: Python numbers if it has one dimension, lists if it has two."""
     for block in blocks(len(values)):
         yield from values[block].tolist()
 

@@ -65,7 +65,7 @@ class RawMesh:
 
     @property
     def passed_by(self) -> tuple[str, ...]:
-        """The findings about data that the reader skipped."""
+        """The messages of the findings about data that the reader skipped."""
         return tuple(found.message for found in self.findings if found.code in _PASSED_BY)
 
 
@@ -105,7 +105,7 @@ def parts_of(mesh: Mesh | RawMesh) -> list[tuple[str, IndexArray]]:
 
 
 def on_one_line(name: str) -> str:
-    """Return a name on one line: words separated by single spaces, valid in UTF-8."""
+    """Return a name with single spaces for line breaks and other blanks, valid in UTF-8."""
     words = " ".join("".join(" " if ord(letter) < _SPACE else letter for letter in name).split())
     return words.encode("utf-8", "replace").decode("utf-8")
 
@@ -143,7 +143,7 @@ def joined(meshes: Sequence[RawMesh]) -> RawMesh:
 
 @dataclass(frozen=True, eq=False)
 class IndexPolygons:
-    """Polygons as index lists of different lengths.
+    """Polygons with various numbers of corners, as vertex indices.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ class IndexPolygons:
 
     @classmethod
     def from_lists(cls, polygons: list[list[int]]) -> "IndexPolygons":
-        """Return the polygons of a list of index lists.
+        """Return the polygons that are given as one list of vertex indices each.
 
         Raises
         ------

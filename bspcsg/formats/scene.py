@@ -1,4 +1,4 @@
-"""`SceneNode`: the tree of nested objects in a file, unprocessed."""
+"""`SceneNode`: a node in the tree of nested objects of a file, as read or to be written."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

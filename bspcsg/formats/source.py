@@ -77,10 +77,10 @@ class Source:
         """Return the bytes of a companion file in the same folder; None if missing or too large."""
         if self.files is not None:
             return self.files.get(name)
-        # A name in a mesh file may be anything: a folder, a device, another user's file.
+        # Only plain file names: a mesh file could name a folder, a device or another user's file.
         if Path(name).name != name:
             return None
-        # Companions may lie beside a link, or beside its target if they were written with that.
+        # If the path is a link, companion files may be in its folder or in that of its target.
         for path in (self.name, os.path.realpath(self.name)):
             data = _limited(Path(path).parent / name)
             if data is not None:
@@ -165,7 +165,7 @@ def _limited(path: Path) -> bytes | None:
 
 
 def content_of(path: Path) -> bytes:
-    """Return the bytes of a file or pipe; raise OSError for devices, which may never end."""
+    """Return the bytes of a file or pipe; raise an `OSError` for devices, which may never end."""
     mode = path.stat().st_mode
     if stat.S_ISCHR(mode) or stat.S_ISBLK(mode):
         raise OSError(errno.EINVAL, "it is a device")
@@ -240,7 +240,7 @@ def quoted(words: bytes) -> str:
 
 
 def as_text(name: bytes) -> str:
-    """Return a name in a file as text, decoded as UTF-8 or else as Latin-1."""
+    """Decode a name in a file as UTF-8, or as Latin-1 if it is no UTF-8."""
     try:
         return name.decode("utf-8")
     except UnicodeDecodeError:

@@ -21,7 +21,7 @@ _UNDERFLOW_ERROR = 1e-280
 #: Between these magnitudes, products as pairs of doubles neither overflow nor underflow.
 _MIN_EXACT_SIZE, _MAX_EXACT_SIZE = 2.0**-400, 2.0**400
 
-#: Splits the 53 bits of a double into two halves whose products are exact.
+#: Dekker's factor, which splits the 53 bits of a double into two halves with exact products.
 _SPLITTER = 2.0**27 + 1
 
 _Normals = tuple[FloatArray, FloatArray]

@@ -58,7 +58,7 @@ class BoxTree:
 
     @classmethod
     def of_points(cls, points: FloatArray) -> "BoxTree":
-        """Return a tree of one level over points, (m, 3); leaf k is point k."""
+        """Return a tree of one level over points, (m, 3), in which leaf k is point k."""
         return cls(np.arange(len(points)), [(points, points)])
 
     def near_leaves(self, points: FloatArray) -> IndexArray:
@@ -95,7 +95,7 @@ class Nearness:
         self.limit = limit
 
     def leaves(self) -> Iterator[BoxPairs]:
-        """Yield pairs of leaves within the limit, roughly from near to far."""
+        """Yield pairs of leaves with squared distances up to `limit`, roughly nearest first."""
         top = len(self._trees[0].levels) - 1, len(self._trees[1].levels) - 1
         roots = np.arange(len(self._trees[0].levels[-1][0]))
         waiting = [(top, np.column_stack([roots, np.zeros_like(roots)]))]

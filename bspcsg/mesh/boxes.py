@@ -1,4 +1,4 @@
-"""Boxes around parts of a mesh, and the nesting of boxes."""
+"""Axis-parallel boxes around parts of a mesh, and the search for boxes that contain others."""
 
 from collections.abc import Iterator
 

@@ -278,7 +278,7 @@ def optional(name: str, package: str) -> Any:
 
 
 def to_manifold(mesh: Mesh) -> "manifold3d.Manifold":
-    """Return a `manifold3d.Manifold` of the same vertices and faces, without attributes."""
+    """Return a `manifold3d.Manifold` of a mesh's vertices and faces, without attributes."""
     import manifold3d
 
     # The binding accepts only writable arrays of exactly these types.

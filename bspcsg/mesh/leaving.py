@@ -192,7 +192,7 @@ class Column:
 
     @property
     def width(self) -> int:
-        """The number of columns."""
+        """The number of columns that the attribute needs."""
         return int(np.prod(self.shape, dtype=np.int64))
 
     @property
@@ -229,7 +229,7 @@ def layout_of(ids: Iterable[int]) -> tuple[Column, ...] | None:
 
 
 def manifold_of(mesh: Mesh) -> "manifold3d.Manifold":
-    """Return a `manifold3d.Manifold` with the numeric attributes as vertex properties."""
+    """Return a `manifold3d.Manifold` of a mesh; numeric attributes become vertex properties."""
     said = _said_of(mesh, "manifold3d")
     if said is None:
         return to_manifold(mesh)

@@ -69,7 +69,7 @@ class Mesh:
 
     @property
     def attributes(self) -> Attributes:
-        """All attributes of vertices, corners and faces."""
+        """The attributes of vertices, corners and faces; empty if the mesh has none."""
         return Attributes(self.faces) if self.carried is None else self.carried.now()
 
     @property
@@ -107,7 +107,7 @@ class Mesh:
 
     @property
     def volume(self) -> float:
-        """Volume in cubic model units: signed tetrahedra, summed without further rounding."""
+        """Volume in cubic model units: signed tetrahedra, whose sum is rounded only once."""
         return self._measures[0]
 
     @property
@@ -182,7 +182,7 @@ class Mesh:
 
     @cached_property
     def _moments(self) -> tuple[FloatArray, FloatArray]:
-        """The centroid, and the second moments about it; NaN without volume."""
+        """The centroid (3,) and the second moments about it (3, 3); NaN if there is no volume."""
         middle = self._middle()
         x, y, z = middle.tolist()
         with core_errors():

@@ -50,7 +50,7 @@ class MeshPieces:
 
     @property
     def thickest(self) -> int:
-        """The number of the thickest piece."""
+        """The number of the piece with the largest thickness."""
         return int(self.thickness.argmax())
 
     def thicker_than(self, bound: float) -> list[int]:

@@ -1,4 +1,4 @@
-"""Merging of points with equal coordinates."""
+"""Welding: finding the distinct points among points with equal coordinates."""
 
 import numpy as np
 

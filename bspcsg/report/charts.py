@@ -12,7 +12,7 @@ _MAX_CURVE_STEPS = 200
 
 
 class Mark(NamedTuple):
-    """A label on an axis, and its position in pixels."""
+    """A label on an axis of a chart, and its position along the axis in pixels."""
 
     place: float
     text: str

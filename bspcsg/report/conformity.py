@@ -1,4 +1,4 @@
-"""The check of JSON values against typed dictionaries."""
+"""Checking of JSON values against typed dictionaries."""
 
 import math
 from types import NoneType, UnionType

@@ -77,7 +77,7 @@ class Sheet:
 
     @property
     def title(self) -> str:
-        """The title of the card."""
+        """The title of the card: the file, and the object's name if it has one."""
         return f"{self.file}: {self.name}" if self.name else self.file
 
 

@@ -30,7 +30,7 @@ class Stored(NamedTuple):
 
     @property
     def layers(self) -> list[Layer]:
-        """All layers with faces; operands are hidden at first, unless the result is empty."""
+        """All layers that have faces; operands are hidden, unless the result is empty."""
         hidden = len(self.result.faces) > 0
         operands = [
             replace(layer, shown=not hidden, opacity=_OPERAND_OPACITY) for layer in self.operands

@@ -1,4 +1,4 @@
-"""Numbers and verdicts as text for a page."""
+"""Formatting of numbers, and meanings and tones of verdicts, for a page."""
 
 import math
 from collections.abc import Sequence
@@ -38,7 +38,10 @@ _PLAIN = (-4, 9)
 
 
 def tone(verdict: str) -> str:
-    """Return the tone of a verdict: good, near, warn, mute or bad; bad if it is unknown."""
+    """Return the tone of a verdict, which gives its colour: good, near, warn, mute or bad.
+
+    An unknown verdict has the tone “bad”.
+    """
     return _TONES.get(verdict, "bad")
 
 

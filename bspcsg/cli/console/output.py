@@ -1,4 +1,4 @@
-"""Output streams and exit codes of the command line."""
+"""Printing of results, notes and errors by the command line, and its exit codes."""
 
 import json
 import sys
@@ -165,5 +165,5 @@ def grouped(number: int) -> str:
 
 
 def counted(number: int, one: str) -> str:
-    """Return a number followed by its noun, singular or plural."""
+    """Return a count followed by a noun, in the singular or the plural, such as “2 files”."""
     return f"{grouped(number)} {one}{'' if number == 1 else 's'}"

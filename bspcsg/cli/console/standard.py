@@ -87,7 +87,7 @@ def take_over(errors: str) -> None:
 
 
 def _raw_of(stream: object) -> io.FileIO | None:
-    """Return the raw file of a stream; None for a Windows console, which has none."""
+    """Return the unbuffered file under a text stream; None for a Windows console and others."""
     if not isinstance(stream, io.TextIOWrapper):
         return None
     raw = getattr(stream.buffer, "raw", stream.buffer)

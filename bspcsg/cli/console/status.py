@@ -37,7 +37,7 @@ class _Line:
 
     @contextmanager
     def hidden(self) -> Iterator[None]:
-        """Erase the line while something is printed."""
+        """Erase the line while other text is printed in the `with` block."""
         with self._lock:
             self._put("")
             yield
@@ -61,7 +61,10 @@ _line: _Line | None = None
 
 @contextmanager
 def watched(what: str, quiet: bool) -> Iterator[None]:
-    """Show the status line while the block runs, if there is a terminal and no ``--quiet``."""
+    """Show the status line while the `with` block runs, if standard error is a terminal.
+
+    It is not shown if `quiet` is true.
+    """
     global _line  # noqa: PLW0603  there is one terminal
     if quiet or os.environ.get("TERM") == "dumb" or not sys.stderr.isatty():
         yield

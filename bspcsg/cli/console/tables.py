@@ -1,4 +1,4 @@
-"""Tables in the terminal, drawn by rich without colours."""
+"""Tables as text for the terminal, drawn by the package rich without colours."""
 
 from collections.abc import Iterable, Sequence
 

@@ -16,7 +16,7 @@ _COLOURS = {"error": "red", "warning": "yellow", "note": "cyan"}
 #: The options that suppress notes, for notes that are printed before options are parsed.
 QUIET = frozenset({"-q", "--quiet"})
 
-#: The smallest width that a table is fitted to, in characters.
+#: The smallest width for which a table is laid out, in characters.
 _MIN_TABLE_WIDTH = 40
 
 
@@ -34,7 +34,7 @@ def wants_colour(stream: TextIO) -> bool:
 
 
 def labelled(label: str, line: str) -> str:
-    """Return a line after a label such as "note", for standard error."""
+    """Return a line after a label such as "note:", coloured if standard error takes colours."""
     if wants_colour(sys.stderr):
         bold = label == "error"
         return f"{click.style(f'{label}:', fg=_COLOURS[label], bold=bold)} {line}"

@@ -126,7 +126,7 @@ class Inputs:
         return own if own in FORMATS or own in SUFFIXES or not self.suffix else self.suffix
 
     def is_script(self, path: Path) -> bool:
-        """Return whether a file is read as a script."""
+        """Say whether a file is read as a script, by its own suffix or that of ``--from``."""
         return self.suffix_of(path) in SUFFIXES
 
     def up_of(self, path: Path) -> str:
@@ -226,7 +226,7 @@ class Inputs:
         return solid
 
     def tell(self, path: Path, findings: Sequence[Finding]) -> None:
-        """Print the findings about a file."""
+        """Print findings about a file on standard error."""
         for finding in findings:
             self.out.finding(shown(path), finding)
 

@@ -89,7 +89,7 @@ def parse(text: str) -> Formula:
 
 
 def files_of(formula: Formula) -> list[File]:
-    """Return the different files of a formula, in the order in which they first occur."""
+    """Return the files of a formula, each once, in the order of their first occurrence."""
     found: dict[str, File] = {}
     waiting = [formula]
     while waiting:

@@ -1,4 +1,4 @@
-"""Options that several verbs share."""
+"""Options and option types that several verbs of the command line share."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""A local server whose pages reload when their content changes."""
+"""A local web server whose pages reload in the browser when their content changes."""
 
 import contextlib
 import os

@@ -232,7 +232,7 @@ def _named(path: Path, error: BspcsgError) -> str:
 
 
 def _text(results: Sequence[_Checked], out: Output) -> str:
-    """Return the findings of each file as text, after a table if there are several files."""
+    """Return a text with the findings of each file; for several files, a table comes first."""
     read = [(one, one.found) for one in results if not isinstance(one.found, BspcsgError)]
     blocks = [_table(read)] if len(read) > 1 else []
     blocks += [_details(one, found, out) for one, found in read]

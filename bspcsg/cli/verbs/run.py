@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def _is_plain_word(text: str) -> bool:
-    """Say whether a text is one word, in any alphabet, which is taken as a string without quotes."""
+    """Say whether a text is one word, in any alphabet, which is a string without quotes."""
     starts = text[:1].isalpha() or text.startswith("_")
     return starts and all(c.isalnum() or c in "_.-" or category(c)[0] == "M" for c in text)
 

@@ -98,7 +98,7 @@ def _visited(tree: dict[str, Any], nodes: list[dict[str, Any]]) -> Iterator[tupl
 
 
 def local_matrix(node: dict[str, Any]) -> FloatArray:
-    """Return the matrix from a node to its parent, for column vectors."""
+    """Return the matrix (4, 4) from a glTF node's coordinates to its parent's, for columns."""
     if "matrix" in node:
         return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
     given = [

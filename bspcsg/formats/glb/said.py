@@ -96,7 +96,7 @@ def _color(values: Values) -> Values:
 
 
 def _upright(uv: Values) -> Values:
-    """Flip texture coordinates vertically, in single precision."""
+    """Flip texture coordinates vertically: v becomes 1 - v, in single precision."""
     turned: Values = np.stack([uv[..., 0], np.float32(1) - uv[..., 1]], axis=-1)
     return turned
 

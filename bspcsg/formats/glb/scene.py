@@ -1,4 +1,4 @@
-"""Reading and writing the tree of a GLB's nodes."""
+"""Reading and writing a GLB as a tree of nodes."""
 
 from collections.abc import Iterator
 from dataclasses import replace

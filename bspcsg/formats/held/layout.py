@@ -31,7 +31,7 @@ class StoredMesh:
 
     @property
     def count(self) -> int:
-        """Number of triangles."""
+        """The number of triangles."""
         return len(self.vertices) // 3 if self.faces is None else len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:
@@ -46,14 +46,14 @@ class StoredMesh:
 
 
 class RowsInFile(Protocol):
-    """Rows of three numbers in a file, which are read on demand."""
+    """Rows of three numbers in a file, which are read from the file when they are needed."""
 
     def __len__(self) -> int:
         """Return the number of rows."""
 
     @property
     def dtype(self) -> "np.dtype[Any]":
-        """The type of one number."""
+        """The numpy type of one number in the rows."""
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the rows equal those of `expected`."""
@@ -93,7 +93,7 @@ class Rows:
 
     @property
     def dtype(self) -> "np.dtype[Any]":
-        """The type of one number."""
+        """The numpy type of one number in the rows."""
         base: np.dtype[Any] = self._row.base
         return base
 
@@ -153,7 +153,7 @@ class StoredRows:
 
     @property
     def count(self) -> int:
-        """Number of triangles."""
+        """The number of triangles."""
         return len(self.faces)
 
     def has(self, vertices: npt.NDArray[Any], faces: IndexArray) -> bool:

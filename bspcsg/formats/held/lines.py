@@ -42,7 +42,7 @@ class Lines:
 
     @property
     def dtype(self) -> "np.dtype[Any]":
-        """The type of one number."""
+        """The numpy type of one number in the lines."""
         return self._read(b"").dtype
 
     def end(self) -> int:

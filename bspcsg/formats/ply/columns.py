@@ -72,7 +72,7 @@ def _kept(kind: Kind, name: str, values: Values) -> Values | None:
 
 
 def _of_known_type(values: Values) -> Values | None:
-    """Return numbers in a type of PLY, or None if no type fits."""
+    """Convert an array to a type that PLY has; return None if no type fits its values."""
     if values.dtype.kind == "b":
         return values.astype(np.uint8)
     if values.dtype.kind == "f":

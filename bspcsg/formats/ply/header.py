@@ -1,4 +1,4 @@
-"""The header of a PLY file: its elements, their counts and properties."""
+"""Reading of a PLY file's header: the elements, their counts and their properties."""
 
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -138,7 +138,7 @@ def read_header(source: Source) -> Header:
 
 
 def _line(source: Source, start: int, number: int) -> tuple[bytes, int]:
-    """Return the line that begins at `start`, and the offset of the next line."""
+    """Return a header's line that begins at byte `start`, and the offset of the next line."""
     data = source.data
     stop = data.find(b"\n", start)
     carriage = data.find(b"\r", start, None if stop < 0 else stop)

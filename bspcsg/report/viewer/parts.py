@@ -108,7 +108,7 @@ def with_thickness(layer: Layer) -> Layer:
 
 
 def told_apart(layers: Sequence[Layer]) -> list[Layer]:
-    """Return layers with distinct colours; a single layer has the colour of results."""
+    """Return layers in different colours; a single layer gets the colour of a result."""
     if len(layers) == 1:
         return [replace(layers[0], colour=RESULT)]
     return [

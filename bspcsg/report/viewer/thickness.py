@@ -1,4 +1,4 @@
-"""The thickness of a solid at each of its faces."""
+"""Measuring the thickness of a solid at each of its faces by rays."""
 
 import numpy as np
 
