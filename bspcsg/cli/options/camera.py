@@ -69,7 +69,7 @@ _SEEING = [
         "--up",
         metavar="X,Y,Z",
         callback=numbers("direction", "x,y,z", "0,0,1"),
-        help="What is upwards in the picture; by default z.",
+        help="Direction that is upwards in the picture; by default z.",
     ),
     further(
         "--perspective",
@@ -78,8 +78,8 @@ _SEEING = [
         is_flag=False,
         flag_value=_FIELD_OF_VIEW,
         type=FiniteRange(0, 180, min_open=True, max_open=True),
-        help="Near things are larger, in a field of view of so many degrees, or 35; what --eye does"
-        " by itself.",
+        help="Draw in perspective, with a field of view of 35 or this number of degrees; implied by"
+        " --eye.",
     ),
 ]
 

@@ -182,7 +182,7 @@ _READING = [
     click.option(
         "--unit",
         type=click.Choice(list(MILLIMETRES)),
-        help="What inputs that do not say are in; they become millimetres.",
+        help="Unit of inputs that do not state one; they are converted to millimetres.",
     ),
 ]
 
@@ -322,7 +322,7 @@ PORT = further(
     metavar="N",
     type=click.IntRange(0, 65535),
     default=0,
-    help="Where a page that is served is found; by default one that is free.",
+    help="Port of a page that is served; by default any free one.",
 )
 
 

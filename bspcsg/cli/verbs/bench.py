@@ -170,14 +170,14 @@ def _as_cases(context: click.Context, option: click.Parameter, value: tuple[str,
 def bench(
     cases: list[str], listed: bool, everything: bool, cliffs: bool, continued: bool, **given: Any
 ) -> int:
-    """Time set operations beside other engines, and check each answer.
+    """Time set operations of bspcsg and of other engines, and compare their results.
 
-    Without names, a few cases are measured that take a minute or two. Engines take turns in one
-    process, and the tables show medians. A call that takes longer than the limit is stopped, and an
-    engine that crashes is left out; the others go on.
+    Without names, only cases are measured that take a minute or two in all. Engines take turns in
+    one process, and the tables show medians. A call that takes longer than the limit is stopped,
+    and an engine that crashes is left out of that case; all other engines go on.
 
-    The exit code is 1 if an answer differs from ours by more than rounding explains, if we fail, or
-    if our cost in a dense place grows faster than input and answer.
+    The exit code is 1 if a result differs from that of bspcsg by more than rounding explains, if
+    bspcsg fails, or if its cost where faces are dense grows faster than input and result.
     """
     wanted = _wanted(cases, listed or everything, cliffs)
     if listed:

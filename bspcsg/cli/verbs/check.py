@@ -69,11 +69,10 @@ def check(
 ) -> int:
     """Say what is wrong with each file, and whether it is a solid.
 
-    Names open edges, triangles turned round, edges with more than two triangles, triangles without
-    area or over the same corners, faces that cross or overlap, and meshes that are inside out,
-    with places. A file that overlaps itself still is a solid, and a warning says so. Of a file with
-    several objects each is judged by itself; those that touch are solids that touch, and those that
-    clash are told.
+    Finds open edges, reversed triangles, edges with more than two triangles, triangles without area
+    or over the same corners, faces that cross or overlap, and meshes that are inside out, and
+    prints where. A file that overlaps itself is a solid, with a warning. Each object of a file with
+    several objects is checked by itself; objects may touch, and a warning names those that clash.
     """
     from ...parameters import set_threads
 

@@ -45,9 +45,9 @@ Examples:
 def clash(files: tuple[Path, ...], clearance: float | None, **given: Any) -> int:
     """Say which pairs of files have volume in common, how much and where.
 
-    Of one file alone, such as 3MF, GLB, OBJ or a script, its objects are the pairs. It is decided
-    exactly; what only touches does not clash. Exits with 1 if a pair does, or if it is nearer than
-    the clearance.
+    If only one file is given, such as 3MF, GLB, OBJ or a script, pairs of its objects are examined.
+    The decision is exact; solids that only touch do not clash. The exit code is 1 if a pair
+    clashes, or is nearer than the clearance.
     """
     from ...parameters import set_threads
 

@@ -55,9 +55,9 @@ def convert(files: tuple[Path, ...], **given: Any) -> int:
     """Write meshes in other formats, and say what was lost.
 
     Every file is read back and compared. Meshes need not be closed, unless they are to be
-    simplified; nothing is repaired. 3MF and GLB state their unit: what comes from other formats is
-    taken as millimetres unless --unit says otherwise, and GLB is written in metres with y upwards.
-    Where --up and --from-up differ, the model is turned by a quarter about x.
+    simplified; nothing is repaired. 3MF and GLB state their unit: meshes in other formats are taken
+    as millimetres unless --unit says otherwise, and GLB is written in metres with y upwards. Where
+    --up and --from-up differ, the model is rotated by a quarter turn about x.
     """
     return _Conversion(files, **given).run()
 

@@ -63,7 +63,7 @@ _FILE = FilePath()
     "--poses",
     metavar="N",
     type=click.IntRange(min=1),
-    help="Draw so many pairs, half in random and half in coincident poses.",
+    help="Draw this number of pairs, half in random and half in coincident poses.",
 )
 @further(
     "--pose",
@@ -71,10 +71,16 @@ _FILE = FilePath()
     multiple=True,
     metavar="NAME[:NUMBER]",
     callback=as_poses,
-    help=f"Place the second of each pair so ({', '.join(POSES)}); a number for one draw; may be"
+    help=f"Pose of the second of each pair ({', '.join(POSES)}); a number for one draw; may be"
     " repeated.",
 )
-@further("--seed", metavar="N", type=click.IntRange(min=0), default=0, help="Of the random draws.")
+@further(
+    "--seed",
+    metavar="N",
+    type=click.IntRange(min=0),
+    default=0,
+    help="Seed of the random draws.",
+)
 @further(
     "--max-triangles",
     metavar="N",
@@ -135,7 +141,8 @@ _FILE = FilePath()
     metavar="WHICH",
     default="interesting",
     callback=as_keep,
-    help="Meshes to keep beside the results: interesting (default), all, none, or so many more.",
+    help="Cases whose meshes are stored beside the results: interesting (default), all, none, or a"
+    " number of further ones.",
 )
 @further(
     "--samples",
@@ -152,12 +159,12 @@ _FILE = FilePath()
 )
 @telling
 def crosscheck(paths: tuple[Path, ...], **given: Any) -> int:
-    """Compare results with manifold3d's, as exact sets, and with further engines in doubt.
+    """Compare results with manifold3d's, as exact sets, and with other engines' in doubtful cases.
 
     CASES are mesh files (every pair of them), folders (every pair of meshes in them, and their
     .csg scripts), scripts (.csg, .scad) and .json files of cases. Each case runs in a process of
-    its own that is killed at the limits. Exits with 1 if engines disagree with us, a result is not
-    sound, or a case ran into a limit or crashed.
+    its own, which is killed if it exceeds a limit. The exit code is 1 if an engine disagrees with
+    bspcsg, a result of bspcsg fails a check of its own, or a case was killed or crashed.
     """
     return _Campaign(paths, given).run()
 

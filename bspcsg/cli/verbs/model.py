@@ -37,7 +37,8 @@ Example:
 def hull(files: tuple[Path, ...], **given: Any) -> int:
     """Write the convex hull of all files together, exactly.
 
-    Each of its corners is a corner of a file, and none lies outside but for rounding.
+    Each vertex of the hull is a vertex of a file, and but for rounding no vertex of a file is
+    outside the hull.
     """
     return _Hull(files, **given).run()
 
@@ -62,8 +63,8 @@ def hull(files: tuple[Path, ...], **given: Any) -> int:
 def simplify(file: Path, **given: Any) -> int:
     """Write a solid without short edges and slivers.
 
-    Every point of the old surface lies within the tolerance of the new one, and the other way
-    round. Nothing that changed crosses anything, and parts, handles and cavities stay.
+    Every point of the old surface is within the tolerance of the new one, and the other way round.
+    Changed triangles cross no others, and the numbers of parts, handles and cavities stay the same.
     """
     return _Simplified((file,), **given).run()
 

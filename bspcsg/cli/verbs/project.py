@@ -27,8 +27,8 @@ _SUFFIXES = (".svg", ".dxf")
 def project(file: Path, target: Path, **given: Any) -> int:
     """Write the shadow of a solid on the plane z = 0 as an SVG or DXF drawing.
 
-    It holds every point that lies below or above the solid, in coordinates (x, y). DXF needs the
-    extra bspcsg[dxf].
+    The shadow consists of the points (x, y) with a point of the solid above or below them. DXF
+    needs the extra bspcsg[dxf].
     """
     return _Projection(file, target, _SUFFIXES, **given).run()
 

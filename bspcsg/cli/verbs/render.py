@@ -164,10 +164,10 @@ def _is_paint(word: str, layers: "list[Layer]") -> bool:
 @reading
 @common
 def render(files: tuple[Path, ...], target: Path, **given: Any) -> int:
-    """Write a picture of meshes as SVG or PNG, painted from back to front, or a turn as GIF.
+    """Write a picture of meshes as SVG or PNG, or pictures of one turn around z as GIF.
 
-    Meshes need not be closed, but for --section. PNG and GIF need Pillow; bspcsg doctor says
-    whether it is there.
+    Faces are painted from back to front. Meshes need not be closed, except for --section. PNG and
+    GIF need Pillow; bspcsg doctor says whether it is installed.
     """
     return _Rendering(files, target, _SUFFIXES, **given).run()
 

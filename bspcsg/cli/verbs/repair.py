@@ -42,7 +42,7 @@ _DEFECTS = {
     metavar="STEPS",
     default="weld,dedup,drop,split,orient,fill",
     show_default=True,
-    help="Which steps to take, apart by commas.",
+    help="Steps to take, separated by commas.",
 )
 @click.option(
     "--weld",
@@ -65,12 +65,12 @@ _DEFECTS = {
 def repair(files: tuple[Path, ...], target: Path | None, outdir: Path | None, **given: Any) -> int:
     """Close and orient meshes with pymeshlab, and say what changed.
 
-    The steps: weld joins vertices; dedup drops repeated and flat triangles; drop takes away stray
-    fragments, which bound nothing, such as a loose triangle beside a closed shell; split takes
-    edges with more than two triangles apart; orient turns triangles the same way round; fill closes
-    holes. Of a file with several objects each is repaired by itself, if something is wrong with it.
-    The file is written even if it still is no solid; then the exit code is 1. Attributes, such as
-    colours, are lost, which is said.
+    The steps: weld joins vertices; dedup removes repeated and flat triangles; drop removes stray
+    fragments, which enclose nothing, such as a loose triangle beside a closed shell; split divides
+    edges with more than two triangles; orient gives triangles a common orientation; fill closes
+    holes. Each object of a file with several objects is repaired by itself, if it has a defect. The
+    file is written even if it is still no solid; then the exit code is 1. Attributes, such as
+    colours, are lost, with a warning.
     """
     return _Repairing(files, target, outdir, **given).run()
 

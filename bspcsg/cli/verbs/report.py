@@ -56,7 +56,11 @@ _FORMATS = ("html", "md", "json", "junit")
     help="Cases shown with pictures and all numbers, failures first.",
 )
 @click.option(
-    "--title", metavar="TITLE", default="Validation report", show_default=True, help="Of the page."
+    "--title",
+    metavar="TITLE",
+    default="Validation report",
+    show_default=True,
+    help="Title of the page.",
 )
 @common
 def report(files: tuple[Path, ...], target: Path, **given: Any) -> int:

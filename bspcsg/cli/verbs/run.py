@@ -175,9 +175,9 @@ def run(
     """Evaluate a script and write the solid it makes.
 
     A .csg file is read as OpenSCAD writes it, and so is standard input, for which - stands. A
-    .json file is the same tree (see bspcsg tree), a .scad file needs the program openscad. A .py
-    file leaves its solid in the variable result, or calls bspcsg.show; it runs with all your
-    rights, and what it prints goes to standard error.
+    .json file is the same tree (see bspcsg tree); a .scad file needs the program openscad. A .py
+    file assigns its solid to the variable result, or calls bspcsg.show; it runs with all your
+    rights, and its output goes to standard error.
     """
     if target is None and not shows:
         raise click.UsageError("say where the solid goes: -o part.stl; or look at it: --view.")

@@ -57,9 +57,9 @@ def _as_finite(
 def section(file: Path, target: Path, **given: Any) -> int:
     """Write the section of a solid by a plane as an SVG or DXF drawing.
 
-    It is seen from where the normal points: z gives the coordinates (x, y), x gives (y, z), y gives
-    (z, x). A face in the plane counts as above it, so a box standing on z = 0 is empty there and
-    full at its top. DXF needs the extra bspcsg[dxf].
+    The normal points towards the viewer: the drawing has the coordinates (x, y) for the normal z,
+    (y, z) for x, and (z, x) for y. A face in the plane counts as above it, so the section of a box
+    standing on z = 0 is empty at z = 0 and full at its top. DXF needs the extra bspcsg[dxf].
     """
     return _Section(file, target, _SUFFIXES, **given).run()
 

@@ -75,12 +75,12 @@ _FORMER = "explode"
 def split(context: click.Context, /, files: tuple[Path, ...], target: Path, **given: Any) -> int:
     """Write each connected component of solids to a file of its own, the largest first.
 
-    With --plane, number 1 is the side with nx x + ny y + nz z below d, number 2 the other. With
-    --by, number 1 is what is outside the other solid, number 2 what is inside. A cut closes both
-    sides, and together they are the whole again, exactly.
+    With --plane, part 1 is the side with nx x + ny y + nz z below d, part 2 the side above. With
+    --by, part 1 is outside the solid of --by, part 2 inside. Both sides of a cut are closed, and
+    their union is exactly the whole.
 
-    The parts of one file are 1, 2 and so on; those of several are called plates-1, plates-2 after
-    plates.stl. Without a % in it, -o gets this before its suffix.
+    The % in the name of -o stands for 1, 2 and so on, or with several files for plates-1, plates-2
+    after plates.stl. Without a %, this is added before the suffix.
     """
     if given["plane"] and given["cutter"]:
         raise click.UsageError("--plane and --by exclude each other.")

@@ -66,10 +66,10 @@ _FORMS = {
 @TIMEOUT
 @common
 def tree(file: Path, **given: Any) -> int:
-    """Show the tree of a script, or write it in another form.
+    """Show the tree of an OpenSCAD script, or write it in another form.
 
     Reads .csg files, the same tree as .json, and .scad files through the program openscad. Nothing
-    is evaluated, and nodes that bspcsg cannot evaluate stay. --json tells the number of nodes of
+    is evaluated, and nodes that bspcsg cannot evaluate stay. --json prints the number of nodes of
     each kind.
     """
     return _Showing(file, **given).run()

@@ -54,14 +54,14 @@ _MAX_QUICK_PAGE_BYTES = 20_000_000
 @reading
 @common
 def view(files: tuple[Path, ...], target: Path | None, **given: Any) -> int:
-    """Show meshes in a browser: turn, zoom, cut, measure, see through, a button for each part.
+    """Show meshes in a browser: turn, zoom, cut, measure, make transparent, hide each part.
 
     Faces have the colours and textures of the file, or can be coloured by the operand of a script
-    that they are from. The page is one file that needs no network and can be sent to others. Meshes
-    need not be closed. Without a screen, as over ssh, it is only written.
+    from which they come. The page is one file that needs no network and can be sent to others.
+    Meshes need not be closed. Without a screen, as over ssh, the page is written, but not opened.
 
-    With --live, and always for a folder, a server on this machine alone shows the page, and makes
-    it anew when a file changes, until Ctrl-C.
+    With --live, and always for a folder, a server, which only this machine can reach, shows the
+    page, and updates it when a file changes, until Ctrl-C.
     """
     return _Viewing(files, target, **given).run()
 
