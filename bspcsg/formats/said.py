@@ -1,4 +1,4 @@
-"""Attributes in files: selecting those that a format can store, and findings about the others."""
+"""Selection of the attributes that a file format can store, and findings about lost attributes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -20,7 +20,7 @@ def said_of(mesh: Mesh | RawMesh) -> Attributes | None:
 
 
 def saying(mesh: Mesh | RawMesh, attributes: Attributes | None) -> RawMesh:
-    """Return a mesh with `attributes` instead of its own."""
+    """Return a mesh as a `RawMesh` whose attributes are replaced by `attributes`."""
     if isinstance(mesh, RawMesh):
         return replace(mesh, attributes=attributes)
     return RawMesh(mesh.vertices, mesh.faces, attributes=attributes)

@@ -218,7 +218,7 @@ def _merged(vertices: FloatArray, rounded: FloatArray, moved: BoolArray) -> tupl
 
 
 def _beside_moved(rounded: FloatArray, moved: BoolArray) -> BoolArray:
-    """Say which vertices have the x of a vertex that rounding moved; only these can merge."""
+    """Say for each vertex whether its x equals that of a moved vertex: only then it can merge."""
     x = rounded[:, 0]
     taken = np.sort(x[moved])
     place = np.minimum(np.searchsorted(taken, x), len(taken) - 1)

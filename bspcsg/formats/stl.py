@@ -210,7 +210,7 @@ def _facets(corners: FloatArray) -> Iterator[bytes]:
 
 
 def losses(mesh: Mesh | RawMesh) -> tuple[Finding, ...]:
-    """Return findings about what single precision, that of binary STL, changes in a mesh.
+    """Return findings about what single precision, in which binary STL is, changes in a mesh.
 
     Raises
     ------

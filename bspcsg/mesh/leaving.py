@@ -254,7 +254,7 @@ _NONE: IndexArray = np.zeros(0, dtype=np.int64)
 def _in_order(said: Attributes) -> list[str]:
     """Return the names of attributes, “properties” first.
 
-    These are manifold3d's own columns, which then have the same numbers as before.
+    “properties” are columns that came from manifold3d; as the first ones they get the same numbers.
     """
     return sorted(said.names, key=lambda name: name != "properties")
 

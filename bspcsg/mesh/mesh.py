@@ -144,7 +144,7 @@ class Mesh:
 
     @property
     def euler_number(self) -> int:
-        """The number of vertices that a face uses, minus that of edges, plus that of faces."""
+        """The Euler number: vertices minus edges plus faces; unused vertices do not count."""
         vertices, edges, _, _ = self._counts
         return vertices - edges + len(self.faces)
 

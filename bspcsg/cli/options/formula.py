@@ -121,7 +121,7 @@ def evaluated(
     leaf: Callable[[File], _Value],
     combine: Callable[[str, list[_Value]], _Value],
 ) -> _Value:
-    """Evaluate a formula: `leaf` gives the value of a file, `combine` that of an operation."""
+    """Evaluate a formula: `leaf` returns a file's value, `combine` an operation's value."""
     # Chains such as a - b - c are nested on the left, maybe deeper than the limit of recursion.
     leaning: list[NamedOperation] = []
     while isinstance(formula, NamedOperation):

@@ -238,7 +238,7 @@ def _missing(wanted: list[str], named: list[str], kept: list[dict[str, Any]]) ->
 
 
 def _dense(cases: list[str]) -> list[str]:
-    """Return the cases whose cost is checked in dense places, where faces are close together."""
+    """Return the cases that have a bound on the growth of cost where faces are close together."""
     from ...bench.cliffs import CLIFFS
 
     found = [name for name in cases if name in CLIFFS]

@@ -1,4 +1,4 @@
-"""A reader of written GLB files, to check them."""
+"""A reader of GLB files that this package has just written, to check their content."""
 
 from typing import BinaryIO
 

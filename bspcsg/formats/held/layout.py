@@ -1,4 +1,4 @@
-"""Objects of a written file, and the rows of numbers of which they consist."""
+"""Objects of a mesh file that is being checked, and the rows of numbers in that file."""
 
 import os
 from dataclasses import dataclass
@@ -56,7 +56,7 @@ class RowsInFile(Protocol):
         """The numpy type of one number in the rows."""
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows equal those of `expected`."""
+        """Say whether the rows equal the rows of `expected`."""
 
     def everything(self) -> npt.NDArray[Any]:
         """Return all rows as one array."""
@@ -108,13 +108,13 @@ class Rows:
             raise ValueError(f"it has not the {self.end} bytes that its header tells of")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
-        """Say whether the rows equal those of `expected` bit by bit."""
+        """Say whether the rows equal the rows of `expected` bit by bit."""
         return all(
             self.hold(block, expected[block]) for block in blocks(self._count, ROWS_PER_FILE_BLOCK)
         )
 
     def hold(self, block: slice, expected: npt.NDArray[Any]) -> bool:
-        """Say whether a block's rows of 8-byte numbers equal those of `expected` bit by bit."""
+        """Say whether a block's rows of 8-byte numbers equal the rows of `expected` bit by bit."""
         base = self._row.base
         words = np.ascontiguousarray(expected, base.newbyteorder("=")).view(np.uint64)
         return are_words(self.data(block), words, base == base.newbyteorder(">"))

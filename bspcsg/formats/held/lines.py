@@ -1,4 +1,4 @@
-"""Rows of numbers in a written file, each in a line of text."""
+"""Rows of numbers in a text file that is being checked, each row a line of text."""
 
 from collections.abc import Callable, Iterator
 from typing import Any, BinaryIO, TypeAlias

@@ -1,4 +1,4 @@
-"""Readers of written STL, OBJ, OFF and PLY files, to check them."""
+"""Readers of STL, OBJ, OFF and PLY files that this package has just written, to check them."""
 
 import io
 import re

@@ -1,4 +1,4 @@
-"""A reader of written 3MF archives, to check them."""
+"""A reader of 3MF files that this package has just written, to check their content."""
 
 import zipfile
 from collections.abc import Iterator

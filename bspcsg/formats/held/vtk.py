@@ -1,4 +1,4 @@
-"""Readers of written VTK and VTU files, to check them."""
+"""Readers of VTK and VTU files that this package has just written, to check their content."""
 
 import re
 import zlib

@@ -1,4 +1,4 @@
-"""Reading and writing PLY, as text and as binary of both byte orders, with attributes."""
+"""Reading and writing PLY with attributes: text, binary little-endian and big-endian."""
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator

@@ -128,7 +128,7 @@ class Package:
         return Source(f"{self.source.name}/{name}", b""), self._unpacked(entry)
 
     def _unpacked(self, entry: zipfile.ZipInfo) -> Iterator[bytes]:
-        """Yield the bytes of a part in chunks; raise a `FormatError` if they are too many."""
+        """Yield the bytes of a part in chunks; too many bytes raise a `FormatError`."""
         with _damage_as_error(self.source), self._archive.open(entry) as stream:
             while chunk := stream.read(_CHUNK_BYTES):
                 self._left -= len(chunk)

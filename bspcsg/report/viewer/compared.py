@@ -76,7 +76,7 @@ def _landmarks(found: SetComparison) -> list[Landmark]:
 
 
 def _distances(mesh: Mesh, other: Mesh) -> tuple[Scale, ...]:
-    """Return a paint by the distance of each vertex from another mesh; nothing if too many."""
+    """Return a paint by the distance of each vertex from `other`; none for too many vertices."""
     used = np.unique(mesh.faces)
     if len(used) > _MAX_VERTICES_MEASURED or not len(other.faces):
         return ()
