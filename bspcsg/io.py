@@ -1,8 +1,8 @@
-"""Reading and writing of mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio.
+"""Reading and writing mesh files: STL, OBJ, PLY, OFF, 3MF, GLB, and VTK through meshio.
 
-Coordinates are read and written in double precision if the format has it. A truncated or
-inconsistent file is refused with its name and the line or byte. A file is written completely or not
-at all, and only after it was read back and compared with the mesh.
+Coordinates are read and written in double precision where the format has it. A file that is cut off
+or contradicts itself is an error that names the file and the line or byte. A file is written
+completely or not at all, and only after it was read back and compared with the mesh.
 """
 
 import os
@@ -26,7 +26,7 @@ from .parameters import file_path, of_kind, shown, text_value, truth_value
 from .solid.counting import counted
 from .solid.solid import Solid
 
-#: The suffixes of scripts, which `load` evaluates.
+#: Suffixes of scripts, which `load` evaluates.
 SCRIPTS = frozenset({".csg", ".json", ".scad"})
 
 __all__ = [
@@ -57,25 +57,25 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
     Parameters
     ----------
     path : str or path
-        The file, whose suffix is one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad``
-        (see `bspcsg.csg.load`).
-        3MF and GLB are read in millimetres, the other formats in the unit in which they were
+        Ending in one of `FORMATS`, or a script: ``.csg``, ``.json`` or ``.scad`` (see
+        `bspcsg.csg.load`).
+        3MF and GLB are read in millimetres, all other formats in the unit in which they were
         written. A file that `save` wrote for the empty set is read as the empty set; any other file
         without faces is refused.
     **options
-        For meshes, the options of `Solid`: ``pitch``, ``trusted``, ``winding``, and
-        ``attributes=False`` to ignore colours and other attributes; for scripts, the options of
-        `bspcsg.csg.load`.
+        For meshes as for `Solid`: ``pitch``, ``trusted``, ``winding``, and ``attributes=False`` to
+        ignore colours and other attributes; for scripts as for `bspcsg.csg.load`.
 
     Raises
     ------
     FormatError
         If the file cannot be read in the format of its suffix.
     InvalidMeshError, LimitError
-        If the content is not a solid. The message names the file, `where` lists the faces.
+        If the content is not a solid: the message names the file, and the attribute `where` has the
+        numbers of the faces.
     """
     if Path(file_path(path)).suffix.lower() in SCRIPTS:
-        # Import the evaluator of scripts only if needed, since it imports many modules.
+        # Import the modules for scripts only if they are needed.
         from . import csg
 
         return csg.load(path, **options)
@@ -84,22 +84,21 @@ def load(path: str | os.PathLike[str], **options: Any) -> Solid:
 
 @counted
 def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
-    """Read a solid from the bytes of a mesh file, or from a file object open in binary mode.
+    """Return the solid in the bytes of a mesh file, or in a file that is open for reading bytes.
 
     Parameters
     ----------
     data : bytes or file
-        The contents, or a file. Materials and pictures in other files are read only for a file on
-        disk.
+        Companion files with materials and pictures are read only if `data` is a file on disk.
     suffix : str
-        The format, one of `FORMATS`, with or without its dot.
+        The suffix of a format, one of `FORMATS`, with or without its dot.
     **options
-        The options of `Solid`.
+        As for `Solid`.
 
     Raises
     ------
     FormatError
-        If no format is given (code "unknown_format"), or as for `load`.
+        If no format is given (code "unknown_format"), or the data cannot be read in that format.
     """
     named = f".{text_value('' if suffix is None else suffix, 'suffix').lower().removeprefix('.')}"
     if named not in FORMATS:
@@ -118,7 +117,7 @@ def loads(data: Any, suffix: str | None, **options: Any) -> Solid:
 
 
 def _is_on_disk(data: Any) -> bool:
-    """Return True if an object has a file descriptor, unlike members of archives."""
+    """Say whether an object is an open file on disk, not bytes or a member of an archive."""
     try:
         data.fileno()
     except (AttributeError, OSError):
@@ -133,29 +132,28 @@ def save(solid: Solid, path: str | os.PathLike[str], *, text: bool = False) -> t
     ----------
     solid : Solid
     path : str or path
-        The file, whose suffix is one of `FORMATS`, or ``.csg`` for the expression (see
-        `bspcsg.csg.dump`). Binary STL and GLB store single precision; in 3MF and GLB, model units
-        are millimetres.
+        Ending in one of `FORMATS`, or in ``.csg`` for the expression (see `bspcsg.csg.dump`).
+        Binary STL and GLB have single precision; for 3MF and GLB, coordinates are millimetres.
     text : bool
-        True to write STL and PLY as text; OBJ and OFF are always text.
+        Write STL and PLY as text; OBJ and OFF always are.
 
     Returns
     -------
     tuple of Finding
-        Findings about all data that the format cannot store.
+        Findings about everything that the format could not store.
 
     Raises
     ------
     FormatError
         If the format is unknown or cannot store the coordinates, or the file cannot be written;
-        code ``"write_mismatch"`` if reading the file gives a different mesh.
+        code ``"write_mismatch"`` if the file reads back as another mesh.
     UnboundedError
         If the solid reaches to infinity.
 
     Warns
     -----
     LossWarning
-        If the format cannot store an attribute, or only a part of a colour.
+        If the format cannot store an attribute, or stores a colour only in part.
     """
     is_text = truth_value(text, "text")
     own = of_kind(Solid, solid, "solid")
