@@ -1,4 +1,4 @@
-"""The nearest points of segments and polygons, in doubles."""
+"""The nearest points of segments and of polygons to given points, in doubles."""
 
 from collections.abc import Callable
 
@@ -8,12 +8,12 @@ from ..._types import FloatArray
 from ...mesh.distance import nearest_on_triangles
 from .pieces import Pieces
 
-#: The number of pairs of a point and a piece that are computed together, which bounds the memory.
+#: The number of pairs of a point and a piece in one array operation, which bounds the memory.
 _PAIRS_PER_BATCH = 1 << 20
 
 
 def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
-    """Return the nearest point on (n, 2, d) segments for each of (k, d) points."""
+    """Return for each of (k, d) points the nearest point on any of (n, 2, d) segments, (k, d)."""
     start = segments[:, 0]
     along = segments[:, 1] - start
     squared = (along**2).sum(axis=1)
@@ -27,7 +27,7 @@ def nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
 
 
 def nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
-    """Return the nearest point on convex polygons in space for each of (k, 3) points."""
+    """Return for each of (k, 3) points the nearest point on any of the convex polygons, (k, 3)."""
     triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
 
     def candidates(block: FloatArray) -> FloatArray:
@@ -46,7 +46,11 @@ def _fan(corners: FloatArray) -> FloatArray:
 def _nearest(
     points: FloatArray, pieces: int, candidates: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
-    """Return the nearest of each point's candidates, block by block."""
+    """Return for each point its nearest candidate, computed in blocks of points.
+
+    ``candidates(block)`` returns one candidate for each pair of a point and a piece, (b, pieces,
+    d).
+    """
     nearest = np.empty_like(points)
     step = max(_PAIRS_PER_BATCH // pieces, 1)
     for start in range(0, len(points), step):

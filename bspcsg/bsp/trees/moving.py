@@ -40,7 +40,8 @@ def moved_core(
         if cut[0] >= 0:
             row = [0] * core.dimension + [int(cut[1])]
             row[cut[0]] = 1
-            # Stored as an own hyperplane, since the minus side may have the larger coordinates.
+            # After a rotation the minus side may have the larger coordinates, which an
+            # axis-parallel cut cannot express.
             cut[:] = _OWN, len(own)
             own.append(_moved_row(row, matrix, shift, scale))
     moved = np.ascontiguousarray(scale * corners @ matrix.T + shift)
