@@ -131,11 +131,11 @@ class FactorChain:
 
     @property
     def inner(self) -> "FactorChain":
-        """The chain without the outermost factors that permute and mirror axes only."""
+        """The chain without its outermost factors that only permute, mirror and shift axes."""
         return _inner(self._head, self._rest)
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the motion of the factors outside of `inner`, or None if it is not exact."""
+        """Return the factors that `inner` omits as a lattice motion, or None if they are none."""
         run = permuting_run(self._head)
         if self._rest is None or len(run) < len(self._head):
             return lattice_motion(run, pitch)
@@ -181,7 +181,7 @@ class FactorBlock:
         self._motions: dict[int, LatticeMotion | None] = {}
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the lattice motion of the outermost factors that are lattice motions, or None."""
+        """Return the factors that `inner` omits as a lattice motion, or None if they are none."""
         waiting: list[FactorBlock] = []
         block: FactorBlock | None = self
         while block is not None and pitch not in block._motions:

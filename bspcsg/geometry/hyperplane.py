@@ -159,7 +159,7 @@ class Hyperplane:
         return (Fraction(float(self.offset)) if near else self.offset) / Fraction(10) ** pitch
 
     def _narrow(self) -> tuple[tuple[int, ...], Fraction]:
-        """Return the normal at a width that the core accepts, and the approximate factor to it."""
+        """Return the normal rounded to a width that the core accepts, and the factor applied."""
         bits = max(entry.bit_length() for entry in self.normal)
         if bits <= _bits(len(self.normal)):
             return self.normal, Fraction(1)
@@ -169,7 +169,7 @@ class Hyperplane:
         return tuple(entry // divisor for entry in rounded), Fraction(1, power * divisor)
 
     def shortened(self) -> Self:
-        """Return the hyperplane without digits far beyond the resolution of any lattice."""
+        """Return the hyperplane rounded to about 1024 bits, if it has more."""
         ratio = self.offset.as_integer_ratio()
         if max(entry.bit_length() for entry in (*self.normal, *ratio)) <= _KEPT_BITS:
             return self

@@ -259,7 +259,7 @@ def _overlapping_boxes(contours: list[FloatArray]) -> Iterator[tuple[int, int]]:
 
 
 def _contains(outer: FloatArray, inner: FloatArray) -> bool:
-    """Say whether most corners and edge midpoints of `inner` are inside; some may touch `outer`."""
+    """Return true if more than half of `inner`'s corners and edge midpoints are inside `outer`."""
     probes = np.concatenate([inner, (inner + np.roll(inner, -1, axis=0)) / 2])
     is_near = ((probes >= outer.min(axis=0)) & (probes <= outer.max(axis=0))).all(axis=1)
     if 2 * is_near.sum() <= len(probes):

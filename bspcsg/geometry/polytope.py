@@ -115,7 +115,7 @@ class Polytope:
         return sum((_cone6(face, apex) for face in self.faces), Fraction(0)) / 6
 
     def shape(self, unit: float) -> FloatArray | list[FloatArray]:
-        """Return its faces in doubles, as `PartitionTree.region` does; a step is `unit` long."""
+        """Return the faces as doubles times `unit`, in the form of `PartitionTree.region`."""
         arrays = [
             np.array([[float(x) * unit for x in corner] for corner in face]) for face in self.faces
         ]

@@ -283,7 +283,7 @@ class LatticeMotion:
 
 
 def permuting_run(factors: Factors) -> Factors:
-    """Return the outermost factors that only permute and mirror axes, with any shift."""
+    """Return the outermost factors before the first that does more than permute axes and shift."""
     for position, factor in enumerate(factors):
         if _signed_axes(factor) is None:
             return factors[:position]

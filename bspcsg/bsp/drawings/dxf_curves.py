@@ -38,7 +38,7 @@ _FRAME = 16
 def chains_of(
     layout: Any, is_wanted: Callable[[str], bool], chord: float, lost: LeftOut
 ) -> Iterator[FloatArray]:
-    """Yield the corners of each outline, (n, 2); those of closed ones end as they begin.
+    """Yield the corners of each outline, (n, 2); a closed outline ends with its first corner.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def _arc(entity: Any, chord: float) -> FloatArray:
 
 
 def _chords(radius: float, turn: float, chord: float) -> int:
-    """Return the number of chords that stay within a distance of an arc, four or more a circle."""
+    """Return the number of chords of an arc within a distance `chord` of it, 4 or more a circle."""
     half = 2 * math.asin(math.sqrt(min(chord / (2 * radius), 1.0))) if radius else math.pi
     count = math.ceil(abs(turn) / min(2 * half, math.pi / 2))
     if count > _MAX_ARC_CHORDS:

@@ -27,7 +27,7 @@ _FIRST = frozenset([5, 102, 330, 360])
 _COMMON = frozenset([6, 8, 48, 60, 62, 67, 284, 347, 348, 370, 380, 390, 410, 420, 430, 440])
 
 #: The last version of DXF without markers, assumed for files without a version; and the first group
-#: code that other programs may add.
+#: code of extended data.
 _PLAIN = "AC1009"
 _FIRST_OF_OTHERS = 1000
 
@@ -38,7 +38,7 @@ def module_of_ezdxf(name: str = "ezdxf") -> Any:
 
 
 def with_markers(stream: TextIO) -> Iterator[Any]:
-    """Yield the tags of a file for ezdxf, with the markers that entities lack."""
+    """Yield the tags of a DXF file for ezdxf, with missing subclass markers added."""
     types = module_of_ezdxf("ezdxf.lldxf.types")
     lines = module_of_ezdxf("ezdxf.lldxf.tagger").ascii_tags_loader(stream)
     version, variable = _PLAIN, ""

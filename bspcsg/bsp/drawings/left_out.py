@@ -59,7 +59,7 @@ class LeftOut:
         return f"{lacking}{'The' if kinds else 'the'} region is empty{reason}."
 
     def _kinds(self) -> str:
-        """Return the kinds with their counts, shortened, since files may contain any names."""
+        """Return the omitted kinds and their counts as text, shortened if there are many."""
         names = sorted(self.counts)
         kinds = [f"{_harmless(name)} ({self.counts[name]})" for name in names[:_MAX_KINDS_NAMED]]
         more = sum(self.counts[name] for name in names[_MAX_KINDS_NAMED:])

@@ -183,7 +183,7 @@ def _around_centers(
     is_large: IndexArray,
     is_positive: IndexArray,
 ) -> tuple[_Points, _Points, _Points, FloatArray, FloatArray]:
-    """Return the arcs between ends by their centres, axes and angles."""
+    """Return arcs as centre, two half axes, first angle and angle covered, given their ends."""
     turned = np.exp(1j * np.radians(rotation))
     seen = (start - end) / 2 * np.conj(turned)
     # Half the chord, in coordinates in which the ellipse is the unit circle.

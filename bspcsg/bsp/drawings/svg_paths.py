@@ -100,7 +100,7 @@ def path_segments(data: str) -> Segments | None:
 
 
 def _numbers(command: str, text: str) -> list[float] | None:
-    """Return the numbers of a command, if their count is right and all are finite."""
+    """Return the numbers of a path command; None if their count is wrong or one is not finite."""
     if command == "Z":
         return None if text.strip(_BLANKS) else []
     if command == "A":

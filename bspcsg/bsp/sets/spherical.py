@@ -337,7 +337,7 @@ def _dot(a: Sequence[int], b: Sequence[int]) -> int:
 
 
 def _cube(dimension: int) -> list[tuple[Corner, ...]]:
-    """Return the faces of a cube about the origin, or the sides of a square, counterclockwise."""
+    """Return the faces of a cube (3D) or the sides of a square (2D), counterclockwise."""
     body = Polytope.box([-1] * dimension, [1] * dimension)
     if dimension == 3:
         return list(body.faces)
