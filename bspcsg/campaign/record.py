@@ -86,7 +86,7 @@ class OperandRecord(TypedDict):
 
 
 class OracleRecord(TypedDict):
-    """The answer of another engine; `agrees` is None if that could not be decided."""
+    """The opinion of another engine; `agrees` is None if its result could not be compared."""
 
     name: str
     version: str
@@ -107,7 +107,7 @@ class DifferenceRecord(TypedDict):
 
 
 class HausdorffRecord(TypedDict):
-    """Lower bounds of the distances from ours to theirs and back, and the number of points."""
+    """Lower bounds of the distances from our boundary to manifold3d's and back, from samples."""
 
     forward: float
     backward: float

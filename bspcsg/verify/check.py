@@ -246,7 +246,7 @@ class _Check:
         return same_set_bound(self.result.pitch, *meshes, snapped_by=snapped_by)
 
     def _box(self, mesh: Mesh) -> Solid | None:
-        """Return a box around everything that is bounded, if an operand is not."""
+        """Return a box around the mesh and all bounded operands; None if all are bounded."""
         if all(operand.is_bounded for operand in self.operands):
             return None
         bounds = [mesh.bounds, *(operand.bounds for operand in self.operands if operand.is_bounded)]

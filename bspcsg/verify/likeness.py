@@ -60,7 +60,7 @@ def volume_of_film(ours: Facts, theirs: Facts, film: float) -> float:
 
 
 def areas_differ(ours: Facts, theirs: Facts, mesh: Mesh, film: float) -> bool:
-    """Return whether the areas differ by more than that of a film along all edges of our mesh."""
+    """Return true if the areas differ by more than `film` times the length of all our edges."""
     gap = abs(ours.area - theirs.area) - SUMMING * ours.area
     return gap > 0 and gap > film * _edge_length(mesh)
 

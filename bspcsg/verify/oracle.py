@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class OracleRefusedError(Exception):
-    """manifold3d cannot take the question: an operand is unbounded or was refused."""
+    """manifold3d cannot carry out the program: the result is unbounded or an operand refused."""
 
 
 class OracleFailedError(Exception):

@@ -52,7 +52,7 @@ def count_agreeing(
     ours: Mesh,
     points: Sequence[Point],
 ) -> tuple[int, int]:
-    """Return at how many points our result is right, and at how many that was decided."""
+    """Return at how many points our result is right, and the number of points that were decided."""
     agreeing = settled = 0
     for point in points:
         inside = is_inside(ours, point)
@@ -100,7 +100,7 @@ class Columns:
         self._extents: dict[int, tuple[FloatArray, FloatArray]] = {}
 
     def is_inside(self, point: Point) -> bool | None:
-        """Return whether the winding number is positive; None if every ray grazes an edge."""
+        """Return whether a point's winding number is positive; None if all axis rays meet edges."""
         for axis in range(3):
             winding = self._winding_along(point, axis)
             if winding is not None:
@@ -131,7 +131,7 @@ class Columns:
         return met
 
     def _extent(self, axis: int) -> tuple[FloatArray, FloatArray]:
-        """Return the lowest and the highest coordinate of each triangle along an axis."""
+        """Return the least and the greatest coordinate of each triangle along an axis, (m,)."""
         if axis not in self._extents:
             a, b, c = self._mesh.vertices[:, axis][self._mesh.faces.T]
             lowest, highest = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)

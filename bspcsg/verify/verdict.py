@@ -104,7 +104,7 @@ class CheckReport:
 
     @property
     def ok(self) -> bool:
-        """True if nothing speaks against the result, even if the oracle gave no answer."""
+        """True unless the verdict is `DISAGREE` or `SUBJECT_FAILED`."""
         return self.verdict not in (Verdict.DISAGREE, Verdict.SUBJECT_FAILED)
 
     @property

@@ -482,7 +482,7 @@ def _restored(kind: type[RayCaster], facets: RayTargets, pitch: int) -> RayCaste
 
 
 def hits_of(facets: RayTargets, columns: Any, normals: FloatArray | None = None) -> Hits:
-    """Return the core's columns of hits as `Hits` of the facets (for the package's own modules)."""
+    """Return the core's columns of hits as `Hits` of facets (for the modules of this package)."""
     facet, t, kind, weights, point = columns
     d, missed = facets.dimension, facet < 0
     if normals is None:

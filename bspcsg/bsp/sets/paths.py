@@ -107,7 +107,7 @@ def _without_border(loop: list[_Point], border: Fraction) -> list[BoundaryPath]:
 
 
 def _along(a: _Point, b: _Point, border: Fraction) -> bool:
-    """Say whether an edge lies in the border of a square."""
+    """Return true if an edge lies on the border of the square with half side `border`."""
     return any(abs(p) == border and p == q for p, q in zip(a, b, strict=True))
 
 

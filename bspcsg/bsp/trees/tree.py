@@ -148,7 +148,7 @@ class PartitionTree(Ordered):
     def from_core(
         cls, core: FragmentTree, lenience: tuple[bool, bool], margin: float | None = None
     ) -> "PartitionTree":
-        """Return the `PartitionTree` around a tree of the core (for the package's own modules)."""
+        """Return the tree around an object of the core (for the modules of this package)."""
         tree = cls.__new__(cls)
         tree._set(core, lenience, margin)
         return tree

@@ -98,7 +98,7 @@ class Case:
 
 
 def command_for(files: Sequence[str], *options: str) -> str:
-    """Return a command line, quoted for a shell."""
+    """Return the ``bspcsg crosscheck`` command line for files and options, quoted for a shell."""
     words = ["bspcsg", "crosscheck", *files, *options]
     return " ".join(shlex.quote(word) for word in words)
 

@@ -29,7 +29,7 @@ class CaseMeshes:
 
 
 def packed(operands: Sequence[Mesh], result: Mesh, difference: Mesh | None) -> bytes:
-    """Return the bytes of a `.npz` file: ``a_vertices``, ``a_faces``, ``result_vertices`` …."""
+    """Return meshes as the bytes of a `.npz` file with arrays ``a_vertices``, ``a_faces``, …."""
     named = {chr(ord("a") + number): mesh for number, mesh in enumerate(operands)}
     named["result"], named["difference"] = result, difference or _empty()
     arrays: dict[str, np.ndarray] = {}

@@ -151,7 +151,7 @@ def evaluate(case: Case, settings: EvaluationSettings, keep: bool = False) -> Ca
 
 
 class _Evaluation:
-    """One case on its way to a record."""
+    """The evaluation of one case: computes our result, compares it and makes the record."""
 
     def __init__(self, case: Case, settings: EvaluationSettings, clock: _Clock) -> None:
         self._case, self._settings, self._clock = case, settings, clock

@@ -81,7 +81,7 @@ def _recorded(engine: str, question: Question, asked: Callable[[], EngineAnswer]
 
 
 def crossings_opinion(question: Question, seed: int = 0) -> OracleRecord:
-    """Count how rays from some points cross the operands and our result, in rational arithmetic."""
+    """Return the record of whether exact counts of crossings at points confirm our result."""
     began = time.perf_counter()
     points = _points(question, np.random.default_rng(seed))
     agreeing, settled = count_agreeing(

@@ -128,7 +128,7 @@ class Child:
         return process
 
     def _await_start(self) -> None:
-        """Wait until the process has imported its modules, which no case's time includes."""
+        """Wait until the worker has imported its modules, which no case's time includes."""
         try:
             if not self._lines.get(timeout=_START_TIMEOUT):
                 raise CrashedError(self._buried())
