@@ -154,7 +154,7 @@ def distributions(count: int) -> dict[str, Arrays]:
 
 
 def growing(mesh: Arrays, count: int) -> list[dict[str, Any]]:
-    """Return what rays cost an adaptive tree: the first, the first tenth, the last tenth."""
+    """Return the cost of rays in an adaptive tree: the first ray, first tenth, last tenth."""
     engine = embree(mesh)
     rows = []
     for name, (origins, directions) in distributions(count).items():

@@ -30,7 +30,7 @@ Measure = Callable[[Any], float]
 
 
 class Question(NamedTuple):
-    """The same question to both sides, and a number of each answer that the two should share."""
+    """The same computation for both libraries, and functions of the results that should agree."""
 
     name: str
     asked: tuple[Ask, Ask]

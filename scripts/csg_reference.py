@@ -57,7 +57,7 @@ def tolerance(solid: b.Solid, uses_plane: bool) -> float:
 
 
 def compare(folder: Path, row: dict[str, str]) -> tuple[str, str]:
-    """Return a status ("same", "explained", "DIFFERS", "unsupported", "FAILS") and the details."""
+    """Return a status ("same", "explained", "DIFFERS", "unsupported", "FAILS") and details."""
     start = time.perf_counter()
     try:
         with warnings.catch_warnings():

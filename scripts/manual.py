@@ -330,7 +330,7 @@ def _module(found: Any) -> Any:
 
 
 def _public(module: Any) -> list[str]:
-    """Return what a module exports; without ``__all__``, the functions and classes it defines."""
+    """Return a module's exported names; without ``__all__``, its own functions and classes."""
     if module.exports is not None:
         return sorted(map(str, module.exports), key=str.lower)
     own = [name for name, member in module.members.items() if not member.is_alias]

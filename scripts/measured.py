@@ -112,7 +112,7 @@ _TABLES: dict[str, tuple[str, Callable[[Record], Rows]]] = {
 
 
 def condensed(records: Path, before: Record) -> Record:
-    """Return the table of a release: what is in a folder, and the rest as it was before."""
+    """Return the table of a release from records in a folder; missing ones are as in `before`."""
     found = dict(before)
     for name, (source, rows) in _TABLES.items():
         path = records / f"{source}.json"

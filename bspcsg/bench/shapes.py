@@ -226,7 +226,7 @@ def menger(depth: int) -> tuple[MeshArrays, list[list[MeshArrays]]]:
 
 
 def _squares(u: int, v: int, side: int) -> Iterator[tuple[int, int, int]]:
-    """Yield corner and width of the holes in a square, the middle one first."""
+    """Yield corner and width of the square holes in a Menger sponge's face, the largest first."""
     third = side // 3
     if third == 0:
         return

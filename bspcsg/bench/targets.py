@@ -219,7 +219,7 @@ class SteadySteps:
         return f"last steps ≤ {self.factor:g} × step 1 000"
 
     def reached(self, items: Items) -> Reached:
-        """Compare the target with what was measured."""
+        """Return the largest ratio of the last to the thousandth step, and if it is low enough."""
         windows = [result_of(item, OURS).get("windows") or {} for item in items]
         pairs = [(w["thousandth"], w["last"]) for w in windows if "thousandth" in w]
         if not pairs:

@@ -224,7 +224,7 @@ def exact_point(values: Any, dimension: int, name: str) -> list[Fraction]:
 
 
 def _nearest(value: Fraction, coordinate: Fraction) -> int:
-    """Return the nearest integer; halves go towards the coordinate, or away from zero."""
+    """Return the integer nearest to `value`; ties go towards `coordinate`, else away from zero."""
     low = math.floor(value)
     rest = value - low
     if rest == Fraction(1, 2) and coordinate != value:

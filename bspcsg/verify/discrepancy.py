@@ -72,7 +72,7 @@ def difference_of(
 def measured(
     volume: float, mesh: Mesh, film: float = 0.0
 ) -> tuple[SetDifference, MeshPieces | None]:
-    """Return the size of a difference with this volume and boundary, and its pieces, if any."""
+    """Return the `SetDifference` of a volume with this boundary mesh, and the pieces or None."""
     if len(mesh.faces) == 0 or mesh.area == 0:
         return SetDifference(volume), None
     pieces = MeshPieces.of(mesh, film)

@@ -1,4 +1,4 @@
-"""Values that make no sense, and what functions have to say to them."""
+"""Invalid arguments, and the check that functions refuse them with an error."""
 
 import inspect
 import math
@@ -58,7 +58,7 @@ def calls(row: Row) -> Iterator[tuple[str, str, dict[str, Any]]]:
 
 
 def assert_refused_at_once(name: str, row: Row, taken: Mapping[tuple[str, str], object]) -> None:
-    """Assert that bad values raise errors with a code, soon; `taken` names what takes anything."""
+    """Assert that bad arguments raise errors with a code, soon; `taken` has the exceptions."""
     for parameter, what, arguments in calls(row):
         begun = time.process_time()
         try:
@@ -73,12 +73,12 @@ def assert_refused_at_once(name: str, row: Row, taken: Mapping[tuple[str, str], 
 
 
 def parameters_of(value: Any) -> list[str]:
-    """Return the names of what a function or a method takes."""
+    """Return the names of the parameters of a function or method."""
     return [name for name in inspect.signature(value).parameters if name != "self"]
 
 
 def methods_of(*kinds: type) -> set[str]:
-    """Return the public methods that take something, as ``Kind.name``."""
+    """Return the public methods with parameters of classes, as ``Class.method``."""
     return {
         f"{kind.__name__}.{name}"
         for kind in kinds
