@@ -120,7 +120,7 @@ TOOLS = {
 
 @dataclass(frozen=True)
 class Part:
-    """A part: what it is, why a tool is shorter or missing, and nothing where none is."""
+    """A part of the page "side by side": its title, and a remark on missing or shorter scripts."""
 
     title: str
     remark: str

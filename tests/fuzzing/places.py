@@ -42,7 +42,7 @@ MAX_PLANES = 12
 
 
 class UndecidedError(Exception):
-    """Every ray from a place meets an edge, the place lies on a face, or many planes meet there."""
+    """A place cannot be classified: all rays meet edges, it is on a face, or many planes meet."""
 
 
 class Balls:
@@ -97,7 +97,7 @@ class Surface:
 
 @dataclass(frozen=True)
 class Below:
-    """The points on a plane through three points, and below it: they turn left seen from above."""
+    """The closed half-space below a plane through three points, counterclockwise from above."""
 
     corners: Triangle
 
@@ -205,7 +205,7 @@ def touches(triangle: Triangle, point: Point) -> bool:
 
 
 def sign(value: int, gradient: Point, place: Steps) -> int:
-    """Return the sign of a linear form with a value at the point and this gradient."""
+    """Return the sign at a place of a linear form with this value at the point and gradient."""
     changes = (dot(gradient, step) for step in place)
     found = next((each for each in (value, *changes) if each), 0)
     return (found > 0) - (found < 0)

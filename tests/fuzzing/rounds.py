@@ -120,7 +120,7 @@ def one_scene(seed: int, at: int) -> tuple[list[str], str]:
 
 
 def one_size(seed: int, at: int) -> tuple[list[str], str]:
-    """Judge a scene with large operands; cases of the corpus are small, so a round names it."""
+    """Judge a random scene with large operands; it is named by its round, too large to store."""
     from .sizes import judge_sized, sized_scene
 
     wrong = judge_sized(sized_scene(np.random.default_rng([seed, at])))

@@ -412,7 +412,7 @@ def _triangles(known: Known) -> Sequence[Triangle]:
 
 
 def point_of(rng: Rng, triangle: Triangle) -> Point:
-    """Return a lattice point of a triangle: a corner, or one on an edge or inside, if there is."""
+    """Return a random lattice point of a triangle: a corner, or one on an edge or inside."""
     order = rng.permutation(3).tolist()
     p, q, r = (triangle[k] for k in order)
     if rng.random() < 0.3:

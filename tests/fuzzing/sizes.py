@@ -119,7 +119,7 @@ def far_and_wide(scene: Scene, kernel: Kernel) -> Iterator[str]:
 
 
 def _untouched(scene: Scene, mesh: "b.Mesh") -> Iterator[str]:
-    """Yield which operands' faces are not in the mesh as they were, or are and should not be."""
+    """Yield complaints about faces far from other operands that are changed, lost or left over."""
     there = set(map(_turned, _steps(mesh)))
     operands = [known.triangles for known in scene.known() if isinstance(known, Surface)]
     for k, body in enumerate(scene.bodies):
@@ -352,7 +352,7 @@ def terrain(rng: Rng) -> Part:
 
 
 def scatter(rng: Rng) -> Part:
-    """Return boxes and tetrahedra apart from each other; their number or their faces count."""
+    """Return disjoint boxes or tetrahedra; their or their faces' number is near a threshold."""
     boxes = bool(rng.random() < 0.5)
     count = a_size(rng, 4096)
     if rng.random() < 0.5 or count > 1024:
@@ -379,7 +379,7 @@ def fan(rng: Rng) -> Part:
 
 
 def stairs(rng: Rng) -> Part:
-    """Return stairs: two polygons of many corners, and all faces perpendicular to axes."""
+    """Return stairs whose two side walls have a number of corners near a threshold."""
     steps, step = a_size(rng, MAX_FAN_SIZE), UNIT // 10
     corners = [(0, 0)]
     for k in range(steps):

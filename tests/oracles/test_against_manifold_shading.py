@@ -36,7 +36,7 @@ ROUND = {
 
 
 def columns(made: manifold3d.Manifold) -> tuple[Floats, npt.NDArray[np.int64]]:
-    """Return what Manifold has at its vertices, behind their places, and its triangles."""
+    """Return manifold3d's properties of vertices, after the coordinates, and its triangles."""
     mesh = made.to_mesh64()
     return np.array(mesh.vert_properties), np.array(mesh.tri_verts, dtype=np.int64)
 

@@ -1,4 +1,4 @@
-"""The random scenes, files and scripts of `scripts/fuzz`: a few of each, and what judges them."""
+"""Some of the random scenes, files and scripts of `scripts/fuzz`, and tests of their judges."""
 
 import dataclasses
 import json
@@ -174,7 +174,7 @@ def test_the_same_in_other_words_is_not_the_same_bytes() -> None:
 
 
 class Shifted(Kernel):
-    """A kernel that says the wrong thing about unions."""
+    """A wrong kernel that classifies points of unions wrongly."""
 
     def classify(self, solid: "b.Solid", points: object) -> list[int]:
         found = super().classify(solid, points)  # type: ignore[arg-type]

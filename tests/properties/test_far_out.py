@@ -1,4 +1,4 @@
-"""Solids at the ends of the lattice, where doubles are as coarse as it, are those at the origin."""
+"""Solids at the limits of the lattice, where doubles are as coarse, equal those at the origin."""
 
 from random import Random
 
@@ -14,7 +14,7 @@ END = 2**53
 
 
 def triangles(solid: b.Solid) -> list[list[list[float]]]:
-    """Return the corners of each triangle, all in order."""
+    """Return the sorted corners of each triangle, all triangles in order."""
     return sorted(sorted(triangle) for triangle in solid.vertices[solid.faces].tolist())
 
 

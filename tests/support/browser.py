@@ -170,7 +170,7 @@ class Browser:
         )
 
     def run_later(self, script: str) -> Any:
-        """Return what the body of a function gives to its last argument."""
+        """Run the body of an asynchronous JavaScript function, and return its callback's value."""
         return self._running.execute_async_script(script)
 
     def wait(self, condition: str) -> None:

@@ -13,7 +13,7 @@ Entry = Callable[[random.Random], Fraction]
 
 
 def entries(size: int, places: int = 0) -> Entry:
-    """Return a source of decimals below `size` steps of the last place."""
+    """Return a source of random decimals with `places` places, up to `size` units of the last."""
     return lambda rng: Fraction(rng.randint(-size, size), 10**places)
 
 

@@ -61,7 +61,7 @@ def same(one: b.Solid, other: b.Solid) -> bool:
 
 
 def ended(child: int, patience: float = TIMEOUT) -> int:
-    """Wait for a child; return its status as `os.waitpid` has it. Kill it if it is stuck."""
+    """Wait for a child and return its status as `os.waitpid` does; kill it after a time limit."""
     until = time.monotonic() + patience
     while time.monotonic() < until:
         found, status = os.waitpid(child, os.WNOHANG)
@@ -113,7 +113,7 @@ def fork() -> None:
 
 
 def crowd_of_cubes() -> b.Solid:
-    """Return a solid of few faces, of which so many meet in one place that threads share them."""
+    """Return a solid of few faces, of which so many meet at a point that threads share the work."""
     cubes = [b.cube(2, center=True).rotate((31 * k, 17 * k, 7 * k)) for k in range(1, 31)]
     return b.union(*cubes)
 

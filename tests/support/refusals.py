@@ -51,7 +51,7 @@ _SOON = 1.0
 
 
 def calls(row: Row) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    """Yield the parameter, the bad value's name and all arguments."""
+    """Yield for each parameter and each bad value: the parameter, the value's name, arguments."""
     for parameter in row[1]:
         for what, bad in {**NEVER, **AT_TIMES}.items():
             yield parameter, what, {**row[1], parameter: bad}
@@ -90,7 +90,7 @@ def methods_of(*kinds: type) -> set[str]:
 
 
 def missing_parameters(rows: Mapping[str, Row], place: Any, apart: set[str]) -> list[str]:
-    """Return what the rows of functions and methods of a module give no value to."""
+    """Return the parameters of functions and methods for which the rows have no value."""
     given: dict[str, set[str]] = {}
     for name, (_, good) in rows.items():
         given.setdefault(name.split()[0], set()).update(good)

@@ -73,7 +73,7 @@ def words_of_cases(cases: Sequence[Path] = CASES) -> Iterator[tuple[str, str]]:
 def words_of_files(
     folder: Path = MESHES, *, largest: int = MAX_FILE_BYTES
 ) -> Iterator[tuple[str, str]]:
-    """Combine each mesh of a folder with itself, turned, and with the next one, moved there."""
+    """Yield name and hash of each mesh in a folder combined with its copy and with the next one."""
     named = [(path.name, solid) for path, solid in _solids(folder, largest)]
     for (name, solid), (after, other) in zip(named, [*named[1:], *named[:1]], strict=True):
         middle, size = _place(solid)
