@@ -384,7 +384,7 @@ def _described(change: Callable[[dict[str, object]], None]) -> bytes:
 
 
 def _set(path: str, value: object) -> bytes:
-    """Return a GLB with another value at a place of its description, as ``meshes/0/name``."""
+    """Return a GLB file with another value at a path of its JSON, such as ``meshes/0/name``."""
 
     def change(document: dict[str, object]) -> None:
         *outer, last = [int(word) if word.isdecimal() else word for word in path.split("/")]

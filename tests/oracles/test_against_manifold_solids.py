@@ -51,7 +51,7 @@ def connected() -> list[b.Solid]:
 
 
 def summands() -> list[b.Solid]:
-    """Return the same but for the empty set, whose sum with another one is that for Manifold."""
+    """Return the ten solids with a tiny cube for the empty set, which manifold3d sums otherwise."""
     return [b.cube(1e-3) if body.is_empty else body for body in bodies()]
 
 

@@ -92,7 +92,7 @@ def moved(case: Case, after: b.Solid, rng: np.random.Generator) -> np.ndarray:
 
 
 def cut(case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """Return points at middles of edges that change sides, and those beyond that do not."""
+    """Return points at middles of edges that must change sides, and points beyond that must not."""
     inward = -case.edges.normals.sum(axis=1)
     away = np.where(case.edges.is_convex, 1, -1) / np.linalg.norm(inward, axis=1)
     inward = inward * away[:, None]

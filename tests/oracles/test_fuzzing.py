@@ -102,7 +102,7 @@ def test_sizes_lie_on_both_sides_of_each_threshold_of_the_core() -> None:
 
 
 class Forgetful(Kernel):
-    """Loses a face far from the tool, or makes another mesh on several threads."""
+    """A wrong kernel that loses a face far from the tool, or differs with several threads."""
 
     def __init__(self, threads: int = 0) -> None:
         self.threads, self.calls = threads, 0

@@ -166,7 +166,7 @@ def test_a_moved_solid_united_with_itself_stays_the_same_set() -> None:
 
 
 def with_t_junctions(rng: Random, solid: "b.Solid") -> "tuple[np.ndarray, np.ndarray]":
-    """Divide edges of some faces, and not of those beyond them, or by a face without area."""
+    """Return a solid's mesh with T-junctions: faces divided on one side of an edge, or flat."""
     mesh = solid.to_mesh()
     vertices, faces = mesh.vertices.tolist(), mesh.faces.tolist()
     for _ in range(rng.integers(1, 6)):

@@ -33,7 +33,7 @@ def lattice_scene() -> Integers:
 
 
 def lattice_rays(scene: Integers, count: int) -> tuple[Integers, Integers]:
-    """Return rays of all kinds: free, aimed at vertices and edges, from vertices, within planes."""
+    """Return random rays: free, through vertices and edges, from vertices, in facets' planes."""
     rng = np.random.default_rng(4)
     origins = rng.integers(-90, 91, (count, 3))
     facets = scene[rng.integers(0, len(scene), count)]
@@ -58,7 +58,7 @@ def lattice_rays(scene: Integers, count: int) -> tuple[Integers, Integers]:
 def crossings(
     origins: Integers, directions: Integers, scene: Integers
 ) -> tuple[Integers, Integers, Flags, Flags]:
-    """Return numerator, denominator > 0, whether each ray meets each facet, and whether within."""
+    """Return numerator and denominator of t, whether each ray hits each facet, and if in-plane."""
     a, b, c = scene[:, 0], scene[:, 1], scene[:, 2]
     normals = np.cross(b - a, c - a)
     below = directions @ normals.T

@@ -1,4 +1,4 @@
-"""Bad input at the Python door: a clear error, or a finding and a right result."""
+"""Invalid input of Python functions leads to a clear error, or to a finding and a right result."""
 
 from collections.abc import Callable
 from fractions import Fraction

@@ -73,7 +73,7 @@ def test_a_tag_gets_the_files_that_were_tried() -> None:
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with a solid in a folder whose name has a space, on whose path bspcsg is."""
+    """Return a git repository with a solid in a folder with a space; bspcsg is on the PATH."""
     folder = tmp_path / "my parts"
     folder.mkdir()
     b.cube(2).save(folder / "cube.stl")

@@ -19,7 +19,7 @@ def triangles(solid: b.Solid) -> list[list[list[float]]]:
 
 
 def far_corner(random: Random) -> list[int]:
-    """Return an offset that keeps coordinates from 0 to 8 on the lattice, mostly hardly so."""
+    """Return an offset that keeps coordinates from 0 to 8 on the lattice, mostly near its end."""
     near_end = END - random.randint(9, 90)
     ends = [
         near_end,

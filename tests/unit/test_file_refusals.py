@@ -20,7 +20,7 @@ DATA = b"".join(io.encoded(RAW, "x.stl", ".stl").chunks)
 
 
 def ignored(polish: Any) -> None:
-    """Be told what polishing did."""
+    """Receive the result of polishing, and ignore it."""
 
 
 #: How scripts are evaluated.

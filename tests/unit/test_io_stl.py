@@ -1,4 +1,4 @@
-"""STL in both forms: detection, exact welding, and what is refused."""
+"""STL in both forms: detection, exact welding, and refusals."""
 
 import struct
 from pathlib import Path
