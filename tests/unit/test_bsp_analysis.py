@@ -16,7 +16,7 @@ FAILURE = 1e-6
 
 
 def hoeffding(width: float, count: int, claims: int = 1) -> float:
-    """Return how far one-sided means may be off, for `claims` of them together, but for FAILURE."""
+    """Return how far `claims` means may exceed their expectations, except with chance FAILURE."""
     return width * math.sqrt(math.log(claims / FAILURE) / (2 * count))
 
 

@@ -1,4 +1,4 @@
-"""The page of others' names: each of ours exists, none of theirs is missing."""
+"""The page that compares names with other libraries: ours exist, and none of theirs is missing."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Files and scripts refuse values that make no sense: with an error that has a code, at once."""
+"""Functions of files and scripts refuse invalid arguments at once, by errors that have a code."""
 
 import inspect
 import warnings
