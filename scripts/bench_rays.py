@@ -138,7 +138,7 @@ def other_questions(mesh: Arrays, case: Case) -> list[dict[str, Any]]:
 
 
 def distributions(count: int) -> dict[str, Arrays]:
-    """Return rays from around a unit sphere: at all of it, at one point, at a moving point."""
+    """Return rays at a unit sphere: spread over it, at one point of it, and at a moving point."""
     rng = np.random.default_rng(2)
     origins = rng.normal(size=(count, 3))
     origins *= 2 / np.linalg.norm(origins, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Run random tests for a time: print how long each target ran, on how much, and its findings.
+"""Run random tests for a given time; print each target's run time, executions and findings.
 
     scripts/fuzz [--minutes N] [--seed S] [TARGET ...]
 

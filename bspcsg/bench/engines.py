@@ -31,7 +31,7 @@ class Engine(ABC):
 
     name: str
 
-    #: True if `counters` returns counters.
+    #: True if the engine has counters of its work.
     counts = False
 
     @abstractmethod

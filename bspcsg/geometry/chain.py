@@ -135,7 +135,7 @@ class FactorChain:
         return _inner(self._head, self._rest)
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the factors that `inner` omits as a lattice motion, or None if they are none."""
+        """Return the factors that `inner` omits as a lattice motion, or None if it is not exact."""
         run = permuting_run(self._head)
         if self._rest is None or len(run) < len(self._head):
             return lattice_motion(run, pitch)
@@ -181,7 +181,7 @@ class FactorBlock:
         self._motions: dict[int, LatticeMotion | None] = {}
 
     def outer_motion(self, pitch: int) -> LatticeMotion | None:
-        """Return the factors that `inner` omits as a lattice motion, or None if they are none."""
+        """Return the factors that `inner` omits as a lattice motion, or None if it is not exact."""
         waiting: list[FactorBlock] = []
         block: FactorBlock | None = self
         while block is not None and pitch not in block._motions:

@@ -58,7 +58,8 @@ __all__ = [
 #: always the sets.
 Depth: TypeAlias = Literal["quick", "full"]
 
-#: The factors of s, u and e in the bounds of the thickness (see the module).
+#: Differences up to STEPS lattice steps plus ULPS distances of neighbouring doubles thick are no
+#: differences; TOLERANCES tolerances of manifold3d more are rounding.
 STEPS, ULPS, TOLERANCES = 2, 8, 4
 
 #: The largest number of pieces of a symmetric difference in which crossings are counted, the

@@ -207,7 +207,7 @@ _JOINED = 1e-6
 
 
 def _places(ends: FloatArray, size: float) -> Any:
-    """Return a number for each end of chains, (n, 2), equal for ends that are to be joined.
+    """Return a group number for each end of chains, (n, 2); ends with one number are joined.
 
     `ends` is (n, 2, 2); `size` is the extent of the drawing.
     """
@@ -233,7 +233,10 @@ def _near(points: FloatArray, step: float) -> Any:
 
 
 def _merged(first: Any, second: Any) -> Any:
-    """Return the coarsest numbers: equal wherever those in the first or second list are equal."""
+    """Return group numbers for points, equal if the points share a group in either list.
+
+    Groups are joined transitively.
+    """
     numbers = first
     while True:
         before = numbers

@@ -138,13 +138,16 @@ def _shares(count: int) -> FloatArray:
 
 
 def _some(which: IndexArray, points: int) -> Iterator[IndexArray]:
-    """Yield parts of `which`, small enough to compute `points` points for each of its curves."""
+    """Yield the curves `which` in batches that compute `points` points on each curve."""
     size = max(1, _POINTS_PER_BATCH // points)
     return (which[start : start + size] for start in range(0, len(which), size))
 
 
 def _distance(points: _Points) -> FloatArray:
-    """Return the largest distance of each row of points from its chords, of four points each."""
+    """Return for each curve the largest distance of its points from its chords.
+
+    A row of `points` has four points for each chord.
+    """
     start, end = points[:, :-4:4, None], points[:, 4::4, None]
     offset = points[:, :-1].reshape(len(points), -1, 4)[:, :, 1:] - start
     along = end - start

@@ -331,7 +331,7 @@ def merge(a: Set, b: TreeSet, op: SetOp) -> Set:
 
 
 def partition_tree(tree: ObjectTree, hyperplane: NormalAndOffset) -> ObjectTree:
-    """Return the same set as a tree with this root cut (see `ObjectTree.partitioned`)."""
+    """Return the same set as a tree with `hyperplane` as root cut (`ObjectTree.partitioned`)."""
     return of_kind(ObjectTree, tree, "tree").partitioned(*pairs_of([hyperplane])[0])
 
 

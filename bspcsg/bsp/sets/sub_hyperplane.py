@@ -325,7 +325,7 @@ class SubHyperplane(SetOperators):
     # As a value
 
     def __eq__(self, other: object) -> bool:
-        """Return true if both have the same normal, offset and part."""
+        """Return true if both sub-hyperplanes have the same normal, offset and part."""
         if not isinstance(other, SubHyperplane):
             return NotImplemented
         mine, others = ([*s._normal.tolist(), s._offset] for s in (self, other))

@@ -23,7 +23,7 @@ from ...errors import InvalidMeshError, invalid_parameter
 from ...parameters import at_least
 from .tree import PartitionTree
 
-#: Side of the square of whole numbers in which random segments lie.
+#: The side of the square in which random segments with integer coordinates start.
 _SQUARE = 1 << 24
 
 

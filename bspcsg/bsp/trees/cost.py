@@ -64,7 +64,7 @@ def cost(tree: "PartitionTree", query: Query = "point", margin: float | None = N
 
 @dataclass(frozen=True)
 class Stats:
-    """The numbers of nodes, leaves, fragments and splits of a tree, its depth and its balance.
+    """The numbers of nodes, leaves, fragments and splits of a tree, its depths and its balance.
 
     Parameters
     ----------

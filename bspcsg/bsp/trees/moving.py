@@ -13,7 +13,7 @@ from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.arrays import doubles
 from ...geometry.hyperplane import exact_number
 
-#: The axis in the rows of cuts if the cut is a hyperplane of the tree's own.
+#: The first entry of a row of ``arrays["cut"]`` whose second is an index in `own_hyperplanes`.
 _OWN = -2
 
 #: Lattice coordinates are below this many steps.

@@ -37,7 +37,7 @@ _SIDES: dict[int, Side | None] = {-1: "minus", 0: None, 1: "plus"}
 
 @dataclass(frozen=True)
 class Candidate:
-    """A hyperplane that a policy compared with others before it chose one to divide a region.
+    """A hyperplane that may divide a region, with the figures by which a policy compares it.
 
     Parameters
     ----------
@@ -252,7 +252,7 @@ class RayStep:
 
 @dataclass(frozen=True)
 class RayTrace:
-    """The path of a ray through a tree, up to its first hit.
+    """The path of a ray through a tree, which ends at the first hit.
 
     Parameters
     ----------

@@ -430,7 +430,7 @@ class PartitionTree(Ordered):
         return self.from_core(core, self.lenience, self._margin)
 
     def leaf_form(self) -> LeafForm:
-        """Return the tree in leaf form, in which leaves store at most one fragment."""
+        """Return the tree in leaf form, as in lecture notes: a leaf stores at most one fragment."""
         return leaf_form(self)
 
     def moved(

@@ -1,4 +1,4 @@
-"""What another engine is asked, and its answer."""
+"""`Question` and `EngineAnswer`: an operation for another engine, and the engine's result."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The worker process that evaluates cases: it reads a JSON line and writes a JSON line.
+"""The worker process that evaluates cases: it reads requests and writes answers as JSON lines.
 
 The module `boot` starts it. When its input ends, because the runner has finished or was killed, it
 kills its whole process group.
