@@ -132,7 +132,7 @@ class PairAsBalls(Pair):
         return {}
 
     def proof(self, answer: MeshArrays) -> Evidence:
-        """Compare the volume with that of two balls, whose surfaces are at most `depth` away."""
+        """Compare the volume with the difference of two balls, at most `depth` off the meshes."""
         found = mesh_volume(answer)
         apart = abs(found.value - self.volume)
         # The volume between a mesh and its ball is at most the ball's area times the depth.

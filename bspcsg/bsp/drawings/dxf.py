@@ -222,7 +222,7 @@ def _places(ends: FloatArray, size: float) -> Any:
 
 
 def _near(points: FloatArray, step: float) -> Any:
-    """Return a number for each point, equal for points at most `step` apart in x and in y."""
+    """Return a group number for each point; points at most `step` apart in x and y share it."""
     numbers = np.arange(len(points))
     # Two such points share a cell in at least one of these four grids.
     for shift in ((0, 0), (0, 1), (1, 0), (1, 1)):

@@ -11,7 +11,7 @@ Step = tuple[Spot, Spot]
 
 
 def outlines(polygons: Iterable[list[Spot]]) -> list[list[Spot]]:
-    """Return closed loops whose winding numbers are the sums of those of the polygons.
+    """Return closed loops; their winding number at a point is the sum of the polygons'.
 
     Parameters
     ----------

@@ -178,12 +178,12 @@ class CasterNodes:
 class RayCaster:
     """A set of points, segments or triangles at which rays can be cast, with exact hits.
 
-    Facets are snapped to a lattice, as those of a solid are; facets that degenerate there are never
-    hit. A ray's origin is snapped to the same lattice; its direction is taken as it is, bit by bit
-    (but components more than 2**60 times smaller than the largest are rounded to 2**-113 of it).
-    After that every hit is exact: facets are closed sets, a ray never slips through an edge or a
-    vertex of a closed mesh, and of several facets at one point the first of the input is reported.
-    A ray in the plane of a facet hits it at their first common point.
+    Facets are snapped to a lattice, as those of a solid are; facets without extent on the lattice
+    are never hit. A ray's origin is snapped to the same lattice; its direction is taken as it is,
+    bit by bit (but components more than 2**60 times smaller than the largest are rounded to 2**-113
+    of it). After that every hit is exact: facets are closed sets, a ray never slips through an edge
+    or a vertex of a closed mesh, and of several facets at one point the first of the input is
+    reported. A ray in the plane of a facet hits it at their first common point.
 
     The hierarchy of boxes over the facets grows where rays go. Neither its shape nor the order of
     rays affects a hit. Similar rays are traced in bundles that share their path down the hierarchy.

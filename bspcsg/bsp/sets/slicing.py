@@ -79,7 +79,7 @@ def _region(edges: FloatArray, normal: FloatArray, pitch: int) -> Region:
 
 
 def _product(normal: FloatArray, offset: Scalar, origin: Vector | None) -> Fraction:
-    """Return the plane's offset n·x exactly: the given one, or that of the point `origin`."""
+    """Return the exact offset n·x of the plane: `offset`, or n·x at the point `origin`."""
     if origin is None:
         return exact_number(number(offset, "offset"))
     pairs = zip(normal.tolist(), vector3(origin, "origin").tolist(), strict=True)

@@ -28,7 +28,7 @@ class Fragments:
         In 3D: true if the edge from this corner to the next lies on an edge of the input facet. In
         2D: true if this corner is an end of the input segment.
     flipped : (k,) bool
-        True if the fragment's normal is opposite to that of its node's hyperplane.
+        True if the fragment's normal is opposite to its node's normal.
     """
 
     vertices: FloatArray

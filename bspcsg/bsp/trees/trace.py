@@ -204,7 +204,7 @@ class RayStep:
     kind : {"visit", "test", "leaf"}
         An inner node is visited; a piece in its hyperplane is tested; a leaf is stabbed.
     node : int or None
-        The node's index, for a leaf that of its parent; None if the whole tree is a leaf.
+        The index of the node, or of a leaf's parent; None if the whole tree is a leaf.
     side : {-1, 0, 1}
         Of a visit: the side of the hyperplane on which the ray starts, which is the near child. Of
         a leaf: the side of the node on which it lies.

@@ -120,7 +120,7 @@ def _turned(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> 
 
 
 def _same(first: FloatArray, second: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Leave the copy of the first mesh in place; `shuffled` gives its faces another order."""
+    """Return the identity map for the copy; `shuffled` gives the copy's faces another order."""
     return _rows(np.eye(3), np.zeros(3))
 
 
