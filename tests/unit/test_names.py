@@ -1,4 +1,4 @@
-"""The names of the package are those of `__all__`, one object each, whoever asks for them."""
+"""The names of the package are those of `__all__`, and each is one object."""
 
 import inspect
 import pickle

@@ -1,4 +1,4 @@
-"""The nearest points of boundaries, segments and polygons, in doubles."""
+"""The nearest points of boundaries, segments and polygons to given points, in doubles."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -14,7 +14,7 @@ from .rows import point_rows
 if TYPE_CHECKING:
     from .objects import ObjectTree
 
-#: The number of pairs of a point and a piece that are computed together, which bounds the memory.
+#: The number of pairs of a point and a piece in one array operation, which bounds the memory.
 _PAIRS_PER_BATCH = 1 << 20
 
 
@@ -40,7 +40,7 @@ def _nearest_of(tree: "ObjectTree", points: FloatArray) -> FloatArray:
 
 
 def _nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray:
-    """Return the nearest point on (n, 2, d) segments for each of (k, d) points."""
+    """Return for each of (k, d) points the nearest point on any of (n, 2, d) segments, (k, d)."""
     start = segments[:, 0]
     along = segments[:, 1] - start
     squared = (along**2).sum(axis=1)
@@ -54,7 +54,7 @@ def _nearest_on_segments(points: FloatArray, segments: FloatArray) -> FloatArray
 
 
 def _nearest_on_polygons(points: FloatArray, polygons: Pieces) -> FloatArray:
-    """Return the nearest point on convex polygons in space for each of (k, 3) points."""
+    """Return for each of (k, 3) points the nearest point on any of the convex polygons, (k, 3)."""
     triangles = np.concatenate([_fan(polygons[k]) for k in range(len(polygons))])
 
     def candidates(block: FloatArray) -> FloatArray:
@@ -73,7 +73,11 @@ def _fan(corners: FloatArray) -> FloatArray:
 def _nearest(
     points: FloatArray, pieces: int, candidates: Callable[[FloatArray], FloatArray]
 ) -> FloatArray:
-    """Return the nearest of each point's candidates, block by block."""
+    """Return for each point its nearest candidate, computed in blocks of points.
+
+    ``candidates(block)`` returns one candidate for each pair of a point and a piece, (b, pieces,
+    d).
+    """
     nearest = np.empty_like(points)
     step = max(_PAIRS_PER_BATCH // pieces, 1)
     for start in range(0, len(points), step):

@@ -68,8 +68,9 @@ class Region(FlatSet):
     snapped to steps of ``10**pitch``, at most 2**53 steps from the origin, and everything else is
     exact. Sets are regularised: points and edges without adjacent area vanish. ``==``, ``<=``,
     ``<``, ``in`` and the like compare sets of points exactly, as for `Solid`. Operations use the
-    finest lattice of the operands, or if it does not reach far enough, the finest one that does and
-    that holds all their corners; without one they raise a `LimitError`.
+    finest lattice of the operands, or if its range is too small, the finest lattice with a
+    sufficient range that has all corners of the operands; without such a lattice they raise a
+    `LimitError`.
 
     Parameters
     ----------
@@ -81,7 +82,7 @@ class Region(FlatSet):
         of the polygons; points and lines in collections are ignored.
     winding : {"positive", "nonzero", "even-odd", "negative"}
     pitch : int, optional
-        By default -9, or another if the size requires it.
+        By default -9, or another if the coordinates require it.
 
     Raises
     ------
@@ -124,7 +125,7 @@ class Region(FlatSet):
         Raises
         ------
         InvalidMeshError
-            If they do not close (`where` lists segments).
+            If the segments do not form closed outlines (`where` lists segments).
         """
         refusal = invalid_parameter("Segments are pairs of points, of two numbers each.")
         given = doubles(segments, refusal)
@@ -148,7 +149,7 @@ class Region(FlatSet):
     def rectangle(
         cls, width: Scalar | Vector, height: Scalar | None = None, *, center: bool = False
     ) -> Self:
-        """Return a rectangle with its lowest corner or its middle at the origin.
+        """Return a rectangle with its minimum corner or its centre at the origin.
 
         Give its sides as two numbers or one pair; a single number makes a square.
         """
@@ -161,14 +162,14 @@ class Region(FlatSet):
     def circle(
         cls, r: Scalar | None = None, segments: int = SEGMENTS, *, d: Scalar | None = None
     ) -> Self:
-        """Return a regular polygon with its corners on the circle about the origin.
+        """Return a regular polygon with its corners on a circle about the origin.
 
         Parameters
         ----------
         r, d : float
-            Radius, or diameter instead.
+            The radius of the circle, or its diameter.
         segments : int
-            Sides around, at least 3.
+            The number of sides of the polygon, at least 3.
         """
         size = positive(radius(r, d, "A circle"), "r")
         return cls(unit_circle(sides_around(3, segments, "segments")) * size)
@@ -182,17 +183,18 @@ class Region(FlatSet):
         d: Scalar | None = None,
         flats: Scalar | None = None,
     ) -> Self:
-        """Return a regular polygon about the origin.
+        """Return a regular polygon about the origin, of a radius or of a width across flats.
 
         Parameters
         ----------
         sides : int
-            At least 3.
+            The number of sides, at least 3.
         r, d : float
-            Radius, or diameter, of the circle that its corners are on; the first is on the x axis.
+            The radius or the diameter of the circle through the corners; the first corner is on the
+            x axis.
         flats : float
-            Diameter of the circle that its sides touch, instead: with an even number of sides the
-            width across flats, as of a nut. Then the first side is upright.
+            Instead: the diameter of the inscribed circle, which for an even number of sides is the
+            width across flats, as of a nut. The first side is then parallel to the y axis.
 
         Examples
         --------
@@ -205,7 +207,7 @@ class Region(FlatSet):
             return cls(unit_circle(around) * positive(radius(r, d, "A regular polygon"), "r"))
         if r is not None or d is not None:
             raise invalid_parameter("Give r, d or flats, and only one of them.")
-        # Every other point of twice as many, so that sides lie where they should bit by bit.
+        # Every second point of a circle of twice as many, so that axis-parallel sides are exact.
         corners = unit_circle(2 * around)[1::2]
         return cls(corners * (positive(flats, "flats") / 2 / corners[0, 0]))
 
@@ -223,11 +225,11 @@ class Region(FlatSet):
         Parameters
         ----------
         length : float
-            From end to end, at least twice the radius.
+            The length from end to end, at least twice the radius.
         r, d : float
-            Radius of the ends, or the slot's width instead.
+            The radius of the round ends, or their diameter, which is the slot's width.
         segments : int
-            Sides of a full circle, at least 4; an odd number counts as the next one.
+            The number of sides of a full circle, at least 4; an odd number is increased by one.
 
         Examples
         --------
@@ -242,13 +244,13 @@ class Region(FlatSet):
             )
         steps = -(-sides_around(4, segments, "segments") // 2)
         turned = unit_circle(2 * steps)[: steps + 1]
-        # From the lowest to the highest point of the right end.
+        # The right end's arc, in the order of increasing y.
         end = np.column_stack([turned[:, 1], -turned[:, 0]]) * size + (whole / 2 - size, 0)
         return cls(np.concatenate([end, -end]))
 
     @classmethod
     def polygon(cls, points: Any, *, pitch: int | None = None) -> Self:
-        """Return the region that one outline encloses, for either orientation ("nonzero")."""
+        """Return the region that one outline of either orientation encloses (rule "nonzero")."""
         return cls([points], winding="nonzero", pitch=pitch)
 
     @classmethod
@@ -273,7 +275,7 @@ class Region(FlatSet):
 
     @classmethod
     def compose(cls, regions: Iterable["Region"]) -> "Region":
-        """Return the union of any number of regions, made at once.
+        """Return the union of any number of regions in one operation.
 
         Examples
         --------
@@ -329,7 +331,7 @@ class Region(FlatSet):
         return [outline.points for outline in self.outlines]
 
     def decompose(self) -> list["Region"]:
-        """Return the connected parts, each with its holes; see `components`.
+        """Return the list of connected parts, each with its holes; see `components`.
 
         Examples
         --------
@@ -341,15 +343,15 @@ class Region(FlatSet):
 
     @property
     def components(self) -> tuple["Region", ...]:
-        """The connected parts, in the order of their outlines; touching corners connect nothing.
+        """The connected parts, each with its holes, in the order of their outlines.
 
-        Corners that are no lattice points are rounded to them, so that a part that is thinner than
-        a step may come out empty.
+        Parts that touch only in corners are separate. Corners that are not on the lattice are
+        rounded to it, so that a part thinner than a step may become empty.
         """
         return tuple(Region(loops, pitch=self.pitch) for loops in self._parts())
 
     def _parts(self) -> list[list[FloatArray]]:
-        """Return the outlines of each connected part, the outer one first."""
+        """Return for each connected part its outlines, the outer outline before the holes."""
         parts: dict[int, list[FloatArray]] = {}
         outlines = list(enumerate(self.outlines))
         for k, outline in outlines:
@@ -451,7 +453,7 @@ class Region(FlatSet):
     ) -> "Region":
         """Return the region translated by two numbers, one vector, or along named axes.
 
-        Exact for whole lattice steps.
+        The result is exact for whole lattice steps.
 
         Examples
         --------
@@ -463,7 +465,7 @@ class Region(FlatSet):
         return self._placed(transform.translation([*step, 0.0]))
 
     def rotate(self, angle: Scalar, *, about: Vector = (0, 0)) -> "Region":
-        """Return the region rotated counterclockwise about a point, in degrees.
+        """Return the region rotated counterclockwise by an angle in degrees about a point.
 
         Quarter turns are exact.
         """
@@ -477,9 +479,9 @@ class Region(FlatSet):
         y: Scalar | None = None,
         about: Vector = (0, 0),
     ) -> "Region":
-        """Return the region scaled by one factor, by two, or along named axes.
+        """Return the region scaled by one factor, by two factors, or along named axes.
 
-        The point `about` stays.
+        The point `about` does not move.
         """
         given = () if factor is None else (factor, *others)
         factors = per_axis(given, "scale factor", missing=1.0, x=x, y=y)
@@ -494,9 +496,9 @@ class Region(FlatSet):
         y: Scalar | None = None,
         about: Vector = (0, 0),
     ) -> "Region":
-        """Return the mirror image in the line through the point `about` with this normal.
+        """Return the mirror image across the line through `about` with the given normal.
 
-        The normal is "x", "y", a vector, two numbers, or has the named coordinates.
+        The normal is "x" or "y", a vector, two numbers, or given by the coordinates `x` and `y`.
         """
         given = () if normal is None else (normal, *others)
         across = per_axis(given, "normal", x=x, y=y)
@@ -523,7 +525,7 @@ class Region(FlatSet):
         return self._placed(transform.matrix_factor(wide))
 
     def _placed_about(self, point: Vector, factor: Factor) -> "Region":
-        """Return the image under a factor with a given fixed point instead of the origin."""
+        """Return the image under an affine map applied about a point, not about the origin."""
         x, y = vector2(point, "about")
         placed = self
         for one in reversed(transform.about((x, y, 0.0), (factor,))):
@@ -533,7 +535,8 @@ class Region(FlatSet):
     def _placed(self, factor: Factor) -> "Region":
         motion = transform.lattice_motion((factor,), self.pitch)
         if motion is not None:
-            # A region that leaves this lattice is moved by coordinates to a coarser one.
+            # If the image does not fit the lattice, the code below moves the corners to a coarser
+            # one.
             with suppress(LimitError):
                 return self._moved(list(motion.axes[:2]), list(motion.shift[:2]))
         if self.is_bounded:
@@ -549,7 +552,7 @@ class Region(FlatSet):
         return ~outside._placed(factor)
 
     def _pitch_for(self, loops: Sequence[FloatArray]) -> int | None:
-        """Return the region's own pitch if its lattice holds these points."""
+        """Return the region's own pitch if its lattice has the range of these points, else None."""
         largest = max((float(np.abs(loop).max()) for loop in loops), default=0.0)
         return self.pitch if largest < (2**53 - 1) * 10.0**self.pitch else None
 
@@ -563,20 +566,20 @@ class Region(FlatSet):
         segments: int = SEGMENTS,
         miter_limit: Scalar = 1e6,
     ) -> "Region":
-        """Return the region with its outline moved outwards.
+        """Return the region with its outline moved outwards, or inwards, by a distance.
 
         Parameters
         ----------
         delta : float
             The distance, in model units; inwards if it is negative.
         join : {"round", "miter", "square", "bevel"}
-            The form of corners from which the outline moves away: arcs; the corners where the moved
-            lines meet; corners cut off across, at the distance `delta` from the old one; or cut off
-            from the end of one moved line to the next.
+            The shape at corners from which the outline moves away. "round": an arc; "miter": the
+            corner where the moved edges meet; "square": cut off at the distance `delta` from the
+            old corner; "bevel": cut off from the end of one moved edge to the start of the next.
         segments : int
-            Sides of a full circle, for arcs, at least 3.
+            The number of sides of a full circle, for arcs, at least 3.
         miter_limit : float
-            Mitred corners that reach farther than this multiple of `delta` become square.
+            Mitred corners farther than this multiple of `delta` from the old corner become square.
 
         Raises
         ------
@@ -589,8 +592,8 @@ class Region(FlatSet):
 
         Notes
         -----
-        Corners are rounded to some 2**-40 of the region's size. Arcs and mitred corners are those
-        of OpenSCAD, `segments` being its ``$fn``.
+        Corners are rounded to about 2**-40 of the region's extent. Arcs and mitred corners are
+        those of OpenSCAD, with `segments` as its ``$fn``.
 
         Examples
         --------
@@ -611,23 +614,23 @@ class Region(FlatSet):
         *,
         segments: int = SEGMENTS,
     ) -> "Region":
-        """Return the region with round corners.
+        """Return the region with corners rounded by arcs.
 
         Parameters
         ----------
         r : float
-            Radius of the arcs, in model units.
+            The radius of the arcs, in model units.
         corners : function, optional
-            Takes points, (n, 2), and returns a truth value for each. By default all corners where
-            the outline bends by more than 30 degrees; other corners are never rounded.
+            Takes corners, (n, 2), and returns for each whether to round it. Only corners where the
+            outline bends by more than 30 degrees are rounded; by default all of these.
         segments : int
-            Sides of a full circle, at least 4.
+            The number of sides of a full circle, at least 4.
 
         Raises
         ------
         InvalidParameterError
-            If the edges have no room, or new corners cross another outline; the message names the
-            place.
+            If edges are too short, or new corners cross another outline; the message has the
+            coordinates.
         UnboundedError
             If the region and its complement both reach to infinity.
 
@@ -652,7 +655,7 @@ class Region(FlatSet):
         Parameters
         ----------
         size : float
-            Distance from the corner to the cut, on both edges, in model units.
+            The distance from the corner to the cut along both edges, in model units.
         corners : function, optional
             As for `fillet`.
 
@@ -673,7 +676,7 @@ class Region(FlatSet):
         return chamfer_region(self, size, corners)
 
     def hull(self) -> "Region":
-        """Return the convex hull, exactly.
+        """Return the convex hull of the region, exactly.
 
         Examples
         --------
@@ -686,16 +689,16 @@ class Region(FlatSet):
         return hull_of_region(self)
 
     def simplify(self, tolerance: Scalar) -> "Region":
-        """Return the region with fewer corners.
+        """Return the region with fewer corners, within a tolerance of the old outline.
 
-        Corners that are left stay where they are. Each point of the new outline lies within
-        `tolerance` of the old one, and the other way round but for parts that are thinner: these
-        may vanish, and where outlines come to cross each other their parts are united.
+        The remaining corners do not move. Each point of the new outline lies within `tolerance` of
+        the old outline, and vice versa, except that parts thinner than `tolerance` may vanish.
+        Where new outlines cross, their insides are united.
 
         Parameters
         ----------
         tolerance : float
-            In model units. With 0 the region itself is returned.
+            The largest distance in model units. With 0 the region itself is returned.
 
         Raises
         ------
@@ -715,21 +718,22 @@ class Region(FlatSet):
         return simplify_region(self, tolerance)
 
     def warp(self, function: Callable[[FloatArray], Any]) -> "Region":
-        """Return what the region becomes if each of its corners moves.
+        """Return the region after a function has moved each of its corners.
 
-        Edges stay straight. Inside is what the moved outlines go round, in whichever direction, so
-        that mirror images are right; where a fold covers a part twice, from either side once, it
-        cancels out.
+        Edges stay straight. Inside are the points with a winding number of the moved outlines that
+        is not zero, so that mirror images are correct; a fold that covers a part once in either
+        orientation cancels out.
 
         Parameters
         ----------
         function : callable
-            Takes (n, 2) float64 and returns as many points; it may change the array it gets.
+            Takes all corners, (n, 2) float64, and returns the moved corners, (n, 2); it may change
+            its argument.
 
         Raises
         ------
         InvalidParameterError
-            If what it returns has another shape or is not finite.
+            If the function returns another shape or a number that is not finite.
         UnboundedError
             If the region reaches to infinity.
 
@@ -760,9 +764,9 @@ class Region(FlatSet):
         slices: int | None = None,
         taper: Scalar = 0.0,
     ) -> Solid:
-        """Return what the region sweeps on its way up, nothing if it is empty.
+        """Return the solid that the region sweeps along z, from 0 to the height.
 
-        The parameters are those of `bspcsg.extrude`.
+        The parameters are those of `bspcsg.extrude`; an empty region gives an empty solid.
 
         Examples
         --------
@@ -776,7 +780,7 @@ class Region(FlatSet):
         )
 
     def revolve(self, *, angle: Scalar = 360.0, segments: int = SEGMENTS) -> Solid:
-        """Return what the region sweeps around the z axis, x being the distance from the axis.
+        """Return the solid that the region sweeps around z; x is the distance from the axis.
 
         See `bspcsg.revolve`; empty for an empty region.
         """
@@ -785,19 +789,19 @@ class Region(FlatSet):
     # Files and other libraries
 
     def to_svg(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Write an SVG file (see `bspcsg.bsp.save_svg`)."""
+        """Write the region to an SVG file (see `bspcsg.bsp.save_svg`)."""
         from ..drawings.svg import save_svg
 
         save_svg(self, path, **options)
 
     def to_dxf(self, path: str | os.PathLike[str]) -> None:
-        """Write a DXF file (see `bspcsg.bsp.save_dxf`)."""
+        """Write the region to a DXF file (see `bspcsg.bsp.save_dxf`)."""
         from ..drawings.dxf import save_dxf
 
         save_dxf(self, path)
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
-        """Write a drawing; the suffix chooses SVG or DXF (see `to_svg`, `to_dxf`).
+        """Write the region to an SVG or a DXF file, by the path's suffix (see `to_svg`, `to_dxf`).
 
         Raises
         ------
@@ -821,18 +825,18 @@ class Region(FlatSet):
         show(self)
 
     def to_shapely(self) -> Any:
-        """Return a ``shapely.MultiPolygon``; shapely must be installed."""
+        """Return the region as a ``shapely.MultiPolygon``; shapely must be installed."""
         shapely = interop.optional("shapely", "shapely")
         return shapely.MultiPolygon([(shell, holes) for shell, *holes in self._parts()])
 
     def _repr_svg_(self) -> str | None:
-        """Return a picture for notebooks; None if there is no outline to show."""
+        """Return an SVG picture for notebooks, or None if there is no outline."""
         from ...report.viewer.notebook import region_svg
 
         return region_svg(self)
 
     def _repr_png_(self) -> bytes | None:
-        """Return a picture, for notebooks that show pixels only; None without Pillow, too."""
+        """Return a PNG picture for notebooks, or None if there is no outline or no Pillow."""
         from ...report.viewer.notebook import region_png
 
         return region_png(self)
@@ -840,7 +844,7 @@ class Region(FlatSet):
     # As a value
 
     def __repr__(self) -> str:
-        """Say how large it is, as far as that is cheap."""
+        """Return a text with the numbers of outlines and corners and the area."""
         if self.is_empty or self.is_full:
             return f"Region({'empty' if self.is_empty else 'full'})"
         if not self.is_bounded:
@@ -853,7 +857,7 @@ class Region(FlatSet):
 
 
 def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
-    """Return what a function made of points, if it may be corners."""
+    """Return the corners that a function returned, or raise an error if they are invalid."""
     wrong = invalid_parameter(f"The function must return an array of shape {points.shape}.")
     moved = doubles(given, wrong)
     if moved.shape != points.shape:
@@ -868,7 +872,7 @@ def _moved_corners(points: FloatArray, given: Any) -> FloatArray:
 
 def _built(rows: FloatArray, pitch: int, winding: FillRule) -> CoreTree:
     if isinstance(winding, str) and winding == "negative":
-        # Whatever winds once backwards winds once forwards seen from behind.
+        # Reversed segments have the opposite winding numbers.
         rows, winding = np.ascontiguousarray(rows[:, [2, 3, 0, 1]]), "positive"
     rule = winding_rule(winding)
     with core_errors():
