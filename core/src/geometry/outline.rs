@@ -49,7 +49,7 @@ impl From<OutlineEdge> for BareEdge {
 
 impl BareEdge {
     /// The edges of a polygon, counterclockwise.
-    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+    pub fn edges_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         polygon.edges().map(|(from, to, carrier)| Self {
             from: Arc::clone(from),
             to: Arc::clone(to),
@@ -69,12 +69,12 @@ impl BareEdge {
 
 impl OutlineEdge {
     /// The edges of a polygon, counterclockwise, with the keys of their lines.
-    pub fn all_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
+    pub fn edges_of(polygon: &Polygon) -> impl Iterator<Item = Self> + '_ {
         let lines = lines(
             polygon.edges().map(|e| e.2),
             &PlaneResidues::of(polygon.support()),
         );
-        let bare = BareEdge::all_of(polygon).zip(lines);
+        let bare = BareEdge::edges_of(polygon).zip(lines);
         bare.map(|(edge, line)| edge.keyed(line))
     }
 
@@ -121,7 +121,7 @@ impl Outline {
     /// Return the outline of any edges: overlapping opposite edges cancel, and edges that continue each other
     /// are joined.
     pub fn of(edges: Vec<OutlineEdge>) -> Self {
-        let edges = maximal(edges);
+        let edges = maximal_edges(edges);
         let lines = edges.iter().map(|e| e.line).collect();
         let edges = edges.into_iter().map(BareEdge::from).collect();
         Self { edges, lines }
@@ -175,7 +175,7 @@ pub fn order_along(a: &Arc<Vertex>, b: &Arc<Vertex>, axis: usize) -> Ordering {
 }
 
 /// The maximal edges that remain when opposite ones cancel as in [`cancel`], without spare capacity.
-pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+pub fn maximal_edges(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     if edges.is_sorted_by(|a, b| a.line < b.line) {
         return edges;
     }
@@ -185,7 +185,7 @@ pub fn maximal(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
 }
 
 /// The given edges in their order if none of them cancel or continue each other, else the edges that remain.
-pub fn settled(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
+pub fn cancelled_if_needed(edges: Vec<OutlineEdge>) -> Vec<OutlineEdge> {
     let ends = |e: &OutlineEdge| (Arc::as_ptr(&e.from), Arc::as_ptr(&e.to));
     let mut kept = cancel(edges.clone());
     let given: HashSet<_> = edges.iter().map(ends).collect();
@@ -421,7 +421,7 @@ pub fn pieces(polygon: Polygon, edges: &[BareEdge]) -> Vec<Polygon> {
 /// let floor = Arc::new(Plane::through(a, b, c).expect("not on a line"));
 /// let triangle = Polygon::triangle(&corners, Arc::clone(&floor));
 /// let cut = Arc::new(Plane::through(&[1, 0, 0], &[1, 1, 0], &[1, 0, 1]).expect("a plane"));
-/// let parts = halves(BareEdge::all_of(&triangle).collect(), &floor, &cut);
+/// let parts = halves(BareEdge::edges_of(&triangle).collect(), &floor, &cut);
 /// assert_eq!(parts.map(|edges| edges.len()), [4, 3]);
 /// ```
 pub fn halves(edges: Vec<BareEdge>, support: &Arc<Plane>, cut: &Arc<Plane>) -> [Vec<BareEdge>; 2] {

@@ -254,27 +254,32 @@ impl Expression {
         self.words_of_lines(behind, &mut changes);
         self.words_of_lines(in_front, &mut others);
         changes.iter_mut().zip(&others).for_each(|(c, o)| *c ^= o);
-        let mut asked = vec![0; changes.len()];
-        asked[changes.len() - 1] = changes[changes.len() - 1];
+        let mut owned = vec![0; changes.len()];
+        owned[changes.len() - 1] = changes[changes.len() - 1];
         let mut owners = Vec::new();
         for (i, term) in self.terms.iter().enumerate().rev() {
-            let found = asked[i];
+            let found = owned[i];
             match term {
                 Term::Operand(k) if found != 0 => owners.push((*k, found)),
-                Term::Xor(list) => ask(found, list.iter().rev(), &changes, &mut asked),
-                _ => ask(found, term.arguments().iter(), &changes, &mut asked),
+                Term::Xor(list) => assign_owners(found, list.iter().rev(), &changes, &mut owned),
+                _ => assign_owners(found, term.arguments().iter(), &changes, &mut owned),
             }
         }
         owners
     }
 }
 
-/// Marks for each point (a bit of `places`) the first of `lines` whose value changes there, as the line that
+/// Marks for each point (a bit of `points`) the first of `lines` whose value changes there, as the line that
 /// owns the face.
-fn ask<'a>(places: u64, lines: impl Iterator<Item = &'a u32>, changes: &[u64], asked: &mut [u64]) {
-    let mut open = places;
+fn assign_owners<'a>(
+    points: u64,
+    lines: impl Iterator<Item = &'a u32>,
+    changes: &[u64],
+    owned: &mut [u64],
+) {
+    let mut open = points;
     for line in lines.map(|line| *line as usize) {
-        asked[line] |= open & changes[line];
+        owned[line] |= open & changes[line];
         open &= !changes[line];
     }
 }

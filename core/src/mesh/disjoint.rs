@@ -49,7 +49,7 @@ impl DisjointSets {
         let mut sets = Self::of_one(count);
         spend(triangles.len());
         for corners in triangles {
-            let least = sets.lowest(corners);
+            let least = sets.least_of_corners(corners);
             for v in corners {
                 sets.lower[v.index()] = least;
             }
@@ -57,7 +57,7 @@ impl DisjointSets {
         sets.shorten();
         spend(triangles.len());
         for corners @ [a, b, c] in triangles {
-            let least = sets.lowest(corners);
+            let least = sets.least_of_corners(corners);
             if corners.iter().any(|v| sets.lower[v.index()] != least) {
                 sets.join(a.0, b.0);
                 sets.join(a.0, c.0);
@@ -69,7 +69,7 @@ impl DisjointSets {
 
     /// The least number to which the three vertices of a triangle point.
     #[inline]
-    fn lowest(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
+    fn least_of_corners(&self, [a, b, c]: &[VertexId; 3]) -> u32 {
         let lower = |v: &VertexId| self.lower[v.index()];
         lower(a).min(lower(b)).min(lower(c))
     }

@@ -17,7 +17,7 @@ use crate::extract::rounding::snapping::{
 use crate::geometry::cell::Cell;
 use crate::geometry::edge::LatticeEdge;
 use crate::geometry::line::{LineKey, PlaneResidues};
-use crate::geometry::outline::{settled, BareEdge, OutlineEdge};
+use crate::geometry::outline::{cancelled_if_needed, BareEdge, OutlineEdge};
 use crate::geometry::plane::{Lattice, Plane};
 use crate::geometry::polygon::Carrier;
 use crate::geometry::side::{Half, Orientation, Side};
@@ -481,7 +481,12 @@ impl PartData {
         if !is_balanced(&edges) {
             return Err(bad_snapshot());
         }
-        let part = Part::new(Arc::clone(source), self.face, home, settled(edges));
+        let part = Part::new(
+            Arc::clone(source),
+            self.face,
+            home,
+            cancelled_if_needed(edges),
+        );
         Ok(PartElement {
             part: Arc::new(part),
             orientation: Orientation::turned_around(self.flip),

@@ -82,7 +82,7 @@ fn lies_on_face(part: &Part) -> bool {
         return false;
     }
     let pieces = part.pieces();
-    let bounds = pieces.iter().flat_map(OutlineEdge::all_of);
+    let bounds = pieces.iter().flat_map(OutlineEdge::edges_of);
     let outline = part.outline();
     let reversed = outline.iter().map(OutlineEdge::reversed);
     !pieces.is_empty() && cancel(bounds.chain(reversed).collect()).is_empty()

@@ -13,8 +13,8 @@ use super::share::VolumeShare;
 use crate::arith::Int;
 use crate::geometry::cell::Cell;
 use crate::geometry::flux::fixed::{
-    flux_through_ring, minor, of_cubic_steps, of_vertex, sixfold_flux, through, CoordinateExtent,
-    Fixed, Flux, Ring, Triangle, Walls,
+    flux_through_ring, from_cubic_steps, minor, of_vertex, sixfold_flux, through, CoordinateExtent,
+    Fixed, FixedPolygon, Flux, Triangle, Walls,
 };
 use crate::geometry::flux::trim::{trimmed, TrimmedFlux};
 use crate::geometry::plane::Lattice;
@@ -26,7 +26,7 @@ use crate::mesh::source::{Shape, Source};
 
 /// Return the flux through a branch's boundary, computing only the nodes without a cached share.
 pub fn share(root: &Branch) -> VolumeShare {
-    for branch in unknown(root).into_iter().rev() {
+    for branch in branches_without_share(root).into_iter().rev() {
         match &*branch.node {
             Node::Leaf(_) => {}
             Node::Deferred(leaf) => {
@@ -36,7 +36,10 @@ pub fn share(root: &Branch) -> VolumeShare {
                 halves.share.get_or_make(|| {
                     let mut sum = VolumeShare::NONE;
                     for child in &halves.children {
-                        sum.add(&known(child).unwrap_or(VolumeShare::NONE), child.complement);
+                        sum.add(
+                            &cached_share(child).unwrap_or(VolumeShare::NONE),
+                            child.complement,
+                        );
                     }
                     sum
                 });
@@ -44,13 +47,16 @@ pub fn share(root: &Branch) -> VolumeShare {
         }
     }
     let mut sum = VolumeShare::NONE;
-    sum.add(&known(root).unwrap_or(VolumeShare::NONE), root.complement);
+    sum.add(
+        &cached_share(root).unwrap_or(VolumeShare::NONE),
+        root.complement,
+    );
     sum
 }
 
 /// The cached share of a branch's node, disregarding whether the branch is complemented; `None` if not yet
 /// computed.
-fn known(branch: &Branch) -> Option<VolumeShare> {
+fn cached_share(branch: &Branch) -> Option<VolumeShare> {
     match &*branch.node {
         Node::Leaf(_) => Some(VolumeShare::NONE),
         Node::Deferred(leaf) => leaf.share.get().copied(),
@@ -59,11 +65,11 @@ fn known(branch: &Branch) -> Option<VolumeShare> {
 }
 
 /// The branches under a root without a cached share, each before its children.
-fn unknown(root: &Branch) -> Vec<&Branch> {
+fn branches_without_share(root: &Branch) -> Vec<&Branch> {
     let mut found = Vec::new();
     let mut open = vec![root];
     while let Some(branch) = open.pop() {
-        if known(branch).is_some() {
+        if cached_share(branch).is_some() {
             continue;
         }
         found.push(branch);
@@ -106,7 +112,7 @@ fn leaf_share(leaf: &DeferredLeaf, cell: &Cell) -> VolumeShare {
         poll();
         sum.add_part(&element.part, element.orientation);
     }
-    sum.rest.flux.value += of_cubic_steps(&sum.inside);
+    sum.rest.flux.value += from_cubic_steps(&sum.inside);
     sum.rest
 }
 
@@ -145,7 +151,7 @@ impl Sum {
             return;
         };
         self.rest.open |= polygon.edges().any(|(_, _, carrier)| carrier.is_border());
-        let ring: Ring = polygon.corners().iter().map(|c| of_vertex(&c.at)).collect();
+        let ring: FixedPolygon = polygon.corners().iter().map(|c| of_vertex(&c.at)).collect();
         let error = CoordinateExtent::of(&ring).error(ring.len(), 1, 0.0);
         let value = flux_through_ring(&ring);
         self.rest.flux.add(&Flux { value, error }, orientation);
@@ -190,7 +196,7 @@ fn fan_flux(ends: &[[Fixed; 2]], walls: Option<&Walls>, slope: f64) -> Flux {
     for [from, to] in ends.iter().filter(|e| !e.contains(apex)) {
         poll();
         if let Some(walls) = walls {
-            let mut ring: Ring = [*apex, *from, *to].into_iter().collect();
+            let mut ring: FixedPolygon = [*apex, *from, *to].into_iter().collect();
             rounds = rounds.max(1 + walls.clip(&mut ring));
             value += flux_through_ring(&ring);
         } else {

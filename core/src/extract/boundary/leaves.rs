@@ -71,7 +71,7 @@ impl Piece<'_> {
             Extent::Face(leaf) => {
                 let source = sources.get(self.face.slot());
                 let polygon = source.clip(self.face.id(), &cells[*leaf as usize]);
-                polygon.map_or_else(Vec::new, |p| OutlineEdge::all_of(&p).collect())
+                polygon.map_or_else(Vec::new, |p| OutlineEdge::edges_of(&p).collect())
             }
             Extent::Part(part) => part.outline(),
             Extent::Edges(edges) => std::mem::take(edges),
@@ -450,7 +450,7 @@ fn part_edges(part: &Part, cell: &Cell) -> Vec<OutlineEdge> {
     let clipped = part.pieces().into_iter().filter_map(|p| p.clipped(cell));
     cancel(
         clipped
-            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .flat_map(|p| OutlineEdge::edges_of(&p).collect::<Vec<_>>())
             .collect(),
     )
 }

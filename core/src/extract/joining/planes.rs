@@ -227,7 +227,7 @@ impl Grouping<'_> {
         self.fates[face.face] = Fate::Cut;
         self.rims.outdated(face.slot());
         let polygon = Polygon::triangle(&mesh.corners(face.id()), source.plane(face.id()));
-        let edges = OutlineEdge::all_of(&polygon);
+        let edges = OutlineEdge::edges_of(&polygon);
         let faces = &mut self.groups[group].faces;
         faces.push(face);
         let target = &mut self.groups[group].whole;

@@ -16,7 +16,7 @@ use crate::extract::assemble::assemble_patches;
 use crate::extract::joining::patches::Patches;
 use crate::extract::mesh::{numbers_left, Corner, ExactMesh, Mesh};
 use crate::extract::order::put_in_order;
-use crate::geometry::doubles::digits;
+use crate::geometry::doubles::bit_key;
 use crate::geometry::plane::Lattice;
 use crate::geometry::vertex::Vertex;
 use crate::merge::evaluate::is_simple;
@@ -314,7 +314,7 @@ fn tell_touching(mesh: &mut Mesh, exact: &ExactMesh, sources: &Sources, is_mende
     let is_used = |v: u32| !is_mended || used[v as usize];
     let is_given = |v: u32| match exact.vertices.get(v as usize) {
         Some(Corner::Source(slot, vertex)) => sources.get(*slot).mesh().is_some_and(|source| {
-            digits(&source.doubles[vertex.index()]) == digits(&mesh.vertices[v as usize])
+            bit_key(&source.doubles[vertex.index()]) == bit_key(&mesh.vertices[v as usize])
         }),
         _ => false,
     };

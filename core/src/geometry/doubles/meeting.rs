@@ -138,7 +138,7 @@ impl CommonCorners {
 fn lies_beside(t: &Facing, common: CommonCorners, plane: &Facing) -> bool {
     let corners = t.triangle().iter().enumerate();
     let others = corners.filter(|(i, _)| !common.has(*i));
-    plane.clearly_beside(others.map(|(_, corner)| corner))
+    plane.clearly_on_one_side(others.map(|(_, corner)| corner))
 }
 
 /// Return whether a triangle, projected along an axis, certainly lies on the outer side of an edge of another

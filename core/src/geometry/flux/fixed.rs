@@ -21,7 +21,7 @@ pub const FRACTION_BITS: u32 = 72;
 pub type Fixed = [i128; 3];
 
 /// The corners of a closed polygon, in order.
-pub type Ring = SmallVec<[Fixed; 12]>;
+pub type FixedPolygon = SmallVec<[Fixed; 12]>;
 
 /// Six times the flux of the field (0, 0, z) through a surface, in units of 2^-152 cubic lattice steps, with
 /// a bound on its error.
@@ -180,7 +180,7 @@ impl Walls {
     }
 
     /// Return how far a lattice point lies outside a wall, in half steps; negative for points inside.
-    pub fn beyond(&self, wall: usize, p: &Lattice) -> i64 {
+    pub fn half_steps_outside(&self, wall: usize, p: &Lattice) -> i64 {
         let over = 2 * p[wall / 2] - self.doubled[wall];
         if wall.is_multiple_of(2) {
             -over
@@ -191,7 +191,7 @@ impl Walls {
 
     /// Return how far a point lies outside a wall, in units of 2^-`FRACTION_BITS` steps; negative for points
     /// inside.
-    fn excess(&self, wall: usize, p: &Fixed) -> i128 {
+    fn distance_outside(&self, wall: usize, p: &Fixed) -> i128 {
         let over = p[wall / 2] - self.at[wall];
         if wall.is_multiple_of(2) {
             -over
@@ -202,7 +202,7 @@ impl Walls {
 
     /// Return whether all points lie inside all walls, or on them.
     pub fn contain<'a>(&self, mut points: impl Iterator<Item = &'a Fixed>) -> bool {
-        points.all(|p| (0..6).all(|wall| self.excess(wall, p) <= 0))
+        points.all(|p| (0..6).all(|wall| self.distance_outside(wall, p) <= 0))
     }
 
     /// Return whether a point certainly lies inside all walls; its doubles may be off by a few units in the
@@ -216,10 +216,10 @@ impl Walls {
     }
 
     /// Clips a polygon to the inside of the cell; returns the number of walls that cut it.
-    pub fn clip(&self, ring: &mut Ring) -> u32 {
+    pub fn clip(&self, ring: &mut FixedPolygon) -> u32 {
         let mut cuts = 0;
         for wall in 0..6 {
-            if ring.iter().any(|p| self.excess(wall, p) > 0) {
+            if ring.iter().any(|p| self.distance_outside(wall, p) > 0) {
                 *ring = self.inner(ring, wall);
                 cuts += 1;
             }
@@ -228,11 +228,14 @@ impl Walls {
     }
 
     /// The part of a polygon on the inner side of a wall.
-    fn inner(&self, ring: &Ring, wall: usize) -> Ring {
-        let mut kept = Ring::new();
+    fn inner(&self, ring: &FixedPolygon, wall: usize) -> FixedPolygon {
+        let mut kept = FixedPolygon::new();
         for (i, p) in ring.iter().enumerate() {
             let q = &ring[(i + 1) % ring.len()];
-            let (a, b) = (self.excess(wall, p), self.excess(wall, q));
+            let (a, b) = (
+                self.distance_outside(wall, p),
+                self.distance_outside(wall, q),
+            );
             if a <= 0 {
                 kept.push(*p);
             }
@@ -273,7 +276,7 @@ pub struct Triangle<'a> {
 
 /// A corner of a clipped triangle, and what carries the edge that leaves it: a number below 3 is an edge of
 /// the triangle, by its first corner; 3 + k is wall k.
-type Cut = (Fixed, usize);
+type CarriedCorner = (Fixed, usize);
 
 impl<'a> Triangle<'a> {
     /// A triangle with its normal, whose components may have a common divisor.
@@ -282,12 +285,12 @@ impl<'a> Triangle<'a> {
     }
 
     /// The part of the triangle inside a cell, as corners; `None` if it has no area.
-    pub fn clipped(&self, walls: &Walls) -> Option<Ring> {
-        let mut ring: SmallVec<[Cut; 12]> =
+    pub fn clipped(&self, walls: &Walls) -> Option<FixedPolygon> {
+        let mut ring: SmallVec<[CarriedCorner; 12]> =
             (0..3).map(|i| (of_lattice(&self.corners[i]), i)).collect();
         let mut spare = SmallVec::new();
         for wall in 0..6 {
-            let beyond = |p: &&Lattice| walls.beyond(wall, p) > 0;
+            let beyond = |p: &&Lattice| walls.half_steps_outside(wall, p) > 0;
             match self.corners.iter().filter(beyond).count() {
                 0 => {}
                 3 => return None,
@@ -300,11 +303,20 @@ impl<'a> Triangle<'a> {
         (ring.len() >= 3).then(|| ring.into_iter().map(|c| c.0).collect())
     }
 
-    fn cut(&self, ring: &[Cut], walls: &Walls, wall: usize, kept: &mut SmallVec<[Cut; 12]>) {
+    fn cut(
+        &self,
+        ring: &[CarriedCorner],
+        walls: &Walls,
+        wall: usize,
+        kept: &mut SmallVec<[CarriedCorner; 12]>,
+    ) {
         kept.clear();
         for (i, p) in ring.iter().enumerate() {
             let q = &ring[(i + 1) % ring.len()];
-            let (a, b) = (walls.excess(wall, &p.0), walls.excess(wall, &q.0));
+            let (a, b) = (
+                walls.distance_outside(wall, &p.0),
+                walls.distance_outside(wall, &q.0),
+            );
             if a <= 0 {
                 kept.push((p.0, if a == 0 && b > 0 { 3 + wall } else { p.1 }));
             }
@@ -317,7 +329,7 @@ impl<'a> Triangle<'a> {
 
     /// Return the point in which the edge between two corners of a clipped triangle meets a wall; the ends
     /// lie on different sides.
-    fn crossing(&self, from: &Cut, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
+    fn crossing(&self, from: &CarriedCorner, to: &Fixed, walls: &Walls, wall: usize) -> Fixed {
         let axis = wall / 2;
         let mut at = from.0;
         at[axis] = walls.at[wall];
@@ -384,7 +396,7 @@ pub fn over_limb(number: &Int<6>) -> Int<6> {
 }
 
 /// Six times the flux of (0, 0, z) through a polygon, in units of 2^-[`FLUX_FRACTION_BITS`] cubic steps.
-pub fn flux_through_ring(ring: &Ring) -> Int<6> {
+pub fn flux_through_ring(ring: &FixedPolygon) -> Int<6> {
     let mut sum = Int::ZERO;
     for i in 2..ring.len() {
         sum += through(&ring[0], &ring[i - 1], &ring[i]);
@@ -421,7 +433,7 @@ pub fn minor(corners: &[Lattice; 3], u: usize, v: usize) -> i128 {
 }
 
 /// A whole number of cubic lattice steps in the units of a [`Flux`], 2^-[`FLUX_FRACTION_BITS`] cubic steps.
-pub fn of_cubic_steps(whole: &Int<4>) -> Int<6> {
+pub fn from_cubic_steps(whole: &Int<4>) -> Int<6> {
     let high: Int<4> = whole.mul_i64(1 << (FLUX_FRACTION_BITS - 128));
     let mut limbs = [0; 6];
     limbs[2..].copy_from_slice(high.limbs());
@@ -492,7 +504,7 @@ mod tests {
         [-reach..=reach, -reach..=reach, -reach..=reach]
     }
 
-    fn sixfold(ring: &Ring) -> f64 {
+    fn sixfold(ring: &FixedPolygon) -> f64 {
         flux_through_ring(ring).to_f64() / 2f64.powi(FLUX_FRACTION_BITS.cast_signed())
     }
 
@@ -511,7 +523,7 @@ mod tests {
             let normal = [(1, 2), (2, 0), (0, 1)].map(|(u, v)| minor(&corners, u, v));
             prop_assume!(normal[2] != 0);
             let once = Triangle::new(&corners, normal).clipped(&walls);
-            let mut ring: Ring = corners.iter().map(of_lattice).collect();
+            let mut ring: FixedPolygon = corners.iter().map(of_lattice).collect();
             walls.clip(&mut ring);
             let gap = once.map_or(0.0, |ring| sixfold(&ring)) - sixfold(&ring);
             prop_assert!(gap.abs() < 1e-9, "{} apart", gap);

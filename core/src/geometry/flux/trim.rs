@@ -4,7 +4,7 @@
 //! one corner from the two others: the flux through this corner's part follows from where the wall divides
 //! two edges, without computing new corners.
 
-use super::fixed::{of_cubic_steps, over_limb, sixfold_flux, Flux, Walls, FRACTION_BITS};
+use super::fixed::{from_cubic_steps, over_limb, sixfold_flux, Flux, Walls, FRACTION_BITS};
 use crate::arith::convert::as_double;
 use crate::arith::Int;
 use crate::geometry::axes::each_axis;
@@ -29,7 +29,7 @@ pub enum TrimmedFlux {
 pub fn trimmed(corners: &[Lattice; 3], area: i128, walls: &Walls) -> TrimmedFlux {
     let mut cuts = [None; 6];
     for (wall, cut) in cuts.iter_mut().enumerate() {
-        let beyond = corners.map(|p| walls.beyond(wall, &p));
+        let beyond = corners.map(|p| walls.half_steps_outside(wall, &p));
         match beyond.iter().filter(|b| **b > 0).count() {
             0 => {}
             3 => return TrimmedFlux::Nothing,
@@ -51,7 +51,7 @@ fn flux_inside<'a>(
     area: i128,
     cuts: impl Iterator<Item = &'a [i64; 3]>,
 ) -> Flux {
-    let all = of_cubic_steps(&sixfold_flux(corners));
+    let all = from_cubic_steps(&sixfold_flux(corners));
     let mut rest = Flux {
         value: all,
         error: 0.0,
@@ -162,7 +162,7 @@ mod tests {
             let clipped = Triangle::new(&corners, normal).clipped(&walls);
             let expected = clipped.map_or(Int::ZERO, |ring| flux_through_ring(&ring));
             let flux = match trimmed(&corners, normal[2], &walls) {
-                TrimmedFlux::All => Flux { value: of_cubic_steps(&sixfold_flux(&corners)), error: 0.0 },
+                TrimmedFlux::All => Flux { value: from_cubic_steps(&sixfold_flux(&corners)), error: 0.0 },
                 TrimmedFlux::Part(flux) => flux,
                 TrimmedFlux::Nothing => Flux::ZERO,
                 TrimmedFlux::Undecided => return Ok(()),

@@ -10,14 +10,14 @@ use crate::merge::rule::Rule;
 #[derive(Debug)]
 pub(super) enum KeepRule {
     /// For two operands: a face of one stays by the winding numbers of the other.
-    Pair(Pair),
+    Pair(PairTable),
     /// For a mesh united with itself: a face stays by the mesh's own winding numbers.
     Single(Rule),
 }
 
 /// A table of which faces of two operands stay, and in which orientation.
 #[derive(Debug)]
-pub(super) struct Pair {
+pub(super) struct PairTable {
     /// The orientation in which a face stays, by its operand, by whether its front is inside the other
     /// operand, and by whether its back is. Of coinciding faces of both operands, only one stays.
     of: [[[Option<Orientation>; 2]; 2]; 2],
@@ -25,7 +25,7 @@ pub(super) struct Pair {
     outside: bool,
 }
 
-impl Pair {
+impl PairTable {
     fn of(expression: &Expression) -> Self {
         let mut scratch = Vec::new();
         let mut value = |inside: [bool; 2]| expression.value(|k| inside[k as usize], &mut scratch);
@@ -65,7 +65,7 @@ fn between(in_front: bool, behind: bool) -> Option<Orientation> {
 impl KeepRule {
     /// Makes the rule for an expression over two operands.
     pub(super) fn of(expression: &Expression) -> Self {
-        Self::Pair(Pair::of(expression))
+        Self::Pair(PairTable::of(expression))
     }
 
     /// Returns whether points far outside all meshes are inside the result.
@@ -79,7 +79,7 @@ impl KeepRule {
     /// Returns true if it depends on winding numbers whether a face of this operand stays.
     pub(super) fn is_divided(&self, operand: usize) -> bool {
         match self {
-            Self::Pair(Pair { of, .. }) => {
+            Self::Pair(PairTable { of, .. }) => {
                 let first = of[operand][0][0];
                 of[operand].as_flattened().iter().any(|k| *k != first)
             }

@@ -99,7 +99,7 @@ impl Occupancy {
             for j in y[0]..=y[1] {
                 let met = plane
                     .as_ref()
-                    .map_or(Some(x), |plane| self.met(plane, x, [j, k]));
+                    .map_or(Some(x), |plane| self.cells_met_in_row(plane, x, [j, k]));
                 if let Some(met) = met {
                     self.rows[self.cells * k + j] |= mask(met);
                 }
@@ -110,7 +110,7 @@ impl Occupancy {
     /// Returns the first and the last cell of a row that a plane may meet, between `first` and `last`; `None`
     /// if it meets none. The plane meets a cell only if the cell's centre is no farther from it than a corner
     /// is from the centre, along the normal.
-    fn met(
+    fn cells_met_in_row(
         &self,
         plane: &Plane,
         [first, last]: [usize; 2],

@@ -175,10 +175,10 @@ impl Contacts {
         self.segments.len()
     }
 
-    /// Marks the vertices of the first operand for which `some` is true as reached by other faces.
-    pub(super) fn with_touching_vertices(mut self, some: &[bool]) -> Self {
-        self.touching[0].resize(some.len(), false);
-        for (touches, more) in self.touching[0].iter_mut().zip(some) {
+    /// Marks the vertices of the first operand for which `touching` is true as reached by other faces.
+    pub(super) fn with_touching_vertices(mut self, touching: &[bool]) -> Self {
+        self.touching[0].resize(touching.len(), false);
+        for (touches, more) in self.touching[0].iter_mut().zip(touching) {
             *touches |= more;
         }
         self

@@ -128,7 +128,7 @@ impl Round {
     /// or is a point: otherwise smaller cells may still separate them.
     #[must_use]
     pub fn next_with_empty_sibling(self, cell: &Cell, extent: i64, total: usize) -> Self {
-        let round = if fills(extent, cell) {
+        let round = if fills_half_of(extent, cell) {
             self.next(total)
         } else {
             self
@@ -146,14 +146,14 @@ impl Round {
 
     /// Returns true if the last full round of three halvings left more than `MAX_EIGHTHS_LEFT` eighths of the
     /// elements in one part.
-    pub fn kept_most(&self) -> bool {
+    pub fn separates_badly(&self) -> bool {
         self.stuck
     }
 
     /// Performs the halvings from `cell` to `inner`, which contains all elements, and ends early at a cell in
     /// which halving seems stuck. Returns the last cell and the progress. The cell has `total` elements in a
     /// box whose longest side is `extent`.
-    pub fn inward(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
+    pub fn halved_to(self, cell: Cell, inner: &Cell, extent: i64, total: usize) -> (Cell, Self) {
         let (mut cell, mut round) = (cell, self);
         while let Some(cut) = cell.cut().filter(|_| cell != *inner) {
             round = round.next_with_empty_sibling(&cell, extent, total);
@@ -230,7 +230,7 @@ pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
 
 /// Returns true if a box whose longest side is `extent` spans at least half of the longest side of its cell,
 /// or is a single lattice point.
-pub fn fills(extent: i64, cell: &Cell) -> bool {
+pub fn fills_half_of(extent: i64, cell: &Cell) -> bool {
     extent == 0 || 2 * extent >= longest([*cell.low(), cell.high()])
 }
 
@@ -285,7 +285,7 @@ mod tests {
         let states: States = vec![(0, State::Tree(cuboid([0; 3], [8; 3]).root().clone()))];
         let filled = |low: i64, high: i64| {
             let cell = Cell::around(&[low; 3], &[high; 3]);
-            extent(&cell, &states).is_some_and(|extent| fills(extent, &cell))
+            extent(&cell, &states).is_some_and(|extent| fills_half_of(extent, &cell))
         };
         assert!(filled(0, 15));
         assert!(!filled(0, 63));

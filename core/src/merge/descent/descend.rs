@@ -318,7 +318,7 @@ impl<'a> Descent<'a> {
     ) -> CellResult {
         if let Some(extent) = extent(&cell, &states).filter(|_| round.has_empty_sibling()) {
             let total: usize = states.iter().map(|s| s.1.len_in(&cell)).sum();
-            (inner, round) = round.inward(cell, &inner, extent, total);
+            (inner, round) = round.halved_to(cell, &inner, extent, total);
         }
         let outside = self.value_outside(&cell, &inner, &expression, &states);
         for (_, state) in &mut states {

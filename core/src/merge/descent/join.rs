@@ -219,7 +219,7 @@ impl ListedFace {
             .iter()
             .filter_map(|h| self.source.clip(self.face, &h.0.cell));
         let edges: Vec<OutlineEdge> = clipped
-            .flat_map(|p| OutlineEdge::all_of(&p).collect::<Vec<_>>())
+            .flat_map(|p| OutlineEdge::edges_of(&p).collect::<Vec<_>>())
             .collect();
         if edges.is_empty() {
             ShareInCell::Nothing

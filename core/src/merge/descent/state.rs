@@ -9,7 +9,7 @@ use crate::geometry::cell::{Cell, Cut};
 use crate::geometry::plane::Lattice;
 use crate::geometry::side::Half;
 use crate::merge::lists::bins::Bins;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
 use crate::mesh::tasks::WorkSize;
 use crate::tree::node::{Branch, Node};
 
@@ -174,7 +174,7 @@ impl State {
     pub fn is_orthogonal(&self, sources: &Sources) -> bool {
         match self {
             Self::List(list) => {
-                let flat = |r: &Record| sources.get(r.slot()).is_orthogonal(r.face);
+                let flat = |r: &FaceRecord| sources.get(r.slot()).is_orthogonal(r.face);
                 let part =
                     |p: &PartRecord| p.element.part.source.is_orthogonal(p.element.part.face);
                 list.records.iter().all(flat) && list.parts.iter().all(part)

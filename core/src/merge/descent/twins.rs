@@ -12,7 +12,7 @@ use super::state::{State, States};
 use crate::geometry::plane::Lattice;
 use crate::interrupt::spend;
 use crate::merge::kernels::problem::ListedOperand;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
 use crate::merge::residual::Twin;
 use crate::tree::node::Part;
 
@@ -121,7 +121,7 @@ fn mark(list: &List, sources: &Sources) -> Option<u64> {
 }
 
 /// Returns true if two lists have the same elements in any order; faces are the same if their keys are equal.
-fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool {
+fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&FaceRecord) -> K) -> bool {
     let faces = |list: &List| {
         let mut faces: Vec<K> = list.records.iter().map(&key_of).collect();
         faces.sort_unstable();
@@ -137,7 +137,7 @@ fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&Record) -> K) -> bool 
 
 /// Returns the corners of a face in the order of its orientation, beginning with the least; `None` if it is
 /// not a triangle.
-fn corners(record: &Record, sources: &Sources) -> Option<[Lattice; 3]> {
+fn corners(record: &FaceRecord, sources: &Sources) -> Option<[Lattice; 3]> {
     let mesh = sources.get(record.slot()).mesh()?;
     let [a, b, c] = mesh.corners(record.face);
     let [a, b, c] = if record.orientation().is_opposite() {

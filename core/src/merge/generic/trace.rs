@@ -187,7 +187,7 @@ impl<S: Space> Journal<S> {
         self.steps
     }
 
-    fn note(&mut self, seen: &MergeEvent<S>) -> MergeStep {
+    fn record(&mut self, seen: &MergeEvent<S>) -> MergeStep {
         match seen {
             MergeEvent::Pair { a, b, decision } => MergeStep::Pair {
                 a: self.first_name(a),
@@ -232,7 +232,7 @@ impl<S: Space> Watcher<MergeEvent<S>> for Journal<S> {
     const LISTENS: bool = true;
 
     fn notify(&mut self, event: impl FnOnce() -> MergeEvent<S>) {
-        let step = self.note(&event());
+        let step = self.record(&event());
         self.steps.push(step);
     }
 }

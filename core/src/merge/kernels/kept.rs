@@ -182,10 +182,10 @@ fn outline(run: &[KeptPart], source: &Source, face: FaceId, cell: &Cell) -> Opti
     if let ([single], []) = (&polygons[..], &edges[..]) {
         // No edges of a convex piece cancel.
         if has_inner(single.edges(), source, face, cell) {
-            return Some(BareEdge::all_of(single).collect());
+            return Some(BareEdge::edges_of(single).collect());
         }
     }
-    edges.extend(polygons.iter().flat_map(|p| BareEdge::all_of(p)));
+    edges.extend(polygons.iter().flat_map(|p| BareEdge::edges_of(p)));
     let edges = cancel(OutlineEdge::keyed(edges, &source.plane_residues(face)));
     let whole = is_whole(&edges, source, face, cell);
     (!whole).then(|| edges.into_iter().map(BareEdge::from).collect())

@@ -57,14 +57,14 @@ impl StayingRegion {
 /// Returns the regions of all faces and parts that bound the result. `parts` has the parts with the slots of
 /// their sources, and `polygon` returns the element with a given number.
 pub fn kept(
-    settled: impl Iterator<Item = StayingElement>,
+    elements: impl Iterator<Item = StayingElement>,
     parts: &[(&Arc<Part>, Slot)],
     polygon: impl Fn(usize) -> Option<Polygon>,
 ) -> Vec<KeptPart> {
-    let mut kept = Vec::with_capacity(settled.size_hint().0);
+    let mut kept = Vec::with_capacity(elements.size_hint().0);
     let mut pieces: Vec<[Vec<(usize, StayingRegion)>; 2]> = Vec::new();
     pieces.resize_with(parts.len(), Default::default);
-    for (i, owner, stays) in settled {
+    for (i, owner, stays) in elements {
         poll();
         let sides = stays.into_iter().zip(Orientation::BOTH);
         match owner {
@@ -81,18 +81,16 @@ pub fn kept(
     for (part, sides) in parts.iter().zip(pieces) {
         poll();
         let sides = sides.into_iter().zip(Orientation::BOTH);
-        kept.extend(
-            sides.filter_map(|(pieces, orientation)| {
-                kept_part(*part, pieces, orientation, &polygon)
-            }),
-        );
+        kept.extend(sides.filter_map(|(pieces, orientation)| {
+            kept_from_part(*part, pieces, orientation, &polygon)
+        }));
     }
     kept
 }
 
 /// Returns the part unchanged if all its pieces stay, otherwise the pieces that stay; `None` if there are
 /// none.
-fn kept_part(
+fn kept_from_part(
     (part, slot): (&Arc<Part>, Slot),
     pieces: Vec<(usize, StayingRegion)>,
     orientation: Orientation,
@@ -130,13 +128,13 @@ mod tests {
         let polygon = source
             .clip(FaceId(0), &scene.cell)
             .expect("it is in the cell");
-        let edges = BareEdge::all_of(&polygon).collect();
+        let edges = BareEdge::edges_of(&polygon).collect();
         let part = Arc::new(Part::new(Arc::clone(source), FaceId(0), scene.cell, edges));
         let parts = [(&part, Slot(0))];
         let left = |second: StayingRegion| {
             let of_part = |i: usize, stays| (i, Owner::Part(0), [stays, StayingRegion::Nothing]);
-            let settled = [of_part(0, StayingRegion::All), of_part(1, second)];
-            let kept = kept(settled.into_iter(), &parts, |_| Some(polygon.clone()));
+            let elements = [of_part(0, StayingRegion::All), of_part(1, second)];
+            let kept = kept(elements.into_iter(), &parts, |_| Some(polygon.clone()));
             assemble(kept, 0, false, &scene.cell, &scene.sources)
         };
         let shared = |node: &Node| match node {

@@ -82,7 +82,7 @@ impl Bins {
             return None;
         };
         let runs = runs(leaf)?;
-        let mut window = plan(&runs, &home.cell, leaf.len())?;
+        let mut window = plan_window(&runs, &home.cell, leaf.len())?;
         loop {
             if let Some(bins) = Self::sorted(home, &runs, window, leaf.len()) {
                 return Some(bins);
@@ -95,7 +95,7 @@ impl Bins {
 
     fn sorted(home: &Branch, runs: &[GroupFaces], window: Window, total: usize) -> Option<Self> {
         let sorted = Sorted::new(&window, runs, total);
-        let rows = rows(
+        let rows = cell_element_pairs(
             &window,
             runs,
             &sorted.spans,
@@ -254,12 +254,12 @@ fn find<'a, 'b>(runs: &'a [GroupFaces<'b>], element: u32) -> (&'a GroupFaces<'b>
 impl GroupFaces<'_> {
     /// Returns true if the group has at least as many faces as its mesh has vertices, so that one pass over
     /// all vertices pays.
-    fn is_most(&self) -> bool {
+    fn has_most_vertices(&self) -> bool {
         self.faces.len() >= self.mesh.vertices.len()
     }
 
     fn bounds(&self) -> Option<(Lattice, Lattice)> {
-        if self.is_most() {
+        if self.has_most_vertices() {
             return self.mesh.bounds();
         }
         self.faces
@@ -288,7 +288,7 @@ fn bounds(runs: &[GroupFaces], home: &Cell) -> Option<(Lattice, Lattice)> {
 
 /// Returns the window of the smallest cells with enough faces in each cell and with each face in few enough
 /// cells, on average; `None` if there is none, or if its cells are fewer than `MIN_CELLS`.
-fn plan(runs: &[GroupFaces], home: &Cell, total: usize) -> Option<Window> {
+fn plan_window(runs: &[GroupFaces], home: &Cell, total: usize) -> Option<Window> {
     let (low, high) = bounds(runs, home)?;
     let step = total.div_ceil(FACES_SAMPLED);
     let sample: Vec<(Lattice, Lattice)> = (0..as_number(total))
@@ -331,7 +331,7 @@ impl Sorted {
         for run in runs {
             poll();
             let mesh = run.mesh;
-            if run.is_most() {
+            if run.has_most_vertices() {
                 let codes: Vec<u32> = mesh.vertices.iter().map(|p| window.code(p)).collect();
                 let code = |f: FaceId| {
                     let vertices = mesh.vertices_of(f);
@@ -361,7 +361,7 @@ impl Sorted {
 
 /// Returns the pairs of cell and element for the faces that reach into several cells; `None` if these pairs,
 /// with the lines that the faces may cross, are more than `limit`.
-fn rows(
+fn cell_element_pairs(
     window: &Window,
     runs: &[GroupFaces],
     spans: &[Span],
@@ -432,7 +432,7 @@ fn spread(
 }
 
 /// Sorts entries by cell; returns for each cell the index of its first entry, and the elements of the
-/// entries. `cells` has the only cell of each element, and `rows` the pairs of cell and element of elements
+/// entries. `cells` has the only cell of each element, and `cell_element_pairs` the pairs of cell and element of elements
 /// in several cells.
 fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; window.len() + 2];

@@ -60,7 +60,7 @@ impl Frame {
 
 /// A whole face with its bounding box relative to a cell, rounded outwards.
 #[derive(Clone, Copy, Debug)]
-pub struct Record {
+pub struct FaceRecord {
     low: [i32; 3],
     high: [i32; 3],
     /// The number of the face in its source.
@@ -99,7 +99,7 @@ impl GroupTag {
     }
 }
 
-impl Record {
+impl FaceRecord {
     /// Returns the index of the face's source in the evaluation's table of sources.
     pub fn slot(&self) -> Slot {
         self.tag.slot()
@@ -133,7 +133,7 @@ impl PartRecord {
 pub struct List {
     frame: Frame,
     /// The whole faces that meet the cell.
-    pub records: Vec<Record>,
+    pub records: Vec<FaceRecord>,
     /// The parts of faces that meet the cell.
     pub parts: Vec<PartRecord>,
     /// The operand's winding number at the cell's low corner.
@@ -295,10 +295,11 @@ impl List {
 
     /// Removes the faces that miss the minus half of `cell`, and returns the faces that may meet its plus
     /// half.
-    fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<Record> {
+    fn divide_records(&mut self, cell: &Cell, cut: Cut, sources: &Sources) -> Vec<FaceRecord> {
         let (axis, at) = (cut.axis, self.frame.index(cut.axis, cut.at));
         let halves = Half::BOTH.map(|half| cell.half(cut, half));
-        let missed = |r: &Record, plus: usize| misses(sources.get(r.slot()), r.face, &halves[plus]);
+        let missed =
+            |r: &FaceRecord, plus: usize| misses(sources.get(r.slot()), r.face, &halves[plus]);
         let count = self.records.iter().filter(|r| r.high[axis] >= at).count();
         let mut plus = Vec::with_capacity(count);
         let frame = self.frame;
@@ -420,7 +421,7 @@ fn above(parts: &[PartRecord], axis: usize, at: i32) -> Vec<PartRecord> {
 }
 
 impl Frame {
-    fn record(&self, source: &Source, face: FaceId, tag: GroupTag) -> Record {
+    fn record(&self, source: &Source, face: FaceId, tag: GroupTag) -> FaceRecord {
         let (low, high) = match source.shape() {
             Shape::Mesh(mesh) => {
                 let (low, high) = mesh.face_box(face);
@@ -428,7 +429,7 @@ impl Frame {
             }
             Shape::HalfSpace(_) => ([i32::MIN; 3], [i32::MAX; 3]),
         };
-        Record {
+        FaceRecord {
             low,
             high,
             face,
@@ -448,7 +449,7 @@ impl Frame {
 
     /// Returns true if a face's bounding box is at least as long as `cell` on an axis; such a face may miss a
     /// half of the cell that its box meets.
-    fn is_as_long_as(&self, r: &Record, cell: &Cell) -> bool {
+    fn is_as_long_as(&self, r: &FaceRecord, cell: &Cell) -> bool {
         let size = cell.size();
         (0..3).any(|i| {
             let extent = i64::from(r.high[i]) - i64::from(r.low[i]);

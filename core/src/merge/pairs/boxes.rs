@@ -111,19 +111,19 @@ pub struct HalfOpenBox {
     high: [i32; 3],
 }
 
-/// Calls `meet` for the pairs of elements of different operands whose boxes overlap, and `crowd` for elements
+/// Calls `report` for the pairs of elements of different operands whose boxes overlap, and `crowd` for elements
 /// that halving does not separate, with the space to which their pairs belong. Stops and returns `None` if a
 /// call does.
 pub fn pairs(
     part: ElementsInBox,
-    mut meet: impl FnMut(u32, u32) -> Option<()>,
+    mut report: impl FnMut(u32, u32) -> Option<()>,
     mut crowd: impl FnMut(&[BoxedElement], &HalfOpenBox) -> Option<()>,
 ) -> Option<()> {
     part.halved(MAX_COMPARED, |part| {
         if part.elements.len() <= MAX_COMPARED_UNSEPARATED {
             let half_open_box = part.half_open_box;
             compare_all(&part.elements, &half_open_box, |a, b| {
-                half_open_box.if_owned(a, b, || meet(a.number, b.number))
+                half_open_box.if_pair_belongs(a, b, || report(a.number, b.number))
             })
         } else {
             crowd(&part.elements, &part.half_open_box)
@@ -131,16 +131,16 @@ pub fn pairs(
     })
 }
 
-/// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the earlier operand
-/// first. Compares all with all; stops and returns `None` if `meet` does.
+/// Calls `report` for all pairs of elements of different operands whose boxes overlap, the earlier operand
+/// first. Compares all with all; stops and returns `None` if `report` does.
 pub fn compare_all(
     elements: &[BoxedElement],
     half_open_box: &HalfOpenBox,
-    mut meet: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
+    mut report: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let operands = elements.chunk_by(|a, b| a.operand == b.operand).count();
     if 2 * operands > elements.len() {
-        return compare_in_order(elements, half_open_box, meet);
+        return compare_in_order(elements, half_open_box, report);
     }
     let lanes = Lanes::of(elements);
     let mut end = 0;
@@ -153,7 +153,7 @@ pub fn compare_all(
             Lanes::each_overlapping(&lanes, end, one, |at| {
                 let other = &elements[at];
                 if goes_on.is_some() {
-                    goes_on = meet(one, other);
+                    goes_on = report(one, other);
                 }
             });
             goes_on?;
@@ -162,13 +162,13 @@ pub fn compare_all(
     Some(())
 }
 
-/// Calls `meet` for all pairs of elements of different operands whose boxes overlap, the lower number first,
+/// Calls `report` for all pairs of elements of different operands whose boxes overlap, the lower number first,
 /// where most operands have a single element. Sorts the boxes along the axis on which they overlap least, and
 /// compares only those that overlap there.
 fn compare_in_order(
     elements: &[BoxedElement],
     half_open_box: &HalfOpenBox,
-    mut meet: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
+    mut report: impl FnMut(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let axis = half_open_box.sparsest(elements);
     let sorted = sorted_along(axis, elements);
@@ -186,7 +186,7 @@ fn compare_in_order(
                 } else {
                     (other, one)
                 };
-                goes_on = meet(a, b);
+                goes_on = report(a, b);
             }
         });
         goes_on?;
@@ -202,18 +202,18 @@ fn sorted_along(axis: usize, elements: &[BoxedElement]) -> Vec<BoxedElement> {
     order.into_iter().map(|(_, at)| elements[at]).collect()
 }
 
-/// Calls `meet` for each element of the first group and each of the second whose boxes overlap; compares all
+/// Calls `report` for each element of the first group and each of the second whose boxes overlap; compares all
 /// with all.
 pub fn compare_groups(
     first: &[BoxedElement],
     second: &[BoxedElement],
-    meet: impl Fn(&BoxedElement, &BoxedElement),
+    report: impl Fn(&BoxedElement, &BoxedElement),
 ) {
     let lanes = Lanes::of(second);
     for one in first {
         spend(1 + second.len() / PAIRS_PER_UNIT);
         Lanes::each_overlapping(&lanes, 0, one, |at| {
-            meet(one, &second[at]);
+            report(one, &second[at]);
         });
     }
 }
@@ -227,10 +227,10 @@ impl Lanes {
 
     /// Packs the boxes of elements in order; empty boxes fill the last pack.
     fn of(elements: &[BoxedElement]) -> Vec<Self> {
-        elements.chunks(LANES).map(Self::of_few).collect()
+        elements.chunks(LANES).map(Self::packed).collect()
     }
 
-    fn of_few(elements: &[BoxedElement]) -> Self {
+    fn packed(elements: &[BoxedElement]) -> Self {
         let mut lanes = Self::EMPTY;
         for (lane, e) in elements.iter().enumerate() {
             for i in 0..3 {
@@ -317,23 +317,23 @@ impl HalfOpenBox {
         [below, above]
     }
 
-    /// Calls `meet` if the pair of elements belongs to this space, and returns its result; otherwise returns
+    /// Calls `report` if the pair of elements belongs to this space, and returns its result; otherwise returns
     /// `Some(())`.
-    pub fn if_owned(
+    pub fn if_pair_belongs(
         &self,
         a: &BoxedElement,
         b: &BoxedElement,
-        meet: impl FnOnce() -> Option<()>,
+        report: impl FnOnce() -> Option<()>,
     ) -> Option<()> {
-        if self.owns(a, b) {
-            meet()
+        if self.pair_belongs(a, b) {
+            report()
         } else {
             Some(())
         }
     }
 
     /// Returns true if the low corner of the intersection of two elements' boxes lies in this space.
-    pub fn owns(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
+    pub fn pair_belongs(&self, a: &BoxedElement, b: &BoxedElement) -> bool {
         (0..3).all(|i| {
             let corner = a.low[i].max(b.low[i]);
             self.low[i] < corner && corner <= self.high[i]
@@ -342,7 +342,7 @@ impl HalfOpenBox {
 }
 
 /// Returns the elements sorted by number, without repetition.
-pub fn each_once(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
+pub fn without_repetition(mut elements: Vec<BoxedElement>) -> Vec<BoxedElement> {
     elements.sort_unstable_by_key(|e| e.number);
     elements.dedup_by_key(|e| e.number);
     elements
@@ -383,7 +383,7 @@ impl ElementsInBox {
             Some(())
         });
         if !crowded.is_empty() {
-            parts.push(Self::of(each_once(crowded), shift));
+            parts.push(Self::of(without_repetition(crowded), shift));
         }
         parts
     }

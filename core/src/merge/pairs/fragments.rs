@@ -58,7 +58,7 @@ struct Division {
 
 impl Division {
     /// Returns the sum of the numbers of pairs on both sides.
-    fn left(&self) -> f64 {
+    fn remaining_pairs(&self) -> f64 {
         self.pairs[0] + self.pairs[1]
     }
 }
@@ -104,8 +104,8 @@ impl Crowd {
     /// Divides a cell at the candidate coordinate that leaves the fewest pairs, and clips the fragments;
     /// `None` if dividing does not pay.
     fn divide(&self, whole: &Fragments) -> Option<[Fragments; 2]> {
-        let places = (0..3).flat_map(|axis| whole.divisions(axis));
-        let best = places.min_by(|a, b| a.left().total_cmp(&b.left()))?;
+        let candidates = (0..3).flat_map(|axis| whole.divisions(axis));
+        let best = candidates.min_by(|a, b| a.remaining_pairs().total_cmp(&b.remaining_pairs()))?;
         let Division { axis, at, .. } = best;
         let fragment = |e: &BoxedElement, half_open_box: &HalfOpenBox| {
             let crosses = e.is_below(axis, at) && e.is_above(axis, at);
@@ -160,11 +160,11 @@ impl Fragments {
     /// cell; `None` if the cell must not be divided there.
     fn patience_after(&self, division: &Division) -> Option<[u32; 2]> {
         let before = self.pairs();
-        if division.left() <= MAX_SHARE_OF_PAIRS * before {
+        if division.remaining_pairs() <= MAX_SHARE_OF_PAIRS * before {
             return Some([MAX_VAIN_DIVISIONS; 2]);
         }
         let difference = self.patience.checked_sub(1);
-        let difference = difference.filter(|_| division.left() <= before)?;
+        let difference = difference.filter(|_| division.remaining_pairs() <= before)?;
         let of_part = |own: f64| {
             if 2.0 * own <= before {
                 MAX_VAIN_DIVISIONS
@@ -226,9 +226,9 @@ struct Tally {
 
 impl Tally {
     /// Adds the elements of one operand, given the index of the candidate at which each begins.
-    fn add(&mut self, places: impl Iterator<Item = usize>) {
+    fn add(&mut self, candidates: impl Iterator<Item = usize>) {
         let mut own = [0.0; INTERVALS_PER_AXIS + 1];
-        places.for_each(|place| own[place] += 1.0);
+        candidates.for_each(|place| own[place] += 1.0);
         let mut before = 0.0;
         for (k, more) in own.into_iter().enumerate() {
             self.more[k] += more;

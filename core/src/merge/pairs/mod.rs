@@ -16,7 +16,7 @@ mod view;
 use std::cell::{Cell, RefCell};
 
 use crate::geometry::plane::Lattice;
-use boxes::each_once;
+use boxes::without_repetition;
 pub use boxes::{shift_of, BoxedElement, ElementsInBox};
 use divide::{divided, Groups};
 use fragments::{Crowd, Fragments};
@@ -37,18 +37,18 @@ pub struct SweptElement {
     pub corners: Option<[[f64; 3]; 3]>,
 }
 
-/// Calls `meet` for all pairs of elements of different operands that may meet, the lower number first.
-/// Returns `None` if `meet` does, if too many elements overlap along every line, or if elements of different
+/// Calls `report` for all pairs of elements of different operands that may meet, the lower number first.
+/// Returns `None` if `report` does, if too many elements overlap along every line, or if elements of different
 /// operands in a crowd share a corner.
 ///
 /// Elements must be grouped by operand; `swept` returns the element with a number.
 pub fn pairs(
     elements: Vec<BoxedElement>,
     swept: impl Fn(u32) -> SweptElement,
-    meet: impl FnMut(u32, u32) -> Option<()>,
+    report: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
-    let meet = RefCell::new(meet);
-    let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
+    let report = RefCell::new(report);
+    let found = |i: u32, j: u32| (report.borrow_mut())(i, j);
     boxes::pairs(
         ElementsInBox::of(elements, 0),
         found,
@@ -60,7 +60,7 @@ pub fn pairs(
             let goes_on = Cell::new(true);
             sweep::pairs(&some, |i, j| {
                 let (a, b) = (&crowd[i], &crowd[j]);
-                if goes_on.get() && half_open_box.owns(a, b) {
+                if goes_on.get() && half_open_box.pair_belongs(a, b) {
                     goes_on.set(found(a.number, b.number).is_some());
                 }
             })?;
@@ -69,10 +69,10 @@ pub fn pairs(
     )
 }
 
-/// Calls `meet` for all pairs of elements of different operands that may meet, where many operands have few
-/// elements each. Returns `None` only if `meet` does.
+/// Calls `report` for all pairs of elements of different operands that may meet, where many operands have few
+/// elements each. Returns `None` only if `report` does.
 ///
-/// `meet` may be called several times for a pair.
+/// `report` may be called several times for a pair.
 ///
 /// # Cost
 /// Elements that halving does not separate are clipped to smaller cells as long as these separate them. The
@@ -102,10 +102,10 @@ pub fn pairs(
 pub fn pairs_of_many(
     part: ElementsInBox,
     swept: impl Fn(u32) -> SweptElement,
-    meet: impl FnMut(u32, u32) -> Option<()>,
+    report: impl FnMut(u32, u32) -> Option<()>,
 ) -> Option<()> {
-    let meet = RefCell::new(meet);
-    let found = |i: u32, j: u32| (meet.borrow_mut())(i, j);
+    let report = RefCell::new(report);
+    let found = |i: u32, j: u32| (report.borrow_mut())(i, j);
     let shift = part.shift();
     let mut crowded = Vec::new();
     boxes::pairs(part, found, |crowd, _| {
@@ -114,14 +114,14 @@ pub fn pairs_of_many(
     })?;
     // Fragments of two elements may meet elsewhere than at the low corner of the boxes' intersection, so all
     // crowds are searched together.
-    let crowded = each_once(crowded);
+    let crowded = without_repetition(crowded);
     let all: Vec<SweptElement> = crowded.iter().map(|e| swept(e.number)).collect();
-    let meet = |a: &BoxedElement, b: &BoxedElement| {
+    let report = |a: &BoxedElement, b: &BoxedElement| {
         let [a, b] = [a, b].map(|e| crowded[e.number as usize].number);
         found(a, b)
     };
     let mut cells = Crowd::of(&crowded, &all, shift);
-    cells.try_for_each(|cell| compare(cell, |e| swept_as(e, &all, shift), meet))
+    cells.try_for_each(|cell| compare(cell, |e| swept_as(e, &all, shift), report))
 }
 
 /// Returns the fragment of an element, clipped to a cell, as an element for a sweep; `shift` bits were
@@ -135,12 +135,12 @@ fn swept_as(fragment: &BoxedElement, all: &[SweptElement], shift: u32) -> SweptE
     }
 }
 
-/// Calls `meet` for the pairs of fragments of different operands in a cell that may meet; stops and returns
-/// `None` if `meet` does.
+/// Calls `report` for the pairs of fragments of different operands in a cell that may meet; stops and returns
+/// `None` if `report` does.
 fn compare(
     cell: Fragments,
     swept: impl Fn(&BoxedElement) -> SweptElement,
-    meet: impl Fn(&BoxedElement, &BoxedElement) -> Option<()>,
+    report: impl Fn(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let mut open = vec![cell.elements];
     while let Some(crowd) = open.pop() {
@@ -148,26 +148,26 @@ fn compare(
             (crowd.len() > boxes::MAX_COMPARED_UNSEPARATED).then(|| divided(&crowd, &swept));
         if let Some(Groups { elements, middle }) = groups.flatten() {
             let (first, second) = elements.split_at(middle);
-            sweep_groups((first, second), &swept, &meet)?;
+            sweep_groups((first, second), &swept, &report)?;
             open.extend([first.to_vec(), second.to_vec()]);
         } else {
-            boxes::compare_all(&crowd, &cell.half_open_box, &meet)?;
+            boxes::compare_all(&crowd, &cell.half_open_box, &report)?;
         }
     }
     Some(())
 }
 
-/// Calls `meet` for the pairs of an element of the first group and one of the second that may meet; stops and
-/// returns `None` if `meet` does.
+/// Calls `report` for the pairs of an element of the first group and one of the second that may meet; stops and
+/// returns `None` if `report` does.
 fn sweep_groups(
     (first, second): (&[BoxedElement], &[BoxedElement]),
     swept: &impl Fn(&BoxedElement) -> SweptElement,
-    meet: &impl Fn(&BoxedElement, &BoxedElement) -> Option<()>,
+    report: &impl Fn(&BoxedElement, &BoxedElement) -> Option<()>,
 ) -> Option<()> {
     let goes_on = Cell::new(true);
-    let meet = |a: &BoxedElement, b: &BoxedElement| {
+    let report = |a: &BoxedElement, b: &BoxedElement| {
         if goes_on.get() {
-            goes_on.set(meet(a, b).is_some());
+            goes_on.set(report(a, b).is_some());
         }
     };
     let of = |operand: usize| {
@@ -182,9 +182,9 @@ fn sweep_groups(
         .chain(second.iter().map(of(1)))
         .collect();
     let element = |i: usize| first.get(i).unwrap_or_else(|| &second[i - first.len()]);
-    let done = sweep::pairs(&some, |i, j| meet(element(i), element(j)));
+    let done = sweep::pairs(&some, |i, j| report(element(i), element(j)));
     if done.is_none() {
-        boxes::compare_groups(first, second, meet);
+        boxes::compare_groups(first, second, report);
     }
     goes_on.get().then_some(())
 }
@@ -329,13 +329,13 @@ mod tests {
 
     /// Returns true if all pairs of triangles of different operands that cross are in `found`.
     fn holds_all(scene: &Scene, found: &HashSet<(usize, usize)>) -> bool {
-        let meet = |i: usize, j: usize| {
+        let report = |i: usize, j: usize| {
             let (a, b) = (&scene.triangles[i], &scene.triangles[j]);
             a.0 != b.0 && (pierces(&a.1, &b.1) || pierces(&b.1, &a.1))
         };
         let rows = 0..scene.triangles.len();
         let mut all = rows.flat_map(|i| (i + 1..scene.triangles.len()).map(move |j| (i, j)));
-        all.all(|(i, j)| found.contains(&(i, j)) || !meet(i, j))
+        all.all(|(i, j)| found.contains(&(i, j)) || !report(i, j))
     }
 
     /// The lateral triangles of a cone over a polygon with `sides` corners.

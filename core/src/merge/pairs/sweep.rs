@@ -21,10 +21,10 @@ const MAX_PAIRS_SWEPT: f64 = 3e8;
 /// The number of pairs of extents compared per unit of work, after which the program checks whether to stop.
 const PAIRS_PER_UNIT: usize = 16;
 
-/// Calls `meet` for all pairs of elements of different operands whose extents overlap along every line, the
+/// Calls `report` for all pairs of elements of different operands whose extents overlap along every line, the
 /// lower index first. Returns `None`, before any call, if more than `MAX_PAIRS_SWEPT` pairs would be
 /// compared.
-pub fn pairs(elements: &[SweptElement], mut meet: impl FnMut(usize, usize)) -> Option<()> {
+pub fn pairs(elements: &[SweptElement], mut report: impl FnMut(usize, usize)) -> Option<()> {
     let groups = groups_by_length(elements);
     let sweeps = each(WorkSize::Task, groups.iter().collect(), |numbers| {
         Sweep::of(elements, numbers)
@@ -33,7 +33,7 @@ pub fn pairs(elements: &[SweptElement], mut meet: impl FnMut(usize, usize)) -> O
         return None;
     }
     let found = each(WorkSize::Task, sweeps.iter().collect(), Sweep::run);
-    found.into_iter().flatten().for_each(|(i, j)| meet(i, j));
+    found.into_iter().flatten().for_each(|(i, j)| report(i, j));
     Some(())
 }
 
@@ -136,11 +136,11 @@ impl Sweep {
     /// Returns the pairs of elements of different operands that may meet, the lower index first.
     fn run(&self) -> Vec<(usize, usize)> {
         let mut found = Vec::new();
-        let mut meet = |i: usize, j: usize| found.push((i.min(j), i.max(j)));
+        let mut report = |i: usize, j: usize| found.push((i.min(j), i.max(j)));
         for (k, sorted) in self.operands.iter().enumerate() {
             for other in &self.operands[k + 1..] {
-                sorted.report_pairs_after(other, true, &mut meet);
-                other.report_pairs_after(sorted, false, &mut meet);
+                sorted.report_pairs_after(other, true, &mut report);
+                other.report_pairs_after(sorted, false, &mut report);
             }
         }
         found
@@ -148,9 +148,9 @@ impl Sweep {
 }
 
 impl SortedElements {
-    /// Calls `meet` for each element and those overlapping elements of `other` that begin after it along the
+    /// Calls `report` for each element and those overlapping elements of `other` that begin after it along the
     /// best line, or also at the same coordinate if `level` is true.
-    fn report_pairs_after(&self, other: &Self, level: bool, meet: &mut impl FnMut(usize, usize)) {
+    fn report_pairs_after(&self, other: &Self, level: bool, report: &mut impl FnMut(usize, usize)) {
         let mut start = 0;
         for (at, [low, high]) in self.first.iter().enumerate() {
             let before = |span: &Span| span[0] < *low || !level && span[0] <= *low;
@@ -160,7 +160,7 @@ impl SortedElements {
             let [low, high] = self.second[at];
             for (next, span) in (start..end).zip(&other.second[start..end]) {
                 if span[0] <= high && span[1] >= low && self.may_meet(at, other, next) {
-                    meet(self.numbers[at], other.numbers[next]);
+                    report(self.numbers[at], other.numbers[next]);
                 }
             }
         }

@@ -8,7 +8,7 @@ use super::anchors::{Anchor, PointNames};
 use super::contact::{contact, Contact};
 use super::points::Points;
 use super::scene::{Element, Scene};
-use super::segment::{Crossed, Crosser};
+use super::segment::{CrossedElement, CrossingFace};
 use super::trace::Trace;
 use crate::arith::convert::as_number;
 use crate::geometry::apart::{are_apart, NearTriangle};
@@ -34,7 +34,7 @@ pub(super) enum CutStatus {
     /// share).
     Uncut(Vec<Anchor>),
     /// The element was divided.
-    Cut(Box<Cut>),
+    Cut(Box<CutElement>),
 }
 
 /// The crossing points and the names of corners that all elements share.
@@ -50,11 +50,11 @@ enum NearElements<'a> {
     /// The element does not meet the cell.
     Absent,
     /// The part of the element inside the cell, and the faces that may cross it, perhaps none.
-    Near(Box<Polygon>, Vec<Crosser<'a>>),
+    Near(Box<Polygon>, Vec<CrossingFace<'a>>),
 }
 
 /// An element that was divided.
-pub(super) struct Cut {
+pub(super) struct CutElement {
     /// The part of the element inside the cell.
     pub(super) polygon: Polygon,
     pub(super) trace: Trace,
@@ -76,8 +76,8 @@ impl Scene<'_> {
         let status = |(i, near)| match near {
             NearElements::Apart => self.status_apart(i, &mut shared),
             NearElements::Absent => Some(CutStatus::Absent),
-            NearElements::Near(polygon, crossers) => {
-                self.status_of(i, *polygon, &crossers, &mut shared)
+            NearElements::Near(polygon, crossing_faces) => {
+                self.status_of(i, *polygon, &crossing_faces, &mut shared)
             }
         };
         all_near.map(status).collect()
@@ -92,8 +92,8 @@ impl Scene<'_> {
         let Some(polygon) = self.elements[i].polygon_in(self.cell) else {
             return Some(NearElements::Absent);
         };
-        let crossers = self.crossers(&polygon, neighbours)?;
-        Some(NearElements::Near(Box::new(polygon), crossers))
+        let crossing_faces = self.crossing_faces(&polygon, neighbours)?;
+        Some(NearElements::Near(Box::new(polygon), crossing_faces))
     }
 
     /// Returns the cut status of an element that no other operand is near.
@@ -153,7 +153,7 @@ impl Scene<'_> {
         &self,
         i: usize,
         polygon: Polygon,
-        crossers: &[Crosser],
+        crossing_faces: &[CrossingFace],
         shared: &mut SharedNames,
     ) -> Option<CutStatus> {
         let element = &self.elements[i];
@@ -161,15 +161,15 @@ impl Scene<'_> {
         if anchors.is_empty() {
             anchors = element.anchors_at_walls(&polygon, &mut shared.names);
         }
-        if !anchors.is_empty() && crossers.is_empty() {
+        if !anchors.is_empty() && crossing_faces.is_empty() {
             return Some(CutStatus::Uncut(anchors));
         }
-        let crossed = Crossed {
+        let crossed = CrossedElement {
             polygon: &polygon,
             number: as_number(i),
         };
-        let trace = Trace::new(&crossed, crossers, &mut shared.points).ok()?;
-        Some(CutStatus::Cut(Box::new(Cut {
+        let trace = Trace::new(&crossed, crossing_faces, &mut shared.points).ok()?;
+        Some(CutStatus::Cut(Box::new(CutElement {
             polygon,
             trace,
             anchors,
@@ -177,8 +177,12 @@ impl Scene<'_> {
     }
 
     /// Returns the neighbours that may cross a polygon; `None` if one touches it in a degenerate position.
-    fn crossers(&self, polygon: &Polygon, neighbours: &[u32]) -> Option<Vec<Crosser<'_>>> {
-        let mut crossers = Vec::with_capacity(neighbours.len());
+    fn crossing_faces(
+        &self,
+        polygon: &Polygon,
+        neighbours: &[u32],
+    ) -> Option<Vec<CrossingFace<'_>>> {
+        let mut crossing_faces = Vec::with_capacity(neighbours.len());
         for j in neighbours {
             poll();
             let other = &self.elements[*j as usize];
@@ -186,7 +190,7 @@ impl Scene<'_> {
             match contact(polygon, face) {
                 Contact::Degenerate => return None,
                 Contact::None => {}
-                Contact::Crossing(ours, theirs) => crossers.push(Crosser {
+                Contact::Crossing(ours, theirs) => crossing_faces.push(CrossingFace {
                     face,
                     number: *j,
                     operand: other.operand,
@@ -196,11 +200,11 @@ impl Scene<'_> {
                 }),
             }
         }
-        Some(crossers)
+        Some(crossing_faces)
     }
 }
 
-impl Cut {
+impl CutElement {
     /// Returns a part of the element that has an anchor as a corner; `None` if there is none.
     pub(super) fn part_at(&self, anchor: &Anchor) -> Option<usize> {
         self.part_with(|corner| anchor.is_at(corner))

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::anchors::AnchorPosition;
-use super::cut_status::{Cut, CutStatus};
+use super::cut_status::{CutElement, CutStatus};
 use super::known_labels::KnownLabels;
 use super::scene::{Element, ElementKind, Scene};
 use super::trace::Trace;
@@ -44,7 +44,12 @@ impl Scene<'_> {
 
     /// Returns a part of a divided element and its label, from which the labels of all other parts follow;
     /// `None` if no label can be counted.
-    fn start(&self, operand: usize, cut: &Cut, known: &mut KnownLabels) -> Option<(usize, Labels)> {
+    fn start(
+        &self,
+        operand: usize,
+        cut: &CutElement,
+        known: &mut KnownLabels,
+    ) -> Option<(usize, Labels)> {
         // Several corners are tried, because a path to a corner may run through an edge, as all paths to a
         // wall at the cell's corner do.
         if !cut.anchors.is_empty() {

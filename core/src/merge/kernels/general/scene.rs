@@ -16,7 +16,7 @@ use crate::geometry::polygon::Polygon;
 use crate::geometry::vertex::Vertex;
 use crate::interrupt::poll;
 use crate::merge::kernels::problem::ListedOperand;
-use crate::merge::lists::list::{List, PartRecord, Record, Sources};
+use crate::merge::lists::list::{FaceRecord, List, PartRecord, Sources};
 use crate::merge::pairs::SweptElement;
 use crate::mesh::handle::{Slot, SourceFace, VertexId};
 use crate::mesh::source::{Shape, Source};
@@ -267,7 +267,7 @@ impl<'a> Element<'a> {
     /// Makes the element of a listed face; `None` for the face of a half-space that misses the cell.
     fn of_record(
         operand: usize,
-        record: &Record,
+        record: &FaceRecord,
         cell: &Cell,
         sources: &'a Sources,
     ) -> Option<Self> {

@@ -35,7 +35,7 @@ pub(super) struct SegmentEnd {
 }
 
 /// A face of another operand that may cross a given element.
-pub(super) struct Crosser<'a> {
+pub(super) struct CrossingFace<'a> {
     pub(super) face: &'a Face<'a>,
     /// The number of the face among the elements of the cell.
     pub(super) number: u32,
@@ -56,17 +56,17 @@ impl Segment {
 }
 
 /// An element that faces of other operands may cross.
-pub(super) struct Crossed<'a> {
+pub(super) struct CrossedElement<'a> {
     pub(super) polygon: &'a Polygon,
     pub(super) number: u32,
 }
 
-impl Crossed<'_> {
+impl CrossedElement<'_> {
     /// Returns the segment in which a face crosses the element; `None` if it does not, an error if their
     /// position is degenerate.
     pub(super) fn segment(
         &self,
-        other: &Crosser,
+        other: &CrossingFace,
         points: &mut Points,
     ) -> Result<Option<Segment>, Degenerate> {
         let has_corner = other.ours.contains(&Side::On) || other.theirs.contains(&Side::On);
@@ -91,7 +91,7 @@ impl Crossed<'_> {
     /// border. A single point is no segment.
     fn ends(
         &self,
-        other: &Crosser,
+        other: &CrossingFace,
         points: &mut Points,
     ) -> Result<Option<[SegmentEnd; 2]>, Degenerate> {
         let face = &other.face.polygon;
@@ -128,7 +128,7 @@ impl Crossed<'_> {
     /// plane; `None` if it does not cross. It compares the order of points along the common line.
     fn ends_by_order(
         &self,
-        other: &Crosser,
+        other: &CrossingFace,
         points: &mut Points,
     ) -> Result<Option<[SegmentEnd; 2]>, Degenerate> {
         let ours = (self.polygon, self.number);
@@ -164,7 +164,7 @@ impl Crossed<'_> {
     fn inside(
         &self,
         (edge, rises): (usize, bool),
-        other: &Crosser,
+        other: &CrossingFace,
         rim: usize,
         points: &mut Points,
     ) -> Result<Sign, Degenerate> {
@@ -253,7 +253,7 @@ mod tests {
         let Contact::Crossing(ours, theirs) = contact(&crossed, &face) else {
             panic!("the face crosses the element");
         };
-        let crosser = Crosser {
+        let crossing_face = CrossingFace {
             face: &face,
             number: 1,
             operand: 1,
@@ -261,11 +261,11 @@ mod tests {
             ours,
             theirs,
         };
-        let element = Crossed {
+        let element = CrossedElement {
             polygon: &crossed,
             number: 0,
         };
-        let found = element.segment(&crosser, &mut Points::default()).ok();
+        let found = element.segment(&crossing_face, &mut Points::default()).ok();
         let segment = found.flatten().expect("they cross");
         let ends = segment.ends;
         // The segment begins on an edge of the face, inside the element, and ends on the element's border.

@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use super::contact::Degenerate;
 use super::points::Points;
-use super::segment::{Crossed, Crosser, Segment, SegmentEnd};
+use super::segment::{CrossedElement, CrossingFace, Segment, SegmentEnd};
 use super::Labels;
 use crate::geometry::outline::BareEdge;
 use crate::geometry::polygon::Polygon;
@@ -39,14 +39,14 @@ struct Divided {
 impl Trace {
     /// Divides an element by the faces that may cross it; an error if they contradict each other.
     pub(super) fn new(
-        crossed: &Crossed,
-        crossers: &[Crosser],
+        crossed: &CrossedElement,
+        crossing_faces: &[CrossingFace],
         points: &mut Points,
     ) -> Result<Self, Degenerate> {
-        let mut segments = Vec::with_capacity(crossers.len());
-        for crosser in crossers {
+        let mut segments = Vec::with_capacity(crossing_faces.len());
+        for crossing_face in crossing_faces {
             poll();
-            segments.extend(crossed.segment(crosser, points)?);
+            segments.extend(crossed.segment(crossing_face, points)?);
         }
         if segments.is_empty() {
             let parts = SmallVec::from_slice(&[0]);
@@ -209,11 +209,11 @@ mod tests {
         Polygon::triangle(corners, Arc::new(plane))
     }
 
-    fn crosser<'a>(polygon: &Polygon, face: &'a Face<'a>, number: u32) -> Crosser<'a> {
+    fn crossing_face<'a>(polygon: &Polygon, face: &'a Face<'a>, number: u32) -> CrossingFace<'a> {
         let Contact::Crossing(ours, theirs) = contact(polygon, face) else {
             panic!("the face crosses the polygon's plane");
         };
-        Crosser {
+        CrossingFace {
             face,
             number,
             operand: 1,
@@ -226,15 +226,15 @@ mod tests {
     /// Returns the division of a polygon by faces of one operand; `None` if they contradict each other.
     fn trace<const N: usize>(crossed: &Polygon, faces: [[Lattice; 3]; N]) -> Option<Trace> {
         let faces = faces.map(|corners| Face::new(Cow::Owned(polygon(&corners))));
-        let crossers: Vec<Crosser> = (1..)
+        let crossing_faces: Vec<CrossingFace> = (1..)
             .zip(&faces)
-            .map(|(number, face)| crosser(crossed, face, number))
+            .map(|(number, face)| crossing_face(crossed, face, number))
             .collect();
-        let element = Crossed {
+        let element = CrossedElement {
             polygon: crossed,
             number: 0,
         };
-        Trace::new(&element, &crossers, &mut Points::default()).ok()
+        Trace::new(&element, &crossing_faces, &mut Points::default()).ok()
     }
 
     /// The common edge of two faces passes through the border of a polygon, at (4, 4, 0).

@@ -10,7 +10,7 @@ use crate::geometry::polygon::{Carrier, Polygon};
 use crate::interrupt::poll;
 use crate::merge::kernels::problem::ListedOperand;
 use crate::merge::kernels::stays::Owner;
-use crate::merge::lists::list::{PartRecord, Record, Sources};
+use crate::merge::lists::list::{FaceRecord, PartRecord, Sources};
 use crate::mesh::handle::{FaceId, Slot, SourceFace};
 use crate::mesh::source::{Shape, Source};
 use crate::tree::node::Part;
@@ -104,7 +104,7 @@ impl<'a> Facets<'a> {
 }
 
 impl<'a> Facet<'a> {
-    fn of_record(operand: usize, record: &Record, sources: &'a Sources) -> Option<Self> {
+    fn of_record(operand: usize, record: &FaceRecord, sources: &'a Sources) -> Option<Self> {
         let weight = record.orientation().signed(1);
         let (slot, source) = (record.slot(), &**sources.get(record.slot()));
         match source.shape() {

@@ -62,46 +62,49 @@ impl Scene<'_> {
             return None;
         }
         let operands: SmallVec<[usize; 2]> = runs.iter().map(|own| all[own[0]].operand).collect();
-        for (own, owned) in runs.iter().zip(self.owned(plane, &operands)) {
+        for (own, staying) in runs.iter().zip(self.staying_rectangles(plane, &operands)) {
             poll();
-            settled.extend(own.iter().filter_map(|i| self.settled(*i, &owned)));
+            settled.extend(
+                own.iter()
+                    .filter_map(|i| self.staying_element(*i, &staying)),
+            );
         }
         Some(())
     }
 
     /// Returns for each operand with facets in a plane the rectangles in which its faces stay, row by row, as
     /// two words: rectangles with the inside of the result below the plane, and with the inside above it.
-    fn owned(&self, plane: Plane, operands: &[usize]) -> SmallVec<[Vec<[u64; 2]>; 2]> {
+    fn staying_rectangles(&self, plane: Plane, operands: &[usize]) -> SmallVec<[Vec<[u64; 2]>; 2]> {
         let (row, _) = OTHER_AXES[plane.0];
         let rows = self.grid.count(row);
         let none = |_| Vec::with_capacity(rows);
-        let mut owned: SmallVec<[Vec<[u64; 2]>; 2]> = operands.iter().map(none).collect();
+        let mut staying: SmallVec<[Vec<[u64; 2]>; 2]> = operands.iter().map(none).collect();
         for row in 0..rows {
             poll();
             let [below, above] = self.sides(self.value, plane, row);
             let changed = below ^ above;
             if changed == 0 {
-                owned.iter_mut().for_each(|owned| owned.push([0; 2]));
+                staying.iter_mut().for_each(|staying| staying.push([0; 2]));
                 continue;
             }
-            let bounds = |k: &usize| self.changes(*k, plane, row) & changed;
+            let bounds = |k: &usize| self.changes_across(*k, plane, row) & changed;
             let bounds: SmallVec<[u64; 4]> = operands.iter().map(bounds).collect();
             let contested = contested(&bounds);
-            let owners = self.owners(contested, plane, row);
-            for ((owned, k), bounds) in owned.iter_mut().zip(operands).zip(bounds) {
+            let owners = self.owners_of_contested(contested, plane, row);
+            for ((staying, k), bounds) in staying.iter_mut().zip(operands).zip(bounds) {
                 let won = owners.iter().filter(|(owner, _)| owner == k);
                 let won = won.fold(0, |all, (_, won)| all | won);
                 let own = bounds & !contested | won & contested;
-                owned.push([below & own, above & own]);
+                staying.push([below & own, above & own]);
             }
         }
-        owned
+        staying
     }
 
     /// Returns whose face stays in rectangles of a row in which faces of several operands bound the
     /// expression, as pairs of an operand's index and a word of rectangles; `contested` marks these
     /// rectangles.
-    fn owners(&self, contested: u64, plane: Plane, row: usize) -> Vec<(usize, u64)> {
+    fn owners_of_contested(&self, contested: u64, plane: Plane, row: usize) -> Vec<(usize, u64)> {
         if contested == 0 {
             return Vec::new();
         }
@@ -112,7 +115,7 @@ impl Scene<'_> {
     }
 
     /// Returns the rectangles in a row of a plane across which an operand changes between inside and outside.
-    fn changes(&self, operand: usize, plane: Plane, row: usize) -> u64 {
+    fn changes_across(&self, operand: usize, plane: Plane, row: usize) -> u64 {
         let [below, above] = self.sides(&self.fields[operand], plane, row);
         below ^ above
     }
@@ -145,14 +148,16 @@ impl Scene<'_> {
 
     /// Returns the parts of a facet that bound the result in each orientation, given the rectangles of its
     /// plane in which the operand's faces stay; `None` if the facet does not meet the cell.
-    fn settled(&self, i: usize, owned: &[[u64; 2]]) -> Option<StayingElement> {
+    fn staying_element(&self, i: usize, staying: &[[u64; 2]]) -> Option<StayingElement> {
         let (facet, position) = (&self.facets.all[i], &self.positions[i]);
-        let owned = &owned[position.rows.touched.clone()];
+        let staying = &staying[position.rows.touched.clone()];
         let below = usize::from(!facet.upward);
         let sides = [below, 1 - below];
-        let alike = sides.map(|side| all_alike(owned, side, mask(&position.bits.touched)));
+        let alike = sides.map(|side| all_alike(staying, side, mask(&position.bits.touched)));
         let stays = if let [Some(same), Some(turned)] = alike {
-            let present = self.touched(facet, position).any(|held| held != 0);
+            let present = self
+                .touched_rectangles(facet, position)
+                .any(|held| held != 0);
             present.then(|| {
                 [same, turned].map(|all| {
                     if all {
@@ -163,9 +168,9 @@ impl Scene<'_> {
                 })
             })
         } else {
-            let held: Vec<u64> = self.touched(facet, position).collect();
+            let held: Vec<u64> = self.touched_rectangles(facet, position).collect();
             let side =
-                |side: usize| self.side(facet, position.rows.touched.start, &held, owned, side);
+                |side: usize| self.side(facet, position.rows.touched.start, &held, staying, side);
             let present = held.iter().any(|h| *h != 0);
             present.then(|| sides.map(side))
         };
@@ -173,16 +178,16 @@ impl Scene<'_> {
     }
 
     /// Returns the part of a facet that bounds the result in one orientation; `held` has the rectangles that
-    /// the facet touches, row by row from row `first` on, and `owned` the rectangles that stay.
+    /// the facet touches, row by row from row `first` on, and `staying` the rectangles that stay.
     fn side(
         &self,
         facet: &Facet,
         first: usize,
         held: &[u64],
-        owned: &[[u64; 2]],
+        staying: &[[u64; 2]],
         side: usize,
     ) -> StayingRegion {
-        let kept: Vec<u64> = owned.iter().zip(held).map(|(o, h)| o[side] & h).collect();
+        let kept: Vec<u64> = staying.iter().zip(held).map(|(o, h)| o[side] & h).collect();
         if kept == held {
             return StayingRegion::All;
         }
@@ -193,7 +198,7 @@ impl Scene<'_> {
     }
 
     /// Returns the rectangles of the grid that a facet touches, as a word of bits for each row.
-    fn touched<'b>(
+    fn touched_rectangles<'b>(
         &'b self,
         facet: &'b Facet,
         position: &'b FacetPosition,
@@ -223,8 +228,8 @@ fn contested(words: &[u64]) -> u64 {
 
 /// Returns true if all bits of `mask` are set in all rows, and false if no bit is set in any row; `None` if
 /// they are mixed. `side` selects one of the two words of a row.
-fn all_alike(owned: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
-    let mut bits = owned.iter().map(|o| o[side] & mask);
+fn all_alike(staying: &[[u64; 2]], side: usize, mask: u64) -> Option<bool> {
+    let mut bits = staying.iter().map(|o| o[side] & mask);
     let first = bits.next()?;
     let alike = (first == 0 || first == mask) && bits.all(|b| b == first);
     alike.then_some(first != 0)
