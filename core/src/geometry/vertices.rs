@@ -135,17 +135,17 @@ impl RoundedPoint {
         Self(position.map(|c| (bits_of(c) + Self::HALF) >> Self::BITS))
     }
 
-    /// The blur of the doubles of least magnitude that may approximate the same point.
+    /// The rounded point of the doubles of least magnitude that may approximate the same point.
     fn lower_end(position: &[f64; 3]) -> Self {
         Self(position.map(|c| (bits_of(c) + Self::HALF - Self::DOUBT) >> Self::BITS))
     }
 
-    /// The blur of the doubles of greatest magnitude that may approximate the same point.
+    /// The rounded point of the doubles of greatest magnitude that may approximate the same point.
     fn upper_end(position: &[f64; 3]) -> Self {
         Self(position.map(|c| (bits_of(c) + Self::HALF + Self::DOUBT) >> Self::BITS))
     }
 
-    /// The blur that takes coordinate i from `high` if bit i of `bits` is set, else from `low`.
+    /// The rounded point that takes coordinate i from `high` if bit i of `bits` is set, else from `low`.
     fn combined(low: &Self, high: &Self, bits: usize) -> Self {
         let pick = |i: usize| {
             if bits >> i & 1 == 0 {

@@ -93,7 +93,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
                 run(roots)
             }
         };
-        let cells = |_: &Result<Branch>| descent.counters.visited();
+        let cells = |_: &Result<Branch>| descent.counters.cells_visited();
         let root = profile.timed("descent", visit, cells)?;
         overlaps = descent.overlapping();
         if overlaps.is_empty() {
@@ -102,7 +102,7 @@ pub fn evaluate(expression: &Expression, solids: &[Solid]) -> Result<(Solid, Cou
             let solid = Solid::new(root, pitch, table, false).without_unused_sources(named);
             let solid = solid
                 .resulting_from(&operands)
-                .with_effort(descent.counters.taken());
+                .with_effort(descent.counters.elements_solved());
             return Ok((solid, descent.counters.with(profile)));
         }
         if !overlaps.iter().any(is_open) {
@@ -152,7 +152,7 @@ fn evaluate_imported_pair(
     let solid = solid
         .without_unused_sources(named)
         .resulting_from(operands)
-        .with_effort(counters.taken());
+        .with_effort(counters.elements_solved());
     Ok((solid, counters))
 }
 
@@ -409,7 +409,7 @@ mod tests {
         let solids = [cuboid([1; 3], [9; 3]), cuboid([5; 3], [13; 3])];
         let (union, counters) = evaluate(&both(Term::Or), &solids).expect("not stopped");
         assert_eq!(solids[0].effort(), 0);
-        assert_eq!(union.effort(), counters.taken());
+        assert_eq!(union.effort(), counters.elements_solved());
         assert_eq!(union.effort(), 12);
     }
 }

@@ -51,12 +51,12 @@ struct Node {
 
 /// Returns a number in single precision that is at most x: the margin exceeds the rounding.
 #[allow(clippy::cast_possible_truncation, reason = "rounded down on purpose")]
-fn down(x: f64) -> f32 {
+fn rounded_down(x: f64) -> f32 {
     (x - x.abs() * f64::from(f32::EPSILON)) as f32
 }
 
-fn up(x: f64) -> f32 {
-    -down(-x)
+fn rounded_up(x: f64) -> f32 {
+    -rounded_down(-x)
 }
 
 impl RoundedBox {
@@ -68,8 +68,8 @@ impl RoundedBox {
     /// Returns the box from a low to a high corner, rounded outwards.
     pub(super) fn between(low: &Point, high: &Point) -> Self {
         Self {
-            low: low.map(down),
-            high: high.map(up),
+            low: low.map(rounded_down),
+            high: high.map(rounded_up),
         }
     }
 
@@ -112,7 +112,7 @@ pub(super) fn order(triangles: &[Triangle]) -> Vec<u32> {
     spend(triangles.len());
     let number = |b: &RoundedBox| {
         let step = |i: usize| (b.low[i] + b.high[i] - 2.0 * all.low[i]) * scale[i];
-        (0..3).fold(0, |all, i| all | spread(along_curve(step(i))) << i)
+        (0..3).fold(0, |all, i| all | spread_bits(along_curve(step(i))) << i)
     };
     let mut keys: Vec<u64> = (0u64..)
         .zip(&bounds)
@@ -137,7 +137,7 @@ fn low_half(key: u64) -> u32 {
 }
 
 /// Spreads the ten low bits of x, with two zero bits after each.
-fn spread(x: u32) -> u32 {
+fn spread_bits(x: u32) -> u32 {
     let x = (x | x << 16) & 0x0300_00ff;
     let x = (x | x << 8) & 0x0300_f00f;
     let x = (x | x << 4) & 0x030c_30c3;
@@ -225,7 +225,7 @@ impl BoxTree {
         if self.bounds.is_empty() || other.bounds.is_empty() {
             return Ok(Vec::new());
         }
-        let found = each(work_size, self.starts(other), |start| {
+        let found = each(work_size, self.start_pairs(other), |start| {
             self.blocks_below(other, start, &visit)
         });
         let found: Result<Vec<Vec<T>>, E> = found.into_iter().collect();
@@ -234,12 +234,12 @@ impl BoxTree {
 
     /// Returns pairs of nodes that contain all pairs of triangles to be found: at least `MIN_TASKS`, if there
     /// are so many.
-    fn starts(&self, other: &Self) -> Vec<[Node; 2]> {
+    fn start_pairs(&self, other: &Self) -> Vec<[Node; 2]> {
         let mut open = vec![[self.root(), other.root()]];
         while open.len() < MIN_TASKS && open.iter().any(|p| p[0].level + p[1].level > 0) {
             let mut next = Vec::with_capacity(CHILDREN_PER_NODE * open.len());
             for pair in open {
-                self.descend(other, pair, &mut next);
+                self.push_child_pairs(other, pair, &mut next);
             }
             if next.is_empty() {
                 return next;
@@ -250,7 +250,7 @@ impl BoxTree {
     }
 
     /// Replaces the larger node of a pair by its children, and adds to `found` the pairs whose boxes meet.
-    fn descend(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
+    fn push_child_pairs(&self, other: &Self, [a, b]: [Node; 2], found: &mut Vec<[Node; 2]>) {
         let (ours, theirs) = (self.at(a), other.at(b));
         if a.level == 0 && b.level == 0 {
             found.push([a, b]);
@@ -276,7 +276,7 @@ impl BoxTree {
             if a.level == 0 && b.level == 0 {
                 self.pairs_of_leaves(other, [a, b], &mut pairs);
             } else {
-                self.descend(other, [a, b], &mut open);
+                self.push_child_pairs(other, [a, b], &mut open);
             }
             if pairs.len() >= PAIRS_PER_BLOCK || open.is_empty() {
                 found.push(visit(&pairs)?);

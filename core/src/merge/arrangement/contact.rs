@@ -82,13 +82,13 @@ pub(super) fn contact(f: &Facing, g: &Facing) -> Contact {
     }
     let both = [ours, theirs];
     if ours == [Side::On; 3] {
-        return in_one_plane(f, g, both).into_contact();
+        return contact_in_one_plane(f, g, both).into_contact();
     }
     if both.as_flattened().contains(&Side::On) {
-        return across(f, g, both).into_contact();
+        return contact_in_two_planes(f, g, both).into_contact();
     }
-    crossing(f.triangle(), g.triangle(), ours, theirs)
-        .unwrap_or_else(|| across(f, g, both).into_contact())
+    crossing_contact(f.triangle(), g.triangle(), ours, theirs)
+        .unwrap_or_else(|| contact_in_two_planes(f, g, both).into_contact())
 }
 
 impl Touching {
@@ -121,7 +121,7 @@ fn is_apart(sides: [Side; 3]) -> bool {
 
 /// Returns the edge (the indices of its corners) at which a triangle's border leaves the given side of a
 /// plane; its first corner is on that side.
-fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
+fn edge_leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
     let next = |i: usize| (i + 1) % 3;
     let leaves = |i: &usize| sides[*i] == side && sides[next(*i)] != side;
     let i = (0..3).find(leaves).unwrap_or(0);
@@ -130,10 +130,18 @@ fn leaving(sides: [Side; 3], side: Side) -> [usize; 2] {
 
 /// Returns the intersection of two triangles, each of which has all corners off the other's plane and on both
 /// sides of it; `None` if two edges meet.
-fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> Option<Contact> {
-    let [end, start] = leaving(ours, Side::Plus);
-    let (f_first, f_last) = (leaving(ours, Side::Minus), [start, end]);
-    let (g_first, g_last) = (leaving(theirs, Side::Plus), leaving(theirs, Side::Minus));
+fn crossing_contact(
+    f: &Triangle,
+    g: &Triangle,
+    ours: [Side; 3],
+    theirs: [Side; 3],
+) -> Option<Contact> {
+    let [end, start] = edge_leaving(ours, Side::Plus);
+    let (f_first, f_last) = (edge_leaving(ours, Side::Minus), [start, end]);
+    let (g_first, g_last) = (
+        edge_leaving(theirs, Side::Plus),
+        edge_leaving(theirs, Side::Minus),
+    );
     let turn = |a: [usize; 2], b: [usize; 2]| side(&[f[a[0]], f[a[1]], g[b[0]]], &g[b[1]]);
     let order = [turn(f_first, g_last), turn(f_last, g_first)];
     if order.contains(&Side::Minus) {
@@ -156,7 +164,7 @@ fn crossing(f: &Triangle, g: &Triangle, ours: [Side; 3], theirs: [Side; 3]) -> O
 
 /// Returns the intersection of two triangles in different planes; `both` has the sides of the other's plane
 /// on which their corners lie.
-fn across(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
+fn contact_in_two_planes(f: &Facing, g: &Facing, both: [[Side; 3]; 2]) -> Touching {
     let mut found = Touching::new(both);
     for (of, t, other) in [(0, f, g), (1, g, f)] {
         let (corners, sides) = (t.triangle(), both[of]);
@@ -228,7 +236,7 @@ fn contains(g: &Facing, p: &Point) -> bool {
 }
 
 /// Returns the intersection of two triangles in one plane.
-fn in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
+fn contact_in_one_plane(f: &Facing, g: &Facing, sides: [[Side; 3]; 2]) -> Touching {
     let axis = f.main_axis();
     let both = [f, g].map(|t| seen_along(t.triangle(), axis));
     let beside = [

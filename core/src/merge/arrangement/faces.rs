@@ -79,7 +79,7 @@ impl<'a> Arrangement<'a> {
             face,
             cells: Vec::new(),
         };
-        made.cells = made.numbered();
+        made.cells = made.numbers_in_front();
         made.cover(shared);
         Ok(made)
     }
@@ -96,11 +96,11 @@ impl<'a> Arrangement<'a> {
         &mut self,
         count: impl FnMut(&Probe) -> Option<i32>,
     ) -> Option<(usize, i32)> {
-        counted(self.division.triangulation(), self.face.plane, count)
+        cell_with_number(self.division.triangulation(), self.face.plane, count)
     }
 
     /// Returns for each cell the winding number in front of it, relative to the first cell.
-    fn numbered(&self) -> Vec<CellNumbers> {
+    fn numbers_in_front(&self) -> Vec<CellNumbers> {
         let numbers = self
             .division
             .spread(0, |here, cell, edge| here - self.change(cell, edge));
@@ -188,12 +188,12 @@ pub(super) fn count_in_face(
 ) -> Option<i32> {
     let corners = corners.map(|c| Arc::new(Vertex::lattice(c)));
     let mut face = Triangulation::new(corners.into_iter(), axes(plane));
-    counted(&mut face, plane, count).map(|(_, number)| number)
+    cell_with_number(&mut face, plane, count).map(|(_, number)| number)
 }
 
 /// Returns a cell for which `count` finds a winding number at a point inside it, with this number. Tries the
 /// widest cells first, and several points of each, because another surface may touch the cell at a point.
-fn counted(
+fn cell_with_number(
     cells: &mut Triangulation,
     plane: &Arc<Plane>,
     mut count: impl FnMut(&Probe) -> Option<i32>,
@@ -210,7 +210,7 @@ fn counted(
         .into_iter()
         .flat_map(|cell| WEIGHTS.map(|w| (cell, w)));
     points.into_iter().find_map(|(cell, weights)| {
-        let probe = Probe::above(cells.mean(cell, weights), plane)?;
+        let probe = Probe::at_coordinates(cells.mean(cell, weights), plane)?;
         let is_inside = cells.contains(cell, Arc::clone(&probe.point));
         let number = if is_inside { count(&probe) } else { None };
         Some((cell as usize, number?))

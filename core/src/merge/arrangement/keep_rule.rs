@@ -39,7 +39,7 @@ impl PairTable {
             let word = |inside: [bool; 2], k: u32| u64::from(inside[k as usize]);
             let owners = expression.owners(|k| word(behind, k), |k| word(in_front, k));
             let owns = owners.iter().any(|(k, _)| *k as usize == operand);
-            between(value(in_front), value(behind)).filter(|_| owns)
+            orientation_between(value(in_front), value(behind)).filter(|_| owns)
         };
         let of = [0, 1].map(|operand| {
             [false, true].map(|front| [false, true].map(|behind| stays(operand, front, behind)))
@@ -58,7 +58,7 @@ impl PairTable {
 
 /// Returns the orientation in which a face bounds the result, given whether the result is inside in front of
 /// the face and behind it; `None` if both are equal.
-fn between(in_front: bool, behind: bool) -> Option<Orientation> {
+fn orientation_between(in_front: bool, behind: bool) -> Option<Orientation> {
     (behind != in_front).then(|| Orientation::turned_around(in_front))
 }
 
@@ -99,7 +99,10 @@ impl KeepRule {
     ) -> Result<Option<Orientation>, Declined> {
         match self {
             Self::Pair(pair) => pair.at(operand, [in_front; 2]),
-            Self::Single(rule) => Ok(between(rule.inside(in_front), rule.inside(in_front + 1))),
+            Self::Single(rule) => Ok(orientation_between(
+                rule.inside(in_front),
+                rule.inside(in_front + 1),
+            )),
         }
     }
 
@@ -120,7 +123,7 @@ impl KeepRule {
             Self::Pair(_) if cell.covers > 1 => Err(Declined::Overlap(1 - operand)),
             Self::Pair(pair) => pair.at(operand, [in_front, behind]),
             Self::Single(rule) => {
-                let stays = between(rule.inside(in_front), rule.inside(behind + 1));
+                let stays = orientation_between(rule.inside(in_front), rule.inside(behind + 1));
                 Ok(stays.filter(|_| !cell.is_of_earlier))
             }
         }

@@ -176,7 +176,7 @@ impl Search<'_> {
     /// Tests the waiting pairs of faces; `None` if the search ends because two faces overlap or pairs are too
     /// many.
     fn test_waiting(&mut self) -> Option<()> {
-        let found = each_chunk(&self.waiting, |_, pairs| unclear(self.view, pairs));
+        let found = each_chunk(&self.waiting, |_, pairs| pairs_not_clear(self.view, pairs));
         self.waiting.clear();
         let found: Vec<[FaceId; 2]> = found.into_iter().flatten().collect();
         let overlap = |[a, b]: &[FaceId; 2]| self.view.of(*a).overlaps(&self.view.of(*b));
@@ -206,7 +206,7 @@ fn all_terrains(source: &Source, mesh: &TriangleMesh) -> Vec<u32> {
 }
 
 /// Returns the pairs of faces that a quick test does not prove to share only corners and edges.
-fn unclear(view: &PreparedMesh, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
+fn pairs_not_clear(view: &PreparedMesh, pairs: &[[FaceId; 2]]) -> Vec<[FaceId; 2]> {
     let mut prepared = PreparedFaces {
         view,
         indices: HashMap::default(),

@@ -177,8 +177,8 @@ impl<'a> Scene<'a> {
                 corners: self.surfaces.corners(number),
                 vertices: self.surfaces.vertices(number),
                 plane: &shared.planes[&number],
-                segments: run(&found.segments, number, |s: &Segment| s.face),
-                covers: run(&found.covers, number, |c: &Cover| c.face),
+                segments: rows_of_face(&found.segments, number, |s: &Segment| s.face),
+                covers: rows_of_face(&found.covers, number, |c: &Cover| c.face),
             };
             Arrangement::new(face, shared)
         };
@@ -378,7 +378,7 @@ impl<'a> Scene<'a> {
 }
 
 /// Returns the rows that belong to a face, among rows sorted by face; `of` returns the face of a row.
-fn run<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
+fn rows_of_face<T>(rows: &[T], face: u32, of: impl Fn(&T) -> u32) -> &[T] {
     let first = rows.partition_point(|row| of(row) < face);
     let count = rows[first..]
         .iter()

@@ -24,7 +24,7 @@ impl Probe {
     /// Returns the point of a plane that has the coordinates `doubled`, in half lattice steps, on the two
     /// axes other than the plane's main axis; `None` if the plane is parallel to the main axis, which never
     /// happens.
-    pub(super) fn above(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
+    pub(super) fn at_coordinates(doubled: [i64; 2], plane: &Arc<Plane>) -> Option<Self> {
         let axis = plane.main_axis();
         let cut = |i: usize| Arc::new(Plane::axis_cut((axis + i) % 3, doubled[i - 1]));
         let point = Arc::new(Vertex::meet(plane, &cut(1), &cut(2))?);

@@ -1,6 +1,6 @@
 //! Decides which cells of the descent a kernel solves, and which are halved.
 
-use super::state::{within, State, States};
+use super::state::{clipped_to_cell, State, States};
 use crate::geometry::axes::each_axis;
 use crate::geometry::cell::Cell;
 use crate::geometry::plane::Lattice;
@@ -218,7 +218,7 @@ impl Round {
 /// if no operand has surface there.
 pub fn extent(cell: &Cell, states: &States) -> Option<i64> {
     let present = states.iter().filter(|s| s.1.has_surface());
-    let boxes = present.map(|s| within(cell, s.1.bounds(cell)));
+    let boxes = present.map(|s| clipped_to_cell(cell, s.1.bounds(cell)));
     let joined = |[low, high]: [Lattice; 2], [least, most]: [Lattice; 2]| {
         [
             each_axis(|i| low[i].min(least[i])),
@@ -252,7 +252,9 @@ pub fn is_crowded(cell: &Cell, states: &States) -> bool {
         return false;
     }
     let some = states.iter().step_by(states.len().div_ceil(MAX_OPERANDS));
-    let boxes: Vec<[Lattice; 2]> = some.map(|s| within(cell, s.1.bounds(cell))).collect();
+    let boxes: Vec<[Lattice; 2]> = some
+        .map(|s| clipped_to_cell(cell, s.1.bounds(cell)))
+        .collect();
     let overlap =
         |[a, b]: &[Lattice; 2], [c, d]: &[Lattice; 2]| (0..3).all(|i| a[i] <= d[i] && c[i] <= b[i]);
     let partners = |i: usize| boxes[..i].iter().filter(|b| overlap(b, &boxes[i])).count();

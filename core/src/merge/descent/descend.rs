@@ -273,13 +273,14 @@ impl<'a> Descent<'a> {
         let listed = states.iter().all(|s| matches!(s.1, State::List(_)));
         let small = total <= MAX_ELEMENTS_PER_LEAF || stuck && total <= MAX_ELEMENTS_STUCK;
         let Some(cut) = cell.cut().filter(|_| !(listed && small)) else {
-            let solved = self.solved(cell, &expression, &states, total, &ALL)?;
+            let solved = self.solve_with(cell, &expression, &states, total, &ALL)?;
             return Ok(solved.ok_or_else(|| Error::internal("a small cell that no kernel takes"))?);
         };
         let flat = || states.iter().all(|s| s.1.is_orthogonal(self.sources));
         if total <= (MAX_ORTHOGONAL_PER_OPERAND * states.len()).min(MAX_ELEMENTS_ORTHOGONAL)
             && flat()
-            && let Some(branch) = self.solved(cell, &expression, &states, total, &[&Orthogonal])?
+            && let Some(branch) =
+                self.solve_with(cell, &expression, &states, total, &[&Orthogonal])?
         {
             return Ok(branch);
         }
@@ -292,7 +293,7 @@ impl<'a> Descent<'a> {
         let long = listed && opening >= BINS_FROM;
         if long || listed && stuck || round.suits_general_position(&states, total) {
             if let Some(branch) =
-                self.solved(cell, &expression, &states, total, &[&GeneralPosition])?
+                self.solve_with(cell, &expression, &states, total, &[&GeneralPosition])?
             {
                 return Ok(branch);
             }
@@ -425,7 +426,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Lists the elements of all operands in the cell; `None` if an operand's elements cannot be listed.
-    fn listed<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<ListedOperand<'s>>> {
+    fn list_operands<'s>(&self, cell: &Cell, states: &'s States) -> Option<Vec<ListedOperand<'s>>> {
         let listed = |(number, state): &'s (u32, State)| {
             let (number, list) = (*number, state.list_in(cell, self.sources)?);
             Some(ListedOperand { number, list })
@@ -435,7 +436,7 @@ impl<'a> Descent<'a> {
 
     /// Returns the result of the first kernel that does not refuse the cell, after equal operands became one.
     /// `None` if all kernels refuse, or if an operand's elements cannot be listed.
-    fn solved(
+    fn solve_with(
         &self,
         cell: Cell,
         expression: &Expression,
@@ -443,12 +444,12 @@ impl<'a> Descent<'a> {
         total: usize,
         kernels: &[&dyn Kernel],
     ) -> std::result::Result<Option<Branch>, DescentEnd> {
-        let Some(mut operands) = self.listed(&cell, states) else {
+        let Some(mut operands) = self.list_operands(&cell, states) else {
             return Ok(None);
         };
         let Some(firsts) = self.twins_if_shared(|| twins::of_one_boundary(&operands, self.sources))
         else {
-            return self.solved_by(kernels, cell, expression, operands, total);
+            return self.run_kernels(kernels, cell, expression, operands, total);
         };
         match expression.where_equal(|k| firsts.of(k)) {
             Residual::Constant(v) => Ok(Some(Branch::uniform(cell, i32::from(v)))),
@@ -459,14 +460,14 @@ impl<'a> Descent<'a> {
             Residual::Open(left) => {
                 let support = left.operands();
                 operands.retain(|l| support.binary_search(&l.number).is_ok());
-                self.solved_by(kernels, cell, &left, operands, total)
+                self.run_kernels(kernels, cell, &left, operands, total)
             }
         }
     }
 
     /// Returns the result, for listed operands, of the first kernel that does not refuse the cell; `None` if
     /// all do.
-    fn solved_by(
+    fn run_kernels(
         &self,
         kernels: &[&dyn Kernel],
         cell: Cell,

@@ -67,7 +67,7 @@ pub fn smaller_cell(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
         let home = match state {
             State::Tree(branch) if branch.cell != *cell => branch.cell,
             State::List(list) if lists => {
-                let [low, high] = within(cell, list.bounds());
+                let [low, high] = clipped_to_cell(cell, list.bounds());
                 Cell::around(&low, &high)
             }
             _ => return None,
@@ -78,7 +78,7 @@ pub fn smaller_cell(cell: &Cell, states: &States, lists: bool) -> Option<Cell> {
 }
 
 /// Returns the intersection of a box with a cell, as low and high corner.
-pub fn within(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
+pub fn clipped_to_cell(cell: &Cell, [low, high]: [Lattice; 2]) -> [Lattice; 2] {
     let (least, most) = (cell.low(), cell.high());
     let low = each_axis(|i| low[i].max(least[i]));
     [low, each_axis(|i| high[i].min(most[i]))]

@@ -23,7 +23,7 @@ impl TwinTable {
     /// Returns the first operand that is equal to this one; itself if there is no earlier one.
     pub fn of(&self, operand: u32) -> Twin {
         let at = self.0.binary_search_by_key(&operand, |pair| pair.0);
-        at.map_or(itself(operand), |at| self.0[at].1)
+        at.map_or(its_own_twin(operand), |at| self.0[at].1)
     }
 
     /// Makes a table of operands and their twins; `None` if no operand equals an earlier one.
@@ -34,7 +34,7 @@ impl TwinTable {
 }
 
 /// Returns the operand as its own twin.
-fn itself(operand: u32) -> Twin {
+fn its_own_twin(operand: u32) -> Twin {
     Twin {
         first: operand,
         is_same_source: true,
@@ -64,7 +64,7 @@ pub fn of_one_node(states: &States) -> Option<TwinTable> {
             }
             State::Constant(_) | State::List(_) | State::Bins(_) => *number,
         };
-        (*number, itself(first))
+        (*number, its_own_twin(first))
     };
     TwinTable::found(states.iter().map(pair).collect())
 }
@@ -93,7 +93,7 @@ pub fn of_one_boundary<'a>(
         if has_unique_size(listed) {
             return None;
         }
-        let mark = mark(&listed.list, sources)?;
+        let mark = content_hash(&listed.list, sources)?;
         let other = *known.entry((size(listed), mark)).or_insert(listed);
         if other.number == listed.number {
             return None;
@@ -104,19 +104,27 @@ pub fn of_one_boundary<'a>(
         })
     };
     let own = operands.iter().map(|listed| listed.number);
-    let pair = |(number, listed)| (number, first(listed).unwrap_or_else(|| itself(number)));
+    let pair = |(number, listed)| {
+        (
+            number,
+            first(listed).unwrap_or_else(|| its_own_twin(number)),
+        )
+    };
     TwinTable::found(own.zip(operands).map(pair).collect())
 }
 
 /// Returns a hash that is the same for lists of the same elements in any order; `None` if a face is not a
 /// triangle.
-fn mark(list: &List, sources: &Sources) -> Option<u64> {
+fn content_hash(list: &List, sources: &Sources) -> Option<u64> {
     spend(list.len());
     let mut sum = 0u64;
     for record in &list.records {
         sum = sum.wrapping_add(FxBuildHasher.hash_one(corners(record, sources)?));
     }
-    let parts = list.parts.iter().map(|p| FxBuildHasher.hash_one(key(p)));
+    let parts = list
+        .parts
+        .iter()
+        .map(|p| FxBuildHasher.hash_one(address_of(p)));
     Some(parts.fold(sum, u64::wrapping_add))
 }
 
@@ -128,7 +136,7 @@ fn are_equal<K: Ord>(a: &List, b: &List, key_of: impl Fn(&FaceRecord) -> K) -> b
         faces
     };
     let parts = |list: &List| {
-        let mut parts: Vec<_> = list.parts.iter().map(key).collect();
+        let mut parts: Vec<_> = list.parts.iter().map(address_of).collect();
         parts.sort_unstable();
         parts
     };
@@ -156,7 +164,7 @@ fn corners(record: &FaceRecord, sources: &Sources) -> Option<[Lattice; 3]> {
 
 /// Returns the identity of a part by its address, which steps of a chain share; equal parts made separately
 /// have different keys.
-fn key(part: &PartRecord) -> (*const Part, bool) {
+fn address_of(part: &PartRecord) -> (*const Part, bool) {
     let element = &part.element;
     (
         Arc::as_ptr(&element.part),

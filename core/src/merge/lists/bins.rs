@@ -103,14 +103,14 @@ impl Bins {
         )?;
         let (starts, entries) = distribute(&window, &sorted.cells, &rows);
         let corners = |element: u32| {
-            let (run, face) = find(runs, element);
+            let (run, face) = group_and_face_of(runs, element);
             (run.mesh.corners(face), run.orientation)
         };
         Some(Self {
             home: home.clone(),
             firsts: runs.iter().map(|r| r.first).collect(),
             window,
-            below: integral(&window, &starts),
+            below: entries_below_corners(&window, &starts),
             crossings: Crossings::new(window, &sorted.spans, corners),
             starts,
             entries,
@@ -125,7 +125,7 @@ impl Bins {
     /// Returns the number of entries of faces in a cell of the sorted leaf: zero if no face meets the cell; a
     /// face may be counted several times.
     pub fn len_in(&self, cell: &Cell) -> usize {
-        let [x, y, z] = self.window.covered(cell);
+        let [x, y, z] = self.window.cells_in(cell);
         let [_, ny, nz] = self.window.count();
         let at = |x: i32, y: i32, z: i32| {
             self.below[((x * (ny + 1) + y) * (nz + 1) + z).cast_unsigned() as usize]
@@ -193,19 +193,19 @@ impl Bins {
 
     /// Returns the numbers of the elements in a cell, ascending and without repetition.
     fn elements_in(&self, cell: &Cell) -> Vec<u32> {
-        let [x, y, z] = self.window.covered(cell);
+        let [x, y, z] = self.window.cells_in(cell);
         let mut elements = Vec::with_capacity(self.len_in(cell));
         for (x, y) in x.flat_map(|x| y.clone().map(move |y| (x, y))) {
             let row = self.window.index([x, y, z.start])..self.window.index([x, y, z.end]);
             let entries = self.starts[row.start] as usize..self.starts[row.end] as usize;
             elements.extend_from_slice(&self.entries[entries]);
         }
-        ascending(elements, self.leaf().len())
+        sorted_without_repetition(elements, self.leaf().len())
     }
 }
 
 /// Sorts numbers below `limit` and removes repetitions.
-fn ascending(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
+fn sorted_without_repetition(mut numbers: Vec<u32>, limit: usize) -> Vec<u32> {
     if numbers.len() < limit / 32 {
         numbers.sort_unstable();
         numbers.dedup();
@@ -246,7 +246,10 @@ fn runs(leaf: &DeferredLeaf) -> Option<Vec<GroupFaces<'_>>> {
 }
 
 /// Returns the group of the element with this number, and its face.
-fn find<'a, 'b>(runs: &'a [GroupFaces<'b>], element: u32) -> (&'a GroupFaces<'b>, FaceId) {
+fn group_and_face_of<'a, 'b>(
+    runs: &'a [GroupFaces<'b>],
+    element: u32,
+) -> (&'a GroupFaces<'b>, FaceId) {
     let run = &runs[runs.partition_point(|r| r.first <= element) - 1];
     (run, run.faces[(element - run.first) as usize])
 }
@@ -265,11 +268,11 @@ impl GroupFaces<'_> {
         self.faces
             .iter()
             .map(|f| self.mesh.face_box(*f))
-            .reduce(joint)
+            .reduce(box_union)
     }
 }
 
-fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
+fn box_union(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
     (
         each_axis(|i| a.0[i].min(b.0[i])),
         each_axis(|i| a.1[i].max(b.1[i])),
@@ -279,7 +282,10 @@ fn joint(a: (Lattice, Lattice), b: (Lattice, Lattice)) -> (Lattice, Lattice) {
 /// Returns the intersection of a cell with the bounding box of all faces, as its low and its high corner;
 /// `None` if it is empty.
 fn bounds(runs: &[GroupFaces], home: &Cell) -> Option<(Lattice, Lattice)> {
-    let (low, high) = runs.iter().filter_map(GroupFaces::bounds).reduce(joint)?;
+    let (low, high) = runs
+        .iter()
+        .filter_map(GroupFaces::bounds)
+        .reduce(box_union)?;
     let top = home.high();
     let low = each_axis(|i| low[i].max(home.low()[i]));
     let high = each_axis(|i| high[i].min(top[i]));
@@ -293,7 +299,7 @@ fn plan_window(runs: &[GroupFaces], home: &Cell, total: usize) -> Option<Window>
     let step = total.div_ceil(FACES_SAMPLED);
     let sample: Vec<(Lattice, Lattice)> = (0..as_number(total))
         .step_by(step)
-        .map(|element| find(runs, element))
+        .map(|element| group_and_face_of(runs, element))
         .map(|(run, face)| run.mesh.face_box(face))
         .collect();
     let coarsest = home.size().into_iter().min().map_or(0, u32::from);
@@ -376,7 +382,7 @@ fn cell_element_pairs(
             continue;
         };
         if (0..3).any(|i| high[i] - low[i] > 1) {
-            let (run, face) = find(runs, span.element);
+            let (run, face) = group_and_face_of(runs, span.element);
             let corners = run.mesh.corners(face);
             spread(window, &corners, low, high, &mut |cell| {
                 rows.push((cell, span.element));
@@ -432,7 +438,7 @@ fn spread(
 }
 
 /// Sorts entries by cell; returns for each cell the index of its first entry, and the elements of the
-/// entries. `cells` has the only cell of each element, and `cell_element_pairs` the pairs of cell and element of elements
+/// entries. `cells` has the only cell of each element, and `rows` the pairs of cell and element of elements
 /// in several cells.
 fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0u32; window.len() + 2];
@@ -464,7 +470,7 @@ fn distribute(window: &Window, cells: &[u32], rows: &[(u32, u32)]) -> (Vec<u32>,
 
 /// Returns for each corner of the window's cells the number of entries in the cells below it on all three
 /// axes.
-fn integral(window: &Window, starts: &[u32]) -> Vec<u32> {
+fn entries_below_corners(window: &Window, starts: &[u32]) -> Vec<u32> {
     let [nx, ny, nz] = window.count().map(|c| c.cast_unsigned() as usize);
     let (row, slab) = (nz + 1, (ny + 1) * (nz + 1));
     let mut below = vec![0u32; (nx + 1) * slab];
@@ -529,7 +535,7 @@ mod tests {
 
     #[test]
     fn numbers_are_sorted_by_comparing_or_by_marking() {
-        assert_eq!(ascending(vec![9, 2, 9], 1000), [2, 9]);
-        assert_eq!(ascending(vec![9, 2, 9], 10), [2, 9]);
+        assert_eq!(sorted_without_repetition(vec![9, 2, 9], 1000), [2, 9]);
+        assert_eq!(sorted_without_repetition(vec![9, 2, 9], 10), [2, 9]);
     }
 }

@@ -73,10 +73,10 @@ fn separated(p: &[[f64; 3]; 3], half: &[f64; 3]) -> bool {
         .flat_map(|edge| unit.iter().map(|u| cross(u, edge)));
     std::iter::once(cross(&e[0], &e[1]))
         .chain(across)
-        .any(|axis| apart(p, half, &axis))
+        .any(|axis| separates(p, half, &axis))
 }
 
-fn apart(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
+fn separates(p: &[[f64; 3]; 3], half: &[f64; 3], axis: &[f64; 3]) -> bool {
     let values = [dot(&p[0], axis), dot(&p[1], axis), dot(&p[2], axis)];
     let low = values[0].min(values[1]).min(values[2]);
     let high = values[0].max(values[1]).max(values[2]);

@@ -146,7 +146,7 @@ impl Window {
 
     /// Returns for each axis the indices of the window's cells in a larger cell.
     #[inline]
-    pub fn covered(&self, cell: &Cell) -> [Range<i32>; 3] {
+    pub fn cells_in(&self, cell: &Cell) -> [Range<i32>; 3] {
         let high = cell.high();
         each_axis(|i| {
             let low = self.cell_index(i, cell.low()[i]).max(0);

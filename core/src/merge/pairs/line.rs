@@ -31,7 +31,7 @@ pub enum LineCoordinate {
 }
 
 impl LineCoordinate {
-    /// Returns true if the plane of two gauges may separate more elements than one gauge: they are far from
+    /// Returns true if the plane of two line coordinates may separate more elements than one coordinate: they are far from
     /// parallel, and straight lines of space are straight in the plane.
     pub fn is_across(&self, other: &Self) -> bool {
         match (self, other) {
@@ -40,7 +40,7 @@ impl LineCoordinate {
         }
     }
 
-    /// Returns true if straight lines of space are straight in the plane of two gauges.
+    /// Returns true if straight lines of space are straight in the plane of two line coordinates.
     pub fn keeps_straight(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Along(_), Self::Along(_)) => true,

@@ -46,7 +46,7 @@ impl HalfPlane {
     }
 }
 
-/// Returns the half-planes at the edges of a triangle's projection on the plane of two gauges; `size` bounds
+/// Returns the half-planes at the edges of a triangle's projection on the plane of two line coordinates; `size` bounds
 /// the coordinates. If there is no projection with straight edges, returns the whole plane three times.
 pub fn rims(
     corners: Option<&[[f64; 3]; 3]>,

@@ -96,7 +96,7 @@ impl Crossings {
 
     /// Removes and returns the next crossing if it comes before `corner` in the order of the sweep; drops
     /// further copies of it, and crossings equal to `corner`.
-    pub(super) fn before(&mut self, corner: Option<&Corner>) -> Option<Corner> {
+    pub(super) fn next_before(&mut self, corner: Option<&Corner>) -> Option<Corner> {
         let order = |known: &Crossing| {
             corner.map_or(Ordering::Less, |corner| known.0.point.order(&corner.point))
         };

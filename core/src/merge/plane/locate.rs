@@ -19,7 +19,7 @@ pub fn located(set: &PlaneSet, points: &[Lattice2]) -> Result<Vec<Location>> {
     if !set.should_build_tree(points.len())
         && let Some(boundary) = set.closed()?
     {
-        return passed(boundary, points);
+        return locations_by_sweep(boundary, points);
     }
     let tree = set.tree()?;
     let location = |p: &Lattice2| classify(tree, &Point2::lattice(*p));
@@ -50,7 +50,7 @@ fn frame(boundary: &Boundary) -> Option<[Lattice2; 2]> {
 /// # Cost
 /// O(k + (n + i) log n) for n edges and k points, of which i lie in the box around the edges, if the sweep
 /// line meets few edges at once.
-fn passed(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
+fn locations_by_sweep(boundary: &Boundary, points: &[Lattice2]) -> Result<Vec<Location>> {
     let mut outlines = Outlines::default();
     outlines.extend(boundary, 1);
     let outside = match boundary.outer {

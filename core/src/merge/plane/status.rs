@@ -52,7 +52,7 @@ pub(super) struct Status {
 
 impl Status {
     /// Returns the segment with this index in the order from below.
-    pub(super) fn at(&self, index: usize) -> &ActiveSegment {
+    pub(super) fn segment_at(&self, index: usize) -> &ActiveSegment {
         &self.segments[self.order[index] as usize]
     }
 

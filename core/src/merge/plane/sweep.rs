@@ -100,7 +100,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     pub(super) fn next(&mut self) -> Option<Event> {
         let stop = self.passed;
         let corner = self.corner(stop).copied();
-        if let Some(corner) = self.crossings.before(corner.as_ref()) {
+        if let Some(corner) = self.crossings.next_before(corner.as_ref()) {
             return Some(Event { corner, stop: None });
         }
         self.passed += 1;
@@ -121,7 +121,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         self.output.into_boundary(outer)
     }
 
-    /// Returns true if exactly one side of the segment `active_segment` is inside.
+    /// Returns true if exactly one side of the given segment is inside.
     fn separates(&self, segment: &ActiveSegment) -> bool {
         (self.inside)(segment.below) != (self.inside)(segment.above())
     }
@@ -129,10 +129,10 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     /// Processes a stop: ends the segments that reach it, and begins the segments that leave it to the right.
     pub(super) fn process(&mut self, event: &Event) -> Result<()> {
         let range = self.status.range_at(&event.corner.point, event.stop);
-        let (winding, face) = self.below(range.first);
-        let leaving = self.leaving(range, event.stop, winding);
+        let (winding, face) = self.winding_and_face_below(range.first);
+        let leaving = self.leaving_segments(range, event.stop, winding);
         let upper = if range.first < range.last {
-            let top = self.status.at(range.last - 1);
+            let top = self.status.segment_at(range.last - 1);
             (top.above(), top.faces[1])
         } else {
             (winding, face)
@@ -140,7 +140,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         if leaving.last().map_or(winding, ActiveSegment::above) != upper.0 {
             return Err(not_closed());
         }
-        let leaving = self.settled(leaving, range, &event.corner, [face, upper.1]);
+        let leaving = self.with_faces_and_edges(leaving, range, &event.corner, [face, upper.1]);
         let count = leaving.len();
         self.status.replace(range, leaving);
         self.record_crossing(range.first);
@@ -152,10 +152,10 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Returns the winding number and the face of the result just below the index `index` in the order of
     /// segments on the sweep line.
-    fn below(&self, index: usize) -> (i32, u32) {
+    fn winding_and_face_below(&self, index: usize) -> (i32, u32) {
         match index.checked_sub(1) {
             Some(lower) => {
-                let lower = self.status.at(lower);
+                let lower = self.status.segment_at(lower);
                 (lower.above(), lower.faces[1])
             }
             None => (self.outlines.base, 0),
@@ -169,7 +169,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         if range.first < range.last {
             return Location::On;
         }
-        if (self.inside)(self.below(range.first).0) {
+        if (self.inside)(self.winding_and_face_below(range.first).0) {
             Location::In
         } else {
             Location::Out
@@ -178,7 +178,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Returns the segments that leave a stop to the right, in order from below; `winding` is the winding
     /// number below them.
-    fn leaving(
+    fn leaving_segments(
         &self,
         range: OrderRange,
         stop: Option<u32>,
@@ -186,7 +186,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
     ) -> SmallVec<[ActiveSegment; 2]> {
         let mut numbers: SmallVec<[u32; 4]> = SmallVec::new();
         for passing in range.first..range.last {
-            let strands = self.status.at(passing).strands.iter();
+            let strands = self.status.segment_at(passing).strands.iter();
             let goes_on = |n: &&u32| Some(self.strands[**n as usize].right) != stop;
             numbers.extend(strands.filter(goes_on).copied());
         }
@@ -224,7 +224,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Sets the faces beside the segments that leave a stop, adds the edges of the result that end there, and
     /// begins new ones; `lower` and `upper` are the faces below and above all segments at the stop.
-    fn settled(
+    fn with_faces_and_edges(
         &mut self,
         mut leaving: SmallVec<[ActiveSegment; 2]>,
         range: OrderRange,
@@ -246,10 +246,10 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
         let arriving = range.first..range.last;
         let arriving: SmallVec<[usize; 4]> = arriving
-            .filter(|i| self.status.at(*i).start.is_some())
+            .filter(|i| self.status.segment_at(*i).start.is_some())
             .collect();
         if !self.extend_edge(&arriving, &mut leaving, walls) {
-            self.turn(&arriving, &mut leaving, walls, corner);
+            self.place_corner(&arriving, &mut leaving, walls, corner);
         }
         leaving
     }
@@ -260,7 +260,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         let ([before], 1) = (arriving, walls) else {
             return false;
         };
-        let before = self.status.at(*before);
+        let before = self.status.segment_at(*before);
         let Some(after) = leaving.iter_mut().find(|s| self.separates(s)) else {
             return false;
         };
@@ -274,7 +274,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
 
     /// Adds a corner to the result if a boundary edge reaches or leaves a stop; ends the edges that reach it
     /// and begins those that leave it.
-    fn turn(
+    fn place_corner(
         &mut self,
         arriving: &[usize],
         leaving: &mut [ActiveSegment],
@@ -286,7 +286,7 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         }
         let here = self.output.corner(corner);
         for index in arriving {
-            let segment = self.status.at(*index);
+            let segment = self.status.segment_at(*index);
             let above = Label::from_inside((self.inside)(segment.above()));
             if let Some(start) = segment.start {
                 let line = *segment.line.line();
@@ -306,7 +306,10 @@ impl<'a, R: Fn(i32) -> bool> Sweep<'a, R> {
         if index == 0 || index >= self.status.len() {
             return;
         }
-        let (lower, upper) = (self.status.at(index - 1), self.status.at(index));
+        let (lower, upper) = (
+            self.status.segment_at(index - 1),
+            self.status.segment_at(index),
+        );
         let end = |stop: u32| self.corner(stop).map(|corner| &corner.point);
         let on = |line: &RoundedLine, point: Option<&Point2>, side| {
             point.is_some_and(|point| line.side_of(point) == side)

@@ -115,7 +115,7 @@ impl Element<'_> {
 impl Anchor {
     fn at_vertex(triangle: &Triangle, corner: usize) -> Self {
         Self {
-            name: triangle.name(corner),
+            name: triangle.point_name(corner),
             position: AnchorPosition::Lattice(triangle.corners[corner]),
         }
     }

@@ -125,7 +125,11 @@ impl Scene<'_> {
         let boxes = elements.filter(|(_, e)| !e.is_apart()).map(boxed).collect();
         let swept = |number: u32| self.elements[number as usize].swept(self.cell);
         let mut found = vec![Neighbours::new(); self.elements.len()];
-        let near: Vec<NearTriangle> = self.elements.iter().map(|e| self.near(e)).collect();
+        let near: Vec<NearTriangle> = self
+            .elements
+            .iter()
+            .map(|e| self.near_triangle(e))
+            .collect();
         let mut count = 0usize;
         pairs(boxes, swept, |a, b| {
             poll();

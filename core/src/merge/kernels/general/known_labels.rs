@@ -80,7 +80,7 @@ impl KnownLabels {
         let operand = element.operand;
         match (status, &element.kind) {
             (CutStatus::Untouched, ElementKind::Face(triangle)) => {
-                let names = element.vertices_in(cell).map(|i| triangle.name(i));
+                let names = element.vertices_in(cell).map(|i| triangle.point_name(i));
                 self.unite(operand, names)
             }
             (CutStatus::Uncut(anchors), _) => self.unite(operand, anchors.iter().map(|a| a.name)),

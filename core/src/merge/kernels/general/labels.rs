@@ -29,8 +29,8 @@ impl Scene<'_> {
         for (i, status) in statuses.iter().enumerate() {
             poll();
             if let (CutStatus::Cut(cut), true) = (status, labels[i].is_empty()) {
-                let (part, start) = self.start(self.elements[i].operand, cut, &mut known)?;
-                self.flood(statuses, (i, part, start), &mut known, &mut labels)?;
+                let (part, start) = self.start_label(self.elements[i].operand, cut, &mut known)?;
+                self.spread_from(statuses, (i, part, start), &mut known, &mut labels)?;
             }
         }
         for (i, status) in statuses.iter().enumerate() {
@@ -44,7 +44,7 @@ impl Scene<'_> {
 
     /// Returns a part of a divided element and its label, from which the labels of all other parts follow;
     /// `None` if no label can be counted.
-    fn start(
+    fn start_label(
         &self,
         operand: usize,
         cut: &CutElement,
@@ -65,7 +65,7 @@ impl Scene<'_> {
 
     /// Labels the parts of a divided element from one of them, and then the parts of all divided elements
     /// that are connected to it by common points; `None` if labels contradict each other.
-    fn flood(
+    fn spread_from(
         &self,
         statuses: &[CutStatus],
         start: (usize, usize, Labels),
@@ -78,7 +78,7 @@ impl Scene<'_> {
             let (CutStatus::Cut(cut), true) = (&statuses[i], labels[i].is_empty()) else {
                 continue;
             };
-            labels[i] = spread(&cut.trace, part, start)?;
+            labels[i] = labels_of_parts(&cut.trace, part, start)?;
             for anchor in &cut.anchors {
                 let label = labels[i][cut.part_at(anchor)?];
                 let root = known.root_of(self.elements[i].operand, anchor.name) as usize;
@@ -158,7 +158,7 @@ impl Scene<'_> {
 
 /// Returns the labels of all parts of a divided element, given the label of one; `None` if this contradicts
 /// the segments that divide the element.
-fn spread(trace: &Trace, first: usize, start: Labels) -> Option<PieceLabels> {
+fn labels_of_parts(trace: &Trace, first: usize, start: Labels) -> Option<PieceLabels> {
     let agrees = start & trace.operands == trace.parts[first];
     let others = start & !trace.operands;
     agrees.then(|| trace.parts.iter().map(|part| others | part).collect())

@@ -157,7 +157,7 @@ impl<'a> Scene<'a> {
 
     /// Returns a triangle that contains the element, for quick tests: an element apart from a face is apart
     /// from the pieces of this face, too. The face of a half-space is never known to be apart.
-    pub(super) fn near(&self, element: &Element) -> NearTriangle {
+    pub(super) fn near_triangle(&self, element: &Element) -> NearTriangle {
         let corners = match &element.kind {
             ElementKind::Face(triangle) => Some(triangle.corners),
             ElementKind::Piece(part, _) | ElementKind::Part(part, _) => {
@@ -246,7 +246,7 @@ impl ApartPart<'_> {
 
 impl Triangle<'_> {
     /// Returns the name of the vertex at a corner.
-    pub(super) fn name(&self, corner: usize) -> PointName {
+    pub(super) fn point_name(&self, corner: usize) -> PointName {
         PointName::Vertex(self.face.slot, self.vertices[corner])
     }
 

@@ -174,7 +174,7 @@ impl CrossedElement<'_> {
             &face.corners()[rim].edge,
         );
         if let (Carrier::Edge(edge), Carrier::Edge(rim)) = carriers {
-            let turn = passes(edge.ends(), rim.ends());
+            let turn = passing_side(edge.ends(), rim.ends());
             return Ok(if rises { turn } else { -turn });
         }
         let plane = (face.support(), other.number);
@@ -234,7 +234,7 @@ fn change(sides: &[Side], (from, to): (Side, Side)) -> Result<Change, Degenerate
 
 /// Returns the side on which the line from a to b passes the directed edge from c to d: the sign of the
 /// determinant of d − c, a − c and b − c.
-fn passes((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
+fn passing_side((a, b): (&Lattice, &Lattice), (c, d): (&Lattice, &Lattice)) -> Sign {
     let from = |p: &Lattice| each_axis(|i| p[i] - c[i]);
     determinant(&from(d), &from(a), &from(b))
 }

@@ -62,7 +62,7 @@ impl Grid {
     }
 
     /// Returns the number of the plane at a lattice coordinate on an axis.
-    pub(super) fn find(&self, axis: usize, at: i64) -> usize {
+    pub(super) fn number_of_plane(&self, axis: usize, at: i64) -> usize {
         self.lines[axis].partition_point(|l| *l < 2 * at)
     }
 
@@ -187,7 +187,10 @@ mod tests {
         let grid = Grid::new(&scene.cell, &facets).expect("a coarse grid");
         let lines: Vec<i64> = (0..4).map(|line| grid.line(0, line)).collect();
         assert_eq!(lines, [-1, 2, 6, 7]);
-        assert_eq!((grid.count(0), grid.columns(), grid.find(0, 3)), (3, 9, 2));
+        assert_eq!(
+            (grid.count(0), grid.columns(), grid.number_of_plane(0, 3)),
+            (3, 9, 2)
+        );
         assert_eq!(grid.intervals_between(0, 2, 6).touched, 1..2);
     }
 

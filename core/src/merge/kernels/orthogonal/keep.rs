@@ -58,7 +58,7 @@ impl Scene<'_> {
         let plane = (facet.axis, self.positions[sheet[0]].line);
         let runs = sheet.chunk_by(|a, b| all[*a].operand == all[*b].operand);
         let runs: SmallVec<[&[usize]; 2]> = runs.collect();
-        if runs.iter().any(|own| self.overlap(own)) {
+        if runs.iter().any(|own| self.any_overlap(own)) {
             return None;
         }
         let operands: SmallVec<[usize; 2]> = runs.iter().map(|own| all[own[0]].operand).collect();
@@ -126,7 +126,7 @@ impl Scene<'_> {
 
     /// Returns true if facets of one operand and plane with opposite orientations overlap. Facets with the
     /// same orientation cannot overlap if all winding numbers are 0 or 1.
-    fn overlap(&self, own: &[usize]) -> bool {
+    fn any_overlap(&self, own: &[usize]) -> bool {
         let rises = |i: &&usize| self.facets.all[**i].change() > 0;
         let (up, down): (Vec<&usize>, Vec<&usize>) = own.iter().partition(rises);
         up.iter()

@@ -31,7 +31,7 @@ impl Facet<'_> {
     pub(super) fn position(&self, grid: &Grid) -> FacetPosition {
         let (row, bit) = OTHER_AXES[self.axis];
         FacetPosition {
-            line: grid.find(self.axis, self.at),
+            line: grid.number_of_plane(self.axis, self.at),
             rows: self.interval_range(grid, row),
             bits: self.interval_range(grid, bit),
         }
