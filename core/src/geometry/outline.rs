@@ -266,7 +266,7 @@ fn cancel_line(edges: &[OutlineEdge], run: &[EdgeByLine], kept: &mut Vec<Outline
         });
     }
     each_segment(&mut events, axis, |sum, low, high| {
-        emit(&run, sum, low, high, kept);
+        push_copies(&run, sum, low, high, kept);
     });
 }
 
@@ -300,7 +300,7 @@ fn is_opposite(a: &OutlineEdge, b: &OutlineEdge, axis: usize) -> bool {
 
 /// Appends |sum| copies of the edge between two points of a line; it runs from `low` to `high` if `sum` is
 /// positive, else back.
-fn emit(
+fn push_copies(
     run: &[&OutlineEdge],
     sum: i32,
     low: &Arc<Vertex>,

@@ -54,10 +54,10 @@ impl VertexTable {
             RoundedPoint::upper_end(position),
         ];
         if low == high {
-            return self.among(low.fingerprint(), vertex);
+            return self.find_among(low.fingerprint(), vertex);
         }
         let corner = |i: usize| RoundedPoint::combined(&low, &high, i);
-        (0..8).find_map(|i| self.among(corner(i).fingerprint(), vertex))
+        (0..8).find_map(|i| self.find_among(corner(i).fingerprint(), vertex))
     }
 
     fn add(&mut self, vertex: Arc<Vertex>) -> u32 {
@@ -74,7 +74,7 @@ impl VertexTable {
 
     /// The number of the point that equals a vertex, among the points with one fingerprint; `None` if none
     /// does.
-    fn among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
+    fn find_among(&self, fingerprint: u64, vertex: &Vertex) -> Option<u32> {
         let before = |id: &u32| Some(self.previous[*id as usize]).filter(|p| *p != NONE);
         let last = self.last.get(&fingerprint).copied();
         std::iter::successors(last, before).find(|id| self.point(*id).equals(vertex))

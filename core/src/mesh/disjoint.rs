@@ -54,7 +54,7 @@ impl DisjointSets {
                 sets.lower[v.index()] = least;
             }
         }
-        sets.shorten();
+        sets.flatten();
         spend(triangles.len());
         for corners @ [a, b, c] in triangles {
             let least = sets.least_of_corners(corners);
@@ -63,7 +63,7 @@ impl DisjointSets {
                 sets.join(a.0, c.0);
             }
         }
-        sets.shorten();
+        sets.flatten();
         sets
     }
 
@@ -75,7 +75,7 @@ impl DisjointSets {
     }
 
     /// Points each number to the name of its set. Numbers point to lower ones, which this pass handles first.
-    fn shorten(&mut self) {
+    fn flatten(&mut self) {
         for at in 0..self.lower.len() {
             self.lower[at] = self.lower[self.lower[at] as usize];
         }

@@ -140,7 +140,7 @@ fn check_offsets(offsets: &[i64], count: usize) -> Result<()> {
     Err(Error::new(ErrorKind::Shape, text))
 }
 
-fn fault(kind: ErrorKind, source: u32, text: &str) -> Error {
+fn facet_error(kind: ErrorKind, source: u32, text: &str) -> Error {
     Error::at(kind, vec![source.into()], format!("facet {source} {text}"))
 }
 
@@ -150,10 +150,10 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
         [a, b] if dimension == 2 && a != b => {}
         [_, _] if dimension == 2 => {
             let text = "is a segment of zero length on the lattice";
-            return Err(fault(ErrorKind::Degenerate, source, text));
+            return Err(facet_error(ErrorKind::Degenerate, source, text));
         }
         _ => {
-            return Err(fault(
+            return Err(facet_error(
                 ErrorKind::Shape,
                 source,
                 "has too few or many corners",
@@ -170,14 +170,14 @@ fn point_or_segment(dimension: usize, corners: &[Lattice], source: u32) -> Resul
 fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> {
     if given.len() < 3 || given.len() > MAX_CORNERS_PER_FACET {
         let text = "needs from 3 to 16384 corners";
-        return Err(fault(ErrorKind::Shape, source, text));
+        return Err(facet_error(ErrorKind::Shape, source, text));
     }
     let corners = without_flat_corners(given);
     let plane = newell_plane(&corners).ok_or_else(|| without_normal(&corners, source))?;
     let planar = corners.iter().all(|p| plane.side_of_lattice(p) == Side::On);
     if !planar && !lenient {
         let text = "is not planar on the lattice";
-        return Err(fault(ErrorKind::NonPlanar, source, text));
+        return Err(facet_error(ErrorKind::NonPlanar, source, text));
     }
     let axes = projection(&plane);
     if planar && is_convex(&corners, axes) {
@@ -188,9 +188,12 @@ fn polygon(given: &[Lattice], source: u32, lenient: bool) -> Result<Vec<Facet>> 
             source,
         }]);
     }
-    let crossed = || fault(ErrorKind::NotSimple, source, "crosses or touches itself");
+    let crossed = || facet_error(ErrorKind::NotSimple, source, "crosses or touches itself");
     let parts = triangles(&corners, axes).ok_or_else(crossed)?;
-    Ok(parts.iter().map(|t| part(&corners, t, source)).collect())
+    Ok(parts
+        .iter()
+        .map(|t| part_of_facet(&corners, t, source))
+        .collect())
 }
 
 /// Returns the error that says why a polygon has no normal: it is flat, or its areas of opposite orientation
@@ -207,10 +210,10 @@ fn without_normal(corners: &[Lattice], source: u32) -> Error {
         },
         _ => (ErrorKind::Degenerate, "has no area on the lattice"),
     };
-    fault(kind, source, text)
+    facet_error(kind, source, text)
 }
 
-fn part(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
+fn part_of_facet(corners: &[Lattice], triangle: &[usize; 3], source: u32) -> Facet {
     let is_seam = |i: usize| triangle[(i + 1) % 3] != (triangle[i] + 1) % corners.len();
     Facet {
         corners: triangle.map(|k| corners[k]).to_vec(),

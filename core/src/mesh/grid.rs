@@ -59,7 +59,7 @@ impl Pitch {
     /// across, as long as the largest coordinate fits.
     pub fn suited(largest: f64, extent: f64) -> Result<Self> {
         let mut pitch = Self::DEFAULT;
-        while !pitch.fits(largest) {
+        while !pitch.is_in_reach(largest) {
             pitch = Self::new(pitch.exponent() + 3).map_err(|_| {
                 let text = format!(
                     "the coordinate {largest:e} is too large for any lattice; scale the mesh down"
@@ -69,7 +69,7 @@ impl Pitch {
         }
         while extent > 0.0 && pitch.steps(extent) < 1e6 && pitch.0 > -EXACT_POWERS + 3 {
             let finer = Self(pitch.0 - 3);
-            if !finer.fits(largest) {
+            if !finer.is_in_reach(largest) {
                 break;
             }
             pitch = finer;
@@ -105,7 +105,7 @@ impl Pitch {
     }
 
     #[inline]
-    fn fits(self, x: f64) -> bool {
+    fn is_in_reach(self, x: f64) -> bool {
         self.steps(x).abs() < LIMIT
     }
 
@@ -114,8 +114,8 @@ impl Pitch {
     #[inline]
     pub fn snap(self, x: f64) -> Result<i64> {
         // The test is also false for infinities and NaN.
-        if !self.fits(x) {
-            return Err(self.refused(x));
+        if !self.is_in_reach(x) {
+            return Err(self.too_large_error(x));
         }
         let rounded = if self.0 <= 0 {
             snap_product(x, power_of_ten(-self.0))
@@ -126,7 +126,7 @@ impl Pitch {
     }
 
     #[cold]
-    fn refused(self, x: f64) -> Error {
+    fn too_large_error(self, x: f64) -> Error {
         if !x.is_finite() {
             let text = format!("a coordinate is {x}; coordinates must be finite");
             return Error::new(ErrorKind::NonFinite, text);

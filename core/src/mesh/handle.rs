@@ -59,7 +59,7 @@ impl FaceId {
     }
 
     /// The triangle that a half-edge bounds.
-    pub fn beside(half_edge: u32) -> Self {
+    pub fn of_half_edge(half_edge: u32) -> Self {
         Self(half_edge / 3)
     }
 }
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(faces[2].half_edges().collect::<Vec<_>>(), [6, 7, 8]);
         assert!(faces
             .iter()
-            .all(|f| f.half_edges().all(|h| FaceId::beside(h) == *f)));
+            .all(|f| f.half_edges().all(|h| FaceId::of_half_edge(h) == *f)));
     }
 
     #[test]

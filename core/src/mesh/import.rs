@@ -246,7 +246,7 @@ fn volume_and_flat_faces_of_chunk(
     for (number, face) in (as_number(first)..).zip(faces) {
         poll();
         let corners = face.map(|v| &vertices[v.index()]);
-        let [u, v] = spokes(corners);
+        let [u, v] = edge_vectors(corners);
         let arm = each_axis(|i| as_double(corners[0][i] - origin[i]));
         volume += arm[0] * (u[1] * v[2] - u[2] * v[1])
             + arm[1] * (u[2] * v[0] - u[0] * v[2])
@@ -261,12 +261,12 @@ fn volume_and_flat_faces_of_chunk(
 /// Return whether a triangle has no area, exactly.
 pub fn is_flat(corners: &[Lattice; 3]) -> bool {
     let [a, b, c] = corners;
-    let [u, v] = spokes([a, b, c]);
+    let [u, v] = edge_vectors([a, b, c]);
     !are_surely_not_parallel(&u, &v) && normal(a, b, c) == [0; 3]
 }
 
 /// The vectors from the first corner of a triangle to the two others, in doubles.
-fn spokes([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
+fn edge_vectors([a, b, c]: [&Lattice; 3]) -> [[f64; 3]; 2] {
     [b, c].map(|end| each_axis(|i| as_double(end[i] - a[i])))
 }
 
@@ -285,7 +285,7 @@ fn closed_or_welded(mesh: &mut TriangleMesh, findings: &mut Vec<Finding>) -> Res
     if is_closed(&mesh.faces) {
         return Ok(Vec::new());
     }
-    if let Some(welded) = weld(mesh) {
+    if let Some(welded) = welded_faces(mesh) {
         mesh.faces = welded;
         findings.push(Finding::about(
             WELDED,
@@ -343,7 +343,7 @@ fn rounded(number: f64) -> String {
 }
 
 /// The faces after vertices at one lattice point are merged; `None` if no two vertices are at one point.
-fn weld(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
+fn welded_faces(mesh: &TriangleMesh) -> Option<Vec<[VertexId; 3]>> {
     let image = mesh.first_equal_vertices();
     let changed = VertexId::all().zip(&image).any(|(i, v)| i != *v);
     let weld = |face: &[VertexId; 3]| face.map(|v| image[v.index()]);

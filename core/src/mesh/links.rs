@@ -18,7 +18,7 @@ type ShortLink = [u16; 2 * MAX_SHORT_LINK_EDGES];
 
 /// The vertices of a closed surface whose link is not one cycle, in ascending order.
 pub fn irregular(faces: &[[VertexId; 3]], vertex_count: usize) -> Vec<VertexId> {
-    let doubtful = doubtful(faces, vertex_count, |vertex| Some(vertex.index()));
+    let doubtful = vertices_with_doubtful_links(faces, vertex_count, |vertex| Some(vertex.index()));
     let vertices = doubtful.into_iter().map(VertexId).collect();
     without_cycle(&VertexSubset::new(vertices, vertex_count), faces)
 }
@@ -35,7 +35,7 @@ pub fn irregular_among(
         return Vec::new();
     }
     let subset = VertexSubset::new(vertices, vertex_count);
-    let doubtful = doubtful(faces, subset.vertices.len(), |vertex| {
+    let doubtful = vertices_with_doubtful_links(faces, subset.vertices.len(), |vertex| {
         subset.index_of(vertex)
     });
     let vertices = doubtful.into_iter().map(|at| subset.vertices[at as usize]);
@@ -108,7 +108,7 @@ fn without_cycle(subset: &VertexSubset, faces: &[[VertexId; 3]]) -> Vec<VertexId
 /// The indices of vertices whose short link does not prove that it is one cycle.
 ///
 /// `index` maps the vertices to examine to `0..count`, and all others to `None`.
-fn doubtful(
+fn vertices_with_doubtful_links(
     faces: &[[VertexId; 3]],
     count: usize,
     index: impl Fn(VertexId) -> Option<usize>,
@@ -161,14 +161,14 @@ fn is_short_cycle(link: &ShortLink, count: usize) -> bool {
         if label == link[0] {
             return false;
         }
-        label = after(link, label);
+        label = label_after(link, label);
     }
     label == link[0]
 }
 
 /// The label of the end of the edge that starts at `label`; if several edges start there, the bitwise or of
 /// the labels of their ends.
-fn after(link: &ShortLink, label: u16) -> u16 {
+fn label_after(link: &ShortLink, label: u16) -> u16 {
     (0..MAX_SHORT_LINK_EDGES).fold(0, |found, i| {
         let mask = if link[i] == label { u16::MAX } else { 0 };
         found | (link[MAX_SHORT_LINK_EDGES + i] & mask)

@@ -40,7 +40,7 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
         // cancellation.
         volume.add(dot(&normal, &from_middle) / 6.0);
         area.add(dot(&normal, &normal).sqrt() / 2.0);
-        size += length(difference(&b, &a)) * length(difference(&c, &a)) * length(from_middle);
+        size += sum_norm(difference(&b, &a)) * sum_norm(difference(&c, &a)) * sum_norm(from_middle);
     }
     let volume = volume.rounded();
     let drowns = size.is_finite() && VOLUME_ROUNDING * size > MAX_ROUNDING_SHARE * volume.abs();
@@ -55,7 +55,7 @@ pub fn measures(vertices: &[[f64; 3]], faces: &[[VertexId; 3]], middle: [f64; 3]
 }
 
 /// The sum norm of a vector: the sum of its components' magnitudes.
-fn length(vector: [f64; 3]) -> f64 {
+fn sum_norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x.abs()).sum()
 }
 

@@ -30,12 +30,12 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
         around.sort_unstable();
         for uses in around.chunk_by(|a, b| a.0 == b.0) {
             edges += 1;
-            open_edges += open(uses, uses[0].0.index() == vertex);
+            open_edges += open_directions(uses, uses[0].0.index() == vertex);
         }
     }
     let owner = surfaces(faces, vertex_count);
     Counts {
-        vertices: used(faces, vertex_count),
+        vertices: count_used_vertices(faces, vertex_count),
         edges,
         open_edges,
         surfaces: owner.iter().max().map_or(0, |&last| last as usize + 1),
@@ -43,7 +43,7 @@ pub fn counts(faces: &[[VertexId; 3]], vertex_count: usize) -> Counts {
 }
 
 /// Returns the number of open directions of an edge; a loop from a vertex to itself counts as one.
-fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
+fn open_directions(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     let forth = uses.iter().filter(|(_, forth)| *forth).count();
     match (forth, uses.len() - forth) {
         _ if is_loop => 1,
@@ -53,7 +53,7 @@ fn open(uses: &[(VertexId, bool)], is_loop: bool) -> usize {
     }
 }
 
-fn used(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
+fn count_used_vertices(faces: &[[VertexId; 3]], vertex_count: usize) -> usize {
     let mut is_used = vec![false; vertex_count];
     for &vertex in faces.iter().flatten() {
         is_used[vertex.index()] = true;

@@ -45,7 +45,7 @@ impl Topology {
         let has_several_fans = |vertex: &VertexId| {
             let row = outgoing.of(*vertex);
             let first = row.iter().map(|half| half.number).min();
-            row.len() > 3 && first.is_some_and(|first| turns(first, mates_of) < row.len())
+            row.len() > 3 && first.is_some_and(|first| fan_size(first, mates_of) < row.len())
         };
         let all = VertexId::all().take(vertex_count);
         irregular.extend(all.filter(has_several_fans));
@@ -81,7 +81,7 @@ impl Topology {
 
 /// Returns the number of half-edges that leave a vertex in the fan of one of them; `usize::MAX` if the fan is
 /// open.
-fn turns(start: u32, mate: impl Fn(u32) -> u32) -> usize {
+fn fan_size(start: u32, mate: impl Fn(u32) -> u32) -> usize {
     let mut half = start;
     let mut count = 0;
     loop {

@@ -52,7 +52,7 @@ pub struct FrontierEdge {
 impl FrontierEdge {
     /// The face that this edge bounds.
     pub fn face(&self) -> SourceFace {
-        SourceFace::new(self.slot, FaceId::beside(self.half))
+        SourceFace::new(self.slot, FaceId::of_half_edge(self.half))
     }
 
     /// The line that this edge lies on.
@@ -124,7 +124,7 @@ impl Rims {
         }
         if rim.is_mixed(a) || rim.is_mixed(b) {
             let by_ends = self.by_ends[slot.index()].get_or_init(|| rim.by_ends(mesh));
-            return by_ends.get(&[b, a]).map(|mate| FaceId::beside(*mate));
+            return by_ends.get(&[b, a]).map(|mate| FaceId::of_half_edge(*mate));
         }
         let around = self.around[slot.index()].get_or_init(|| Around::of(mesh));
         let mut faces = around.faces(a).iter();
@@ -308,7 +308,7 @@ fn touch(mesh: &TriangleMesh, fates: &[Fate]) -> Vec<u8> {
 
 /// The vertices at which a half-edge starts and ends.
 pub fn half_edge_ends(mesh: &TriangleMesh, half: u32) -> [VertexId; 2] {
-    let face = mesh.vertices_of(FaceId::beside(half));
+    let face = mesh.vertices_of(FaceId::of_half_edge(half));
     let corner = half as usize % 3;
     [face[corner], face[(corner + 1) % 3]]
 }

@@ -63,7 +63,7 @@ pub fn winds_at_most_once(edges: &[[PlanarPoint; 2]]) -> bool {
         starts: &starts,
         above: Vec::new(),
     };
-    stops.iter().all(|stop| sweep.passes(stop))
+    stops.iter().all(|stop| sweep.advance_to(stop))
 }
 
 impl SweptEdge {
@@ -99,7 +99,7 @@ impl Sweep<'_> {
 
     /// Advances the sweep to a stop; returns whether the outlines wind at most once there and up to the next
     /// stop.
-    fn passes(&mut self, stop: &PlanarPoint) -> bool {
+    fn advance_to(&mut self, stop: &PlanarPoint) -> bool {
         poll();
         let first = self
             .above

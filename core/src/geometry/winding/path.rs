@@ -55,10 +55,10 @@ impl PaddedPath {
     #[inline]
     pub fn may_meet(&self, low: &Lattice, high: &Lattice) -> bool {
         let beyond = |i: usize| low[i] > self.high[i] || high[i] < self.low[i];
-        !(beyond(0) || beyond(1) || beyond(2)) && self.passes(low, high)
+        !(beyond(0) || beyond(1) || beyond(2)) && self.meets_padded_box(low, high)
     }
 
-    fn passes(&self, low: &Lattice, high: &Lattice) -> bool {
+    fn meets_padded_box(&self, low: &Lattice, high: &Lattice) -> bool {
         let (mut first, mut last) = (0.0f64, 1.0f64);
         for i in 0..3 {
             let before = as_double(low[i]) - self.slack - self.from[i];

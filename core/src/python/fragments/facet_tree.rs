@@ -145,7 +145,12 @@ impl<S: FromRow> FacetTree<S> {
 
     /// Returns options that build the same tree again.
     pub fn build_options(&self) -> BuildOptions {
-        let own = self.tree.own().iter().map(row_of::<S>).collect();
+        let own = self
+            .tree
+            .own_hyperplanes()
+            .iter()
+            .map(row_of::<S>)
+            .collect();
         let method = BuildMethod::Given(self.cuts());
         BuildOptions { method, own }
     }
@@ -291,7 +296,7 @@ impl<S: Affine> FacetTree<S> {
                 export.vertices.extend(self.positions(shape));
                 export
                     .original
-                    .extend(S::original(shape, &facet.corners, &facet.seams));
+                    .extend(S::original_edges(shape, &facet.corners, &facet.seams));
                 export.offsets.push(export.vertices.len() as i64);
                 export.source.push(i64::from(facet.source));
                 export.node.push(number);

@@ -22,7 +22,7 @@ pub fn median_cut<S: Affine>(pieces: &[Piece<S>]) -> Option<(NodeCut, S::Hyperpl
         let at = median(boxes.iter().flatten().map(|end| end[axis]))?;
         let cut = S::axis_cut(axis, at)?;
         let tally = Tally::of(pieces, &cut);
-        (4 * tally.larger() <= 3 * pieces.len()).then_some((NodeCut::Axis { axis, at }, cut))
+        (4 * tally.larger_side() <= 3 * pieces.len()).then_some((NodeCut::Axis { axis, at }, cut))
     })
 }
 

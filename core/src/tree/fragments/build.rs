@@ -97,7 +97,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             None => [None, None],
         };
         let pieces = if W::LISTENS {
-            numbers(&open.pieces)
+            piece_numbers(&open.pieces)
         } else {
             Vec::new()
         };
@@ -111,16 +111,16 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             reason,
             candidates,
             pieces,
-            minus: numbers(&minus),
-            plus: numbers(&plus),
-            split: crossing(&self.tree.crossings[crossed..]),
-            coplanar: coplanar(&self.tree.fragments[start..]),
+            minus: piece_numbers(&minus),
+            plus: piece_numbers(&plus),
+            split: crossed_pieces(&self.tree.crossings[crossed..]),
+            coplanar: coplanar_pieces(&self.tree.fragments[start..]),
         });
         self.link(open.parent, node);
         self.tree.nodes.push(Node {
             hyperplane,
             cut,
-            coplanar: narrow(start)?..narrow(self.tree.fragments.len())?,
+            coplanar: as_u32(start)?..as_u32(self.tree.fragments.len())?,
             minus: None,
             plus: None,
             parent: open.parent,
@@ -132,7 +132,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
             parent: Some((node, half)),
             depth: open.depth + 1,
             region,
-            old: chooser.below(open.old, half),
+            old: chooser.existing_child(open.old, half),
         };
         let [below, above] = [
             side(Half::Minus, minus, minus_region),
@@ -144,7 +144,7 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 
     fn next_number(&self) -> Result<NodeId> {
-        narrow(self.tree.nodes.len()).map(NodeId)
+        as_u32(self.tree.nodes.len()).map(NodeId)
     }
 
     /// Enters a node as the child of its parent, on the given side; `None` stands for the root.
@@ -193,20 +193,20 @@ impl<S: Affine, W: Watcher<Division>> Builder<'_, S, W> {
     }
 }
 
-fn numbers<S: Affine>(pieces: &[Piece<S>]) -> Vec<u32> {
+fn piece_numbers<S: Affine>(pieces: &[Piece<S>]) -> Vec<u32> {
     pieces.iter().map(|piece| piece.number).collect()
 }
 
-fn crossing(crossings: &[Crossing]) -> Vec<u32> {
+fn crossed_pieces(crossings: &[Crossing]) -> Vec<u32> {
     crossings.iter().map(|crossing| crossing.piece).collect()
 }
 
-fn coplanar<S: Affine>(fragments: &[Fragment<S>]) -> Vec<u32> {
+fn coplanar_pieces<S: Affine>(fragments: &[Fragment<S>]) -> Vec<u32> {
     let number = |fragment: &Fragment<S>| fragment.piece.number;
     fragments.iter().map(number).collect()
 }
 
-fn narrow(count: usize) -> Result<u32> {
+fn as_u32(count: usize) -> Result<u32> {
     u32::try_from(count)
         .map_err(|_| Error::new(ErrorKind::TooLarge, "a tree holds at most 2^32 fragments"))
 }

@@ -106,7 +106,7 @@ impl<S: Affine> FragmentTree<S> {
     }
 
     /// The tree's list of hyperplanes that come from neither a facet nor an axis.
-    pub fn own(&self) -> &[S::Hyperplane] {
+    pub fn own_hyperplanes(&self) -> &[S::Hyperplane] {
         &self.own
     }
 

@@ -87,7 +87,7 @@ impl Tally {
     }
 
     /// The number of pieces on the side that has more.
-    pub fn larger(&self) -> usize {
+    pub fn larger_side(&self) -> usize {
         self.minus.max(self.plus)
     }
 }

@@ -102,7 +102,11 @@ impl<S: Space> Flat<S> {
     ///
     /// # Errors
     /// `Internal` if a cut lies in the border of its own region.
-    pub fn beside(&self, node: NodeId, piece: S::Fragment) -> Result<Vec<(S::Fragment, NodeId)>> {
+    pub fn leaves_beside(
+        &self,
+        node: NodeId,
+        piece: S::Fragment,
+    ) -> Result<Vec<(S::Fragment, NodeId)>> {
         let mut found = Vec::new();
         let mut pending = vec![(node, piece)];
         while let Some((at, piece)) = pending.pop() {
@@ -137,8 +141,8 @@ impl<S: Space> Flat<S> {
         for node in self.cuts() {
             poll();
             let span = node.cut.sub_hyperplane().span.clone();
-            for (part, minus) in self.beside(node.minus, span)? {
-                for (fragment, plus) in self.beside(node.plus, part)? {
+            for (part, minus) in self.leaves_beside(node.minus, span)? {
+                for (fragment, plus) in self.leaves_beside(node.plus, part)? {
                     contacts.push(Contact {
                         fragment,
                         minus,

@@ -75,8 +75,8 @@ impl<S: Space> Flat<S> {
         changes: &mut Vec<WindingChange>,
     ) -> Result<()> {
         let rise = piece.rise;
-        for (part, minus) in self.beside(node.minus, piece.fragment)? {
-            for (_, plus) in self.beside(node.plus, part)? {
+        for (part, minus) in self.leaves_beside(node.minus, piece.fragment)? {
+            for (_, plus) in self.leaves_beside(node.plus, part)? {
                 changes.push(WindingChange { minus, plus, rise });
             }
         }

@@ -43,7 +43,7 @@ impl Affine for Dim1 {
         vec![[as_double(piece.at()), 0.0, 0.0]]
     }
 
-    fn original(_: &Point1, _: &[Lattice], _: &[bool]) -> Vec<bool> {
+    fn original_edges(_: &Point1, _: &[Lattice], _: &[bool]) -> Vec<bool> {
         vec![true]
     }
 
@@ -59,7 +59,7 @@ impl Affine for Dim1 {
         1.0
     }
 
-    fn cone(piece: &Point1, apex: &[f64; 3]) -> f64 {
+    fn cone_measure(piece: &Point1, apex: &[f64; 3]) -> f64 {
         (as_double(piece.at()) - apex[0]) * as_double(sign(piece))
     }
 }

@@ -52,7 +52,7 @@ pub trait Affine: Space {
     ///
     /// `facet` has the facet's corners; edges that `seams` marks do not count. In 2D: for each end of the
     /// piece, whether it is an end of the facet.
-    fn original(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
+    fn original_edges(piece: &Self::Fragment, facet: &[Lattice], seams: &[bool]) -> Vec<bool>;
 
     /// Return how `piece` lies relative to `cut`, without computing its parts.
     fn relation(piece: &Self::Fragment, cut: &Self::Hyperplane) -> Split<()>;
@@ -62,7 +62,7 @@ pub trait Affine: Space {
 
     /// The signed length, area or volume of the cone from `apex` over a fragment; positive if `apex` is on
     /// the minus side.
-    fn cone(piece: &Self::Fragment, apex: &[f64; 3]) -> f64;
+    fn cone_measure(piece: &Self::Fragment, apex: &[f64; 3]) -> f64;
 
     /// The least and the greatest coordinates of a fragment's corners, as rounded in [`Affine::corners`].
     fn bounds(piece: &Self::Fragment) -> [[f64; 3]; 2] {

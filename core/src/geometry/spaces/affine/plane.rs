@@ -53,7 +53,7 @@ impl Affine for Dim2 {
         piece.points().iter().map(position).collect()
     }
 
-    fn original(piece: &Segment2, facet: &[Lattice], _: &[bool]) -> Vec<bool> {
+    fn original_edges(piece: &Segment2, facet: &[Lattice], _: &[bool]) -> Vec<bool> {
         let is_end = |p: &Point2| facet.iter().any(|end| is_lattice(p, end));
         piece.points().iter().map(is_end).collect()
     }
@@ -71,7 +71,7 @@ impl Affine for Dim2 {
         (x * x + y * y).sqrt()
     }
 
-    fn cone(piece: &Segment2, apex: &[f64; 3]) -> f64 {
+    fn cone_measure(piece: &Segment2, apex: &[f64; 3]) -> f64 {
         let [a, b] = [0, 1].map(|i| position(&piece.points()[i]));
         turn(&a, &b, apex) / 2.0
     }

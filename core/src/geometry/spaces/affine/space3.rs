@@ -69,7 +69,7 @@ impl Affine for Dim3 {
         piece.corners().iter().map(|c| c.at.approx()).collect()
     }
 
-    fn original(piece: &Polygon, facet: &[Lattice], seams: &[bool]) -> Vec<bool> {
+    fn original_edges(piece: &Polygon, facet: &[Lattice], seams: &[bool]) -> Vec<bool> {
         let on_edge = |carrier: &Carrier| match carrier {
             Carrier::Edge(edge) => facet
                 .iter()
@@ -92,7 +92,7 @@ impl Affine for Dim3 {
         dot(&normal, &normal).sqrt() / 2.0
     }
 
-    fn cone(piece: &Polygon, apex: &[f64; 3]) -> f64 {
+    fn cone_measure(piece: &Polygon, apex: &[f64; 3]) -> f64 {
         let corners = Self::corners(piece);
         let Some(first) = corners.first() else {
             return 0.0;
