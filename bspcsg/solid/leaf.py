@@ -414,7 +414,7 @@ class PlaneLeaf:
             return self._trees.keep(pitch, Tree.half_space(plane.row, pitch, plane.note))
 
     def beyond(self, pitch: int) -> "ConstantLeaf | None":
-        """Return the empty set or all of space for a plane beyond the lattice's range, else None."""
+        """Return the empty set or all of space for a plane beyond the lattice, else None."""
         above = self.plane.is_above_lattice(pitch)
         return None if above is None else ConstantLeaf(above)
 

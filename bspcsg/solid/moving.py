@@ -28,7 +28,7 @@ class AttributedMesh:
     attributes: Attributes | None = None
 
     def moved(self, factors: FactorChain) -> "AttributedMesh":
-        """Return the mesh after a transform; if that mirrors, faces are reversed to face outwards."""
+        """Return the mesh after a transform; faces are reversed if it mirrors, to face outwards."""
         said = self.attributes and self.attributes.turned(factors.product[:3, :3])
         faces = self.faces
         if factors.mirrors:
@@ -68,7 +68,7 @@ class AttributedMesh:
         return given if largest < (transform.LATTICE_REACH - 1) * 10.0**given else None
 
     def suited_pitch(self) -> int | None:
-        """Return the pitch that suits the coordinates and the extent of the mesh, None without one."""
+        """Return the pitch that suits the mesh's coordinates and extent, or None without one."""
         if len(self.vertices) == 0 or not np.isfinite(self.vertices).all():
             return None
         largest = float(np.abs(self.vertices).max())

@@ -71,7 +71,7 @@ class PointSet(ABC):
         return difference(self, *others)
 
     def symmetric_difference(self, *others: Self | Iterable[Self]) -> Self:
-        """Return the points that lie in an odd number of all the sets; ``^`` takes one other set."""
+        """Return the points that lie in an odd number of the sets; ``^`` takes one other set."""
         from ..operations.setops import xor
 
         return xor(self, *others)
