@@ -114,8 +114,8 @@ def cut(case: Case) -> tuple[np.ndarray, np.ndarray]:
     return at[clear], beyond[clear]
 
 
-# Found: fillets and chamfers of edges of both kinds forgot some in silence, cut far beyond where
-# edges end, or ended in a `ValueError`.
+# Found: fillets and chamfers of convex and concave edges together left edges out without an error,
+# cut far beyond the ends of edges, or ended in a `ValueError`.
 @pytest.mark.parametrize("seed", [*drawn(range(60), 3), *BROKEN])
 def test_blends_are_where_their_edges_are(seed: int) -> None:
     case = case_of(seed)

@@ -175,7 +175,7 @@ def test_what_crosses_by_itself_is_not_taken_for_rounding() -> None:
     assert not solid.normalized().to_mesh().certificate.crossings
 
 
-# Found: a connected mesh that crosses itself was delivered as it came, and no finding said so.
+# Found: a connected mesh that crosses itself was returned unchanged, without a finding.
 @pytest.mark.parametrize("shift", [(0, 0, 0), (0.1, 20, 3)])
 @pytest.mark.parametrize("what", ["folded", "nested", "twice", "beside"])
 def test_findings_tell_of_meshes_that_are_no_boundary(
@@ -232,7 +232,7 @@ def delivered() -> dict[int, tuple["b.Solid", "b.Mesh"]]:
     return found
 
 
-# Found: rounded meshes crossed themselves, and nothing was said.
+# Found: meshes crossed themselves after rounding, without a finding.
 def test_delivered_meshes_do_not_cross(
     delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
 ) -> None:
@@ -265,8 +265,8 @@ def turned_grid(seed: int) -> FloatArray:
     return apply(turn, rng.integers(0, 5, (60, 3)).astype(float))
 
 
-# Found: hulls of turned points, and what is made of hulls (sums, offsets, rounded solids),
-# crossed themselves in silence.
+# Found: hulls of rotated points, and solids made of such hulls (sums, offsets, rounded solids),
+# crossed themselves without a finding.
 def test_hulls_do_not_cross() -> None:
     for seed in drawn(range(60), 3):
         points = turned_grid(seed)
@@ -408,8 +408,8 @@ MAKERS: dict[str, tuple[Callable[[], "b.Solid"], Callable[[], "b.Solid"]]] = {
 }
 
 
-# Found: triangles without area were not told, and what crosses itself and is inside out by volume
-# was told to be inside out only.
+# Found: triangles without area were not reported, and a mesh that crosses itself and has negative
+# volume was reported as inside out only.
 @pytest.mark.parametrize(("faulty", "ordinary"), MAKERS.values(), ids=MAKERS)
 def test_what_is_made_of_arrays_tells_its_faults(
     faulty: Callable[[], "b.Solid"], ordinary: Callable[[], "b.Solid"]
@@ -425,8 +425,8 @@ def test_what_is_made_of_arrays_tells_its_faults(
         assert make is faulty or proof.ok
 
 
-# Found: a mesh that crosses itself in doubles by less than a step of the lattice was delivered as
-# it came, and no finding said so.
+# Found: a mesh that crosses itself in doubles by less than a step of the lattice was returned
+# unchanged, without a finding.
 def test_what_crosses_by_less_than_a_step_is_told() -> None:
     told = 0
     seeds = drawn(range(40), 3)
@@ -626,7 +626,8 @@ TOUCHING = {
 }
 
 
-# Found: a solid that touches itself crossed once it was turned or scaled, and no finding said so.
+# Found: a solid that touches itself crossed itself after it was rotated or scaled, without a
+# finding.
 @pytest.mark.parametrize("is_asked", [False, True])
 @pytest.mark.parametrize("solid", TOUCHING.values(), ids=TOUCHING)
 def test_what_touches_itself_does_not_cross_once_it_is_moved(
@@ -730,7 +731,8 @@ def uses_all_vertices(mesh: "b.Mesh") -> bool:
     return len(np.unique(mesh.faces)) == len(mesh.vertices)
 
 
-# Found: mended meshes kept vertices that no triangle uses; findings named old numbers.
+# Found: mended meshes kept vertices that no triangle uses, and findings named vertices by their old
+# indices.
 def test_what_single_precision_leaves_is_numbered_anew(
     delivered: dict[int, tuple["b.Solid", "b.Mesh"]],
 ) -> None:

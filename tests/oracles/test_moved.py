@@ -200,7 +200,8 @@ def test_t_junctions_stay_closed_wherever_they_are_moved(seed: int) -> None:
     assert turned.volume == pytest.approx(boxes.volume, rel=1e-7)
 
 
-# Found: so was one whose corners differ by less than a step.
+# Found: a mesh whose corners differ by less than a lattice step was refused as open after a
+# rotation.
 @pytest.mark.parametrize("seed", range(100 if DEEP else 20))
 def test_corners_that_are_welded_stay_so_wherever_they_are_moved(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -310,7 +310,7 @@ def at_most(size: int) -> Any:
     return limit
 
 
-# Found: unbuffered, an answer was cut off where the disk was full, with exit code 0.
+# Found: with unbuffered output, text was cut off when the disk was full, and the exit code was 0.
 @POSIX
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("more", UNBUFFERED)
@@ -371,7 +371,7 @@ def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
         assert finished("info", "none.off", stderr=full)[0] == 3
 
 
-# Found: the message named standard output.
+# Found: the error message named standard output instead of the file of results.
 @POSIX
 @pytest.mark.parametrize("size", [0, 100, 1500])
 def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:

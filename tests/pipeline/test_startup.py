@@ -64,7 +64,7 @@ def test_the_list_of_verbs_needs_no_numpy() -> None:
     assert imported("--help").isdisjoint({"numpy", "trimesh"})
 
 
-# Found: GLB cost an import of trimesh.
+# Found: using GLB files imported trimesh.
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", ["stl", "obj", "ply"])
 def test_a_checked_boolean_imports_little(cubes: Path, kind: str) -> None:
