@@ -35,7 +35,7 @@ def test_streams_in_and_out(folder: Path, piped: Piped, suffix: str) -> None:
     arguments = ["union", "a.off", "-", "--from", "stl", "-o", "-", "--to", suffix]
     code, out, err = piped(*arguments, given=given)
     assert code == 0 and volume_of(out, suffix) == pytest.approx(15, rel=1e-6)
-    # The mesh has standard output to itself; what is told goes beside it.
+    # Standard output has nothing but the mesh; messages go to standard error.
     assert b"check: agree" in err
 
 
@@ -286,10 +286,10 @@ def test_folders_that_are_forbidden(
         assert (code, out) == (5, "") and "no folder . that can be written to" in err
 
 
-#: Whether Python's own streams hold bytes back.
+#: Environments in which Python's own streams are unbuffered or buffered.
 UNBUFFERED = [{"PYTHONUNBUFFERED": "1"}, {"PYTHONUNBUFFERED": ""}]
 
-#: Commands whose answers go to standard output by each way there is.
+#: Commands that write to standard output, one for each way in which the code writes.
 ANSWERS = [
     ["convert", "s.ply", "-o-", "--to", "stl"],
     ["render", "s.ply", "-o-", "--to", "svg", "-q"],
