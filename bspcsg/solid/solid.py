@@ -279,7 +279,7 @@ class Solid(Movable, PointSet):
 
     @counted
     def __or__(self, other: object) -> "Solid":
-        """Return the union of two solids."""
+        """Union of this solid and the other one."""
         return combine("or", (self, other)) if isinstance(other, Solid) else NotImplemented
 
     __add__ = __or__
@@ -290,22 +290,22 @@ class Solid(Movable, PointSet):
 
     @counted
     def __and__(self, other: object) -> "Solid":
-        """Return the intersection of two solids."""
+        """Intersection of this solid and the other one."""
         return combine("and", (self, other)) if isinstance(other, Solid) else NotImplemented
 
     @counted
     def __sub__(self, other: object) -> "Solid":
-        """Return the difference: this solid without the other one."""
+        """Difference: this solid without the other one."""
         return combine("and", (self, ~other)) if isinstance(other, Solid) else NotImplemented
 
     @counted
     def __xor__(self, other: object) -> "Solid":
-        """Return the symmetric difference, as Python's sets do (manifold3d's ``^`` intersects)."""
+        """Symmetric difference, as for Python's sets (manifold3d's ``^`` is the intersection)."""
         return combine("xor", (self, other)) if isinstance(other, Solid) else NotImplemented
 
     @counted
     def __invert__(self) -> "Solid":
-        """Return the complement: all points of space outside the solid."""
+        """Complement: all of space outside this solid."""
         return from_node(*complement(Placed(self._node, self._factors)))
 
     # Results
