@@ -115,7 +115,7 @@ def far_and_wide(scene: Scene, kernel: Kernel) -> Iterator[str]:
     yield from _untouched(scene, mesh)
 
 
-# What no other operand comes near
+# Faces far from other operands
 
 
 def _untouched(scene: Scene, mesh: "b.Mesh") -> Iterator[str]:

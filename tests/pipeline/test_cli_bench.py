@@ -39,7 +39,7 @@ def test_the_list_names_all_cases(capsys: Capture) -> None:
     assert document["schema"] == 1 and [one["case"] for one in document["cases"]] == list(CASES)
 
 
-# Found: `bench --json` wanted a file.
+# Found: `bench --json` required a file.
 @pytest.mark.timeout(300)
 def test_cases_are_measured_recorded_and_shown_again(capsys: Capture, tmp_path: Path) -> None:
     record_path, plot_path = tmp_path / "r.json", tmp_path / "sizes.svg"

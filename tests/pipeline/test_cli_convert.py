@@ -148,7 +148,7 @@ def test_a_file_that_is_not_the_mesh_is_not_put_in_place(
         assert Path("x.off").read_bytes() == before and not list(Path().glob(".*.part"))
 
 
-# Found: triangles without area in single precision, and `check` said solid.
+# Found: triangles lost their area in single precision, and `check` still called the file a solid.
 def test_what_single_precision_destroys_is_told(folder: Path, capsys: Capture) -> None:
     put("a.ply", moved(icosphere(2), (0, 0, 1e7)))
     code, out, err = ran(capsys, "convert", "a.ply", "-o", "x.stl", "--json")

@@ -156,7 +156,8 @@ def test_resume_asks_only_what_is_open(folder: Path, capsys: Capture) -> None:
     assert len(lines()) == 6 + 1 + 4
 
 
-# Found: a crash was for ever, though another machine or more memory answers the case.
+# Found: a case that had crashed was never run again, though another machine or more memory may
+# solve it.
 def test_what_crashed_is_asked_again_if_wished(folder: Path, capsys: Capture) -> None:
     given = ["crosscheck", "a.off", "c.stl", "-j", "1", "--results", "r.jsonl"]
     ran(capsys, *given, "--op", "union", "--op", "xor")
@@ -313,7 +314,7 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
     assert ran(capsys, *given, "-q")[2] == ""
 
 
-# Found: outputs of `validate` wrote over each other.
+# Found: outputs of `validate` overwrote each other.
 @pytest.mark.parametrize(
     ("options", "said"),
     [

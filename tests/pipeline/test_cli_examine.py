@@ -217,7 +217,7 @@ def test_repair_tells_what_it_loses(folder: Path, capsys: Capture) -> None:
     assert (code, err) == (0, "") and b.io.read("x.3mf").objects == (("lid", 12),)
 
 
-# Found: where a lid rested on a body, `repair` joined them, and triangles lay over each other.
+# Found: where a lid rests on a body, `repair` joined them, and their triangles overlapped.
 def test_objects_are_repaired_by_themselves(folder: Path, capsys: Capture) -> None:
     lid, body = moved(cube(), (0, 0, 1)), (cube()[0], cube()[1][1:])
     objects = (("lid", 12), ("body", 11))
@@ -368,7 +368,7 @@ def test_check_and_clash_agree(
     assert ("volume in common" in ran(capsys, "info", name)[1]) == bool(code)
 
 
-# Found: `check` told of no file behind a script with a bad mesh.
+# Found: `check` did not report the files that follow a script with a bad mesh.
 def test_check_of_a_bad_script_tells_of_the_others(folder: Path, capsys: Capture) -> None:
     Path("bad.csg").write_text('import("open.stl");')
     b.save(b.cube(1), "good.stl")

@@ -19,7 +19,7 @@ from support.shapes import cube
 
 TURNED = b.box((1, 2, 3))
 
-#: A command of every verb that writes a file, without its target.
+#: For each verb that writes a file, a command line without the output file.
 WRITERS = {
     "union": ["union", "a.off", "c.stl"],
     "eval": ["eval", "a.off - c.stl"],

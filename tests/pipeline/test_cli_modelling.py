@@ -67,7 +67,7 @@ def test_the_former_name_of_split_keeps_its_names_of_files(folder: Path, capsys:
     assert [part["output"] for part in json.loads(out)["parts"]] == ["two-1.ply", "two-2.ply"]
 
 
-# Found: `split` wrote parts over their inputs.
+# Found: `split` overwrote its inputs with parts.
 def test_parts_do_not_replace_inputs(folder: Path, capsys: Capture) -> None:
     put("two.off", joined(cuboid((0, 0, 0), (1, 1, 1)), cuboid((5, 0, 0), (7, 2, 2))))
     put("two-2.off", cuboid((0, 0, 0), (3, 1, 1)))
@@ -169,7 +169,7 @@ def test_nobody_is_in_the_way(folder: Path, capsys: Capture) -> None:
     assert code == 0 and json.loads(out)["clashes"] == []
 
 
-# Found: `repair --digits` called a file a solid that rounding had broken.
+# Found: `repair --digits` called a file a solid although rounding had broken it.
 def test_repair_judges_what_it_writes(folder: Path, capsys: Capture) -> None:
     small = (b.cube(0.3).translate(1, 1, 1)).to_mesh()
     b.save(b.Solid(small.vertices, small.faces), "dig.ply")

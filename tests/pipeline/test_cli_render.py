@@ -228,7 +228,7 @@ def test_doctor_knows_what_pictures_need(capsys: Capture, monkeypatch: pytest.Mo
     assert parts["ezdxf"]["found"]
 
 
-# Found: a textured file was drawn without a word on what is missing.
+# Found: a textured file was drawn without a warning that the texture is missing.
 def test_one_colour_of_a_texture_is_said(folder: Path, capsys: Capture) -> None:
     data = io.BytesIO()
     Image.fromarray(np.full((4, 4, 3), (255, 0, 0), dtype=np.uint8)).save(data, "PNG")

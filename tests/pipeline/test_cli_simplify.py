@@ -81,8 +81,8 @@ def test_attributes_of_simplified_meshes_are_lost(near: Path, capsys: Capture) -
     assert b.load("y.ply").equals(b.cube(1))
 
 
-# Found: `convert --simplify` said that nothing was lost where names of objects and warnings of
-# the reader were.
+# Found: `convert --simplify` claimed that nothing was lost although names of objects and warnings
+# of the reader were.
 def test_names_of_objects_that_became_one_are_lost(near: Path, capsys: Capture) -> None:
     raw = read(MODEL)
     write(replace(raw, objects=(("bump", 10), ("rest", len(raw.faces) - 10))), "x.obj")

@@ -35,7 +35,7 @@ def test_streams_in_and_out(folder: Path, piped: Piped, suffix: str) -> None:
     arguments = ["union", "a.off", "-", "--from", "stl", "-o", "-", "--to", suffix]
     code, out, err = piped(*arguments, given=given)
     assert code == 0 and volume_of(out, suffix) == pytest.approx(15, rel=1e-6)
-    # The mesh has standard output to itself; what is told goes beside it.
+    # Standard output has nothing but the mesh; messages go to standard error.
     assert b"check: agree" in err
 
 
@@ -286,10 +286,10 @@ def test_folders_that_are_forbidden(
         assert (code, out) == (5, "") and "no folder . that can be written to" in err
 
 
-#: Whether Python's own streams hold bytes back.
+#: Environments in which Python's own streams are unbuffered or buffered.
 UNBUFFERED = [{"PYTHONUNBUFFERED": "1"}, {"PYTHONUNBUFFERED": ""}]
 
-#: Commands whose answers go to standard output by each way there is.
+#: Commands that write to standard output, one for each way in which the code writes.
 ANSWERS = [
     ["convert", "s.ply", "-o-", "--to", "stl"],
     ["render", "s.ply", "-o-", "--to", "svg", "-q"],
@@ -310,7 +310,7 @@ def at_most(size: int) -> Any:
     return limit
 
 
-# Found: unbuffered, an answer was cut off where the disk was full, with exit code 0.
+# Found: with unbuffered output, text was cut off when the disk was full, and the exit code was 0.
 @POSIX
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("more", UNBUFFERED)
@@ -371,7 +371,7 @@ def test_words_that_nobody_can_hear_cost_no_work(folder: Path) -> None:
         assert finished("info", "none.off", stderr=full)[0] == 3
 
 
-# Found: the message named standard output.
+# Found: the error message named standard output instead of the file of results.
 @POSIX
 @pytest.mark.parametrize("size", [0, 100, 1500])
 def test_a_full_disk_under_the_results(folder: Path, size: int) -> None:

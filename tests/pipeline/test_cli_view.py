@@ -58,7 +58,7 @@ def test_the_page_is_called_as_the_file_and_not_as_a_part_of_it(
     assert Path(told["output"]).name == "two.html"
 
 
-# Found: `lecture` demanded -o, `view` did not.
+# Found: `lecture` required the option -o, though `view` did not.
 def test_the_lecture_is_a_temporary_page_that_is_opened(
     folder: Path, capsys: Capture, opened: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -59,7 +59,7 @@ def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.Mon
     assert code == 6 and 'pip install "bspcsg[cluster]"' in err
 
 
-# Found: validate waited for ever, without a word.
+# Found: `validate` waited for ever without a message.
 def test_a_cluster_without_workers_is_told(
     folder: Path, capsys: Capture, scheduler: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -10,7 +10,7 @@ import bspcsg as b
 from support.cli import Capture, Piped, finished, put, ran
 from support.shapes import cube
 
-#: What a file name may be on Linux: all bytes but two, up to 255 of them.
+#: File names that Linux allows: up to 255 bytes, any but two.
 STEMS = {
     "no text": os.fsdecode(b"w\xfcrfel \xff"),
     "two lines": "new\nline",
@@ -22,7 +22,7 @@ STEMS = {
     "long in four bytes": "\U0001f980" * 62,
 }
 
-#: What is done with a file `x` of that name; outputs are called alike.
+#: Commands on a file `x`, for which a test puts a name of `STEMS`; also outputs have that name.
 LINES = {
     "info": ["info", "x.stl", "--json"],
     "check": ["check", "x.stl", "--html", "page.html"],

@@ -91,7 +91,7 @@ def test_formats_with_units_take_no_other(folder: Path, capsys: Capture) -> None
 # Inputs
 
 
-# Found: `eval` expanded no patterns.
+# Found: `eval` did not expand file name patterns.
 @pytest.mark.parametrize(
     ("line", "volume"),
     [
@@ -208,7 +208,7 @@ def test_scripts_may_have_any_suffix(folder: Path, capsys: Capture) -> None:
 # What is said
 
 
-# Found: no-break spaces as separators in pipes.
+# Found: numbers in pipes had no-break spaces as separators of digits.
 def test_numbers_are_whole_in_pipes_and_grouped_at_terminals(
     folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -290,7 +290,7 @@ def test_colours_by_convention(
         assert re.sub(r"\033\[\d+m", "", err).startswith("bspcsg: error: ")
 
 
-# Found: wrong use with `--json` left standard output empty.
+# Found: wrong usage with `--json` left standard output empty.
 @pytest.mark.parametrize(
     "verb", ["union", "info", "convert", "slice", "bench", "crosscheck", "unoin"]
 )
@@ -318,7 +318,7 @@ def test_repair_tells_what_was_noticed(folder: Path, capsys: Capture) -> None:
         assert code == 0 and finding["code"] == said and finding["message"] in err
 
 
-# Found: printed seconds left out half of the work.
+# Found: the printed seconds omitted half of the work.
 def test_seconds_are_all_of_them(folder: Path, capsys: Capture) -> None:
     put("ball.ply", icosphere(5))
     began = time.perf_counter()
@@ -373,7 +373,7 @@ def test_nothing_is_under_way_in_pipes(folder: Path, monkeypatch: pytest.MonkeyP
             assert status._line is None
 
 
-# Found: names of files could steer the terminal.
+# Found: control sequences in names of files reached the terminal.
 @POSIX
 @pytest.mark.parametrize(
     ("line", "code"),

@@ -141,7 +141,7 @@ def test_refused_views(change: dict[str, Any], text: str) -> None:
         bsp.Camera.named(**{"view": "iso", "points": BOX, **change})
 
 
-# Found: cameras kept the array of their eye, and let their own be written into.
+# Found: cameras kept the caller's array of the eye, and their own array could be changed.
 def test_cameras_keep_copies_that_nobody_writes_into() -> None:
     eye, target = np.array([0.0, -10, 0]), np.array([0.0, 0, 0])
     cameras = [bsp.Camera.perspective(eye, target), bsp.Camera.orthographic((0, 1, 0), target=eye)]

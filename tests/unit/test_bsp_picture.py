@@ -360,7 +360,7 @@ def by_buffer(monkeypatch: pytest.MonkeyPatch, scene: Any, **looks: Any) -> bsp.
         return bsp.picture(scene, **looks)
 
 
-# Found: 1.3 million triangles took 47 seconds.
+# Found: a picture of 1.3 million triangles took 47 seconds.
 @pytest.mark.parametrize("name", BOTH_WAYS)
 def test_a_buffer_shows_what_the_painter_shows(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     scene, given = BOTH_WAYS[name]

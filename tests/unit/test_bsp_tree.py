@@ -426,7 +426,7 @@ def has_perfect(segments: list[Any]) -> bool:
     return False
 
 
-# Found: a bow-tie was called “no area on the lattice”.
+# Found: the error for a polygon in the shape of a bow-tie was “no area on the lattice”.
 def test_a_polygon_that_crosses_itself_is_called_that() -> None:
     # The halves of the second are of one size, so that its normal vanishes.
     for bow in (
@@ -439,7 +439,7 @@ def test_a_polygon_that_crosses_itself_is_called_that() -> None:
             assert caught.value.code == "not_simple"
 
 
-# Found: a partition tree could be written into by the arrays of its nodes and fragments.
+# Found: assigning to the arrays of nodes and fragments changed a partition tree.
 def test_nobody_writes_into_a_tree() -> None:
     tree = bsp.PartitionTree(CROSS)
     assert tree.root is not None and not isinstance(tree.root, bsp.Leaf)

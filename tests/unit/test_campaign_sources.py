@@ -42,7 +42,7 @@ def test_folder_is_paired_with_itself(parts: Path) -> None:
     assert pairs == {("a.off", "b.stl"), ("a.off", "c.obj"), ("b.stl", "c.obj"), ("m.csg",)}
 
 
-# Found: cases of a report were called by number, not by file.
+# Found: reports named cases by numbers, not by files.
 def test_cases_are_called_by_their_files(parts: Path) -> None:
     (parts / "elsewhere").mkdir()
     (parts / "elsewhere" / "b.off").write_bytes((parts / "a.off").read_bytes())

@@ -22,7 +22,7 @@ def told(text: str) -> list[str]:
     return [str(one.message) for one in caught]
 
 
-# Found: no node told of arguments that it does not know.
+# Found: no node reported arguments that it does not know.
 @pytest.mark.parametrize("name", csg.node_names())
 def test_every_node_tells_of_arguments_that_it_does_not_know(name: str) -> None:
     [complaint] = RECIPES[name].takes.complaints(csg.parse(f"{name}(raduis = 3);").nodes[0])

@@ -64,7 +64,7 @@ def test_sizes_beyond_the_lattice_are_errors_not_crashes(text: str) -> None:
 # What is left out
 
 
-# Found: infinite numbers and missing files refused the whole script.
+# Found: infinite numbers and missing files made the whole script fail.
 @pytest.mark.parametrize(
     ("text", "says"),
     [
@@ -216,14 +216,14 @@ def test_what_is_moved_beyond_all_lattices_is_an_error_of_its_node(move: str) ->
         assert csg.loads(text, lenient=True).volume == 1
 
 
-# Found: of nodes alike that are left out only the first was told.
+# Found: of several equal nodes that are left out, only the first was reported.
 def test_each_node_that_is_left_out_is_told_at_its_place() -> None:
     with pytest.warns(csg.CsgWarning) as told:
         csg.loads('sphere(r = "two"); cube(1); sphere(r = "two");', lenient=True)
     assert [str(one.message)[:9] for one in told] == ["<csg>:1:1", "<csg>:1:2"]
 
 
-# Found: `!` counted inside of what `*` takes out.
+# Found: `!` had an effect inside a node that `*` disables.
 def test_nodes_in_one_that_does_not_exist_do_not_count_alone() -> None:
     for text in ("*group() { !cube(2); } cube(5);", "*!cube(2); cube(5);"):
         assert csg.loads(text).volume == 125
@@ -253,7 +253,8 @@ def test_a_node_that_counts_alone_keeps_the_variables_around_it() -> None:
         assert csg.loads(csg.dumps(one)).equals(alone)
 
 
-# Found: errors of scripts were their own cause, which a scheduler of other machines could not send.
+# Found: errors of scripts were their own cause, so that a scheduler on other machines could not
+# send them.
 def test_no_error_is_its_own_cause() -> None:
     with pytest.raises(b.BspcsgError) as caught:
         csg.loads("polyhedron(points = [[0,0,0],[1,0,0],[0,1,0]], faces = [[0,1,2]]);")

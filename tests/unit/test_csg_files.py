@@ -16,7 +16,7 @@ from bspcsg.csg.syntax import arguments
 # Files
 
 
-# Found: `surface()` with a short last row.
+# Found: `surface()` failed if the last row was short.
 @pytest.mark.parametrize(
     ("rows", "expected"),
     [
@@ -36,7 +36,7 @@ def test_rows_of_a_surface_may_be_shorter(tmp_path: Path, rows: str, expected: f
 DRAWING = '<svg xmlns="http://www.w3.org/2000/svg">{}</svg>'
 
 
-# Found: drawings honoured `fill: none`.
+# Found: drawings in scripts honoured `fill: none`, which OpenSCAD ignores.
 @pytest.mark.parametrize(
     ("shapes", "area"),
     [
@@ -126,7 +126,7 @@ def test_files_in_the_scripts_folder_are_read(tmp_path: Path, name: str) -> None
     assert csg.loads(f'surface("{name}");', folder=own).volume == 1
 
 
-# Found: scripts read any file, and errors repeated its first line.
+# Found: scripts could read any file, and errors quoted its first line.
 @pytest.mark.parametrize("node", ["surface", "import"])
 @pytest.mark.parametrize(
     "name", ["../heights.dat", "../none.dat", "link.dat", "parts/../../heights.dat", "/etc/passwd"]

@@ -90,7 +90,7 @@ def test_polyhedra_run_clockwise_but_need_not() -> None:
         assert volume(f"polyhedron({TETRAHEDRON}, {faces});") == pytest.approx(1)
 
 
-# Found: polyhedra that are not closed refused the whole script.
+# Found: polyhedra that are not closed made the whole script fail.
 def test_open_polyhedra_are_errors_or_left_out() -> None:
     text = f"cube(1); polyhedron({TETRAHEDRON}, faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);"
     with pytest.raises(b.InvalidMeshError, match=r"^<csg>:1:10: polyhedron\(\): .*not closed"):

@@ -47,7 +47,7 @@ def test_minkowski_sums() -> None:
     assert volume(f"minkowski() {{ {corner} cube(1); }}") == 5 * (25 - 9)
 
 
-# Found: a sum with an empty operand was empty.
+# Found: a Minkowski sum with an empty operand was empty.
 @pytest.mark.parametrize(
     ("children", "expected"),
     [
@@ -78,7 +78,7 @@ def test_minkowski_in_the_plane_keeps_openscads_rule(children: str, area: float)
     assert region(f"minkowski() {{ {children} }}").area == area
 
 
-# Found: an intersection of both dimensions was the solid.
+# Found: an intersection of a solid and a plane figure was the solid.
 @pytest.mark.filterwarnings("ignore::bspcsg.csg.CsgWarning")
 def test_intersections_of_both_dimensions_are_empty() -> None:
     assert csg.loads("intersection() { cube(5); circle(2); }").is_empty
@@ -133,7 +133,7 @@ def test_offsets() -> None:
         assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
 
 
-# Found: offsets of turned unions drew out hairs that rounding leaves.
+# Found: offsets of unions of rotated figures widened hairs that rounding had left.
 @pytest.mark.parametrize("hair", [1e-5, 1e-4])
 @pytest.mark.parametrize("around", ["union()", "group() union()", "union() { union()"])
 def test_offsets_do_not_widen_what_six_digits_part(hair: float, around: str) -> None:
@@ -226,7 +226,7 @@ def test_a_radius_goes_before_a_distance() -> None:
     assert round_corners.equals(region("offset(r = 2) square(10);"))
 
 
-# Found: turns in parts of a half turn or more were empty or inside out.
+# Found: revolutions with segments of half a turn or more were empty or inside out.
 def test_turns_are_divided_below_half_turns() -> None:
     plate = "polygon([[1, 0], [2, 0], [2, 1], [1, 1]]);"
     assert volume(f"rotate_extrude(angle = 200, $fn = 3) {plate}") > 2
@@ -235,7 +235,7 @@ def test_turns_are_divided_below_half_turns() -> None:
             b.revolve([(1, 0), (2, 0), (2, 1)], angle=angle, segments=1)
 
 
-# Found: plane figures were taken away one by one, for the square of their number.
+# Found: plane figures were subtracted one by one, in time quadratic in their number.
 def test_many_plane_figures_are_taken_away_at_once() -> None:
     def rest(count: int) -> b.Region:
         circles = "".join(f"{moved(2 * k, 0, 0)} circle(r=1, $fn=24);" for k in range(count))

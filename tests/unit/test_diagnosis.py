@@ -161,7 +161,8 @@ def with_objects(*meshes: Arrays) -> RawMesh:
     return RawMesh(*joined(*meshes), objects=tuple(zip(names, counts, strict=True)))
 
 
-# Found: a lid that rests on a body in one file was told to overlap it, and not to be manifold.
+# Found: a lid that rests on a body in the same file was reported as overlapping it and as
+# non-manifold.
 def test_objects_that_touch_are_solids_that_touch() -> None:
     for other in (moved(cube(), (0, 0, 1)), cuboid((0.25, 0.25, 1), (2, 0.75, 2)), cube()[:2]):
         raw = with_objects(cube(), other)

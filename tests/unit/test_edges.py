@@ -445,7 +445,8 @@ def rims(part: b.Solid) -> b.EdgeSelection:
     return part.edges().filter(lambda e: e.length < 2.9)
 
 
-# Found: each of 132 edges around four bosses was evaluated twice, which took ten times as long.
+# Found: each of 132 edges around four bosses was evaluated twice, which made the call ten times
+# slower.
 @pytest.mark.parametrize("verb", ["fillet", "chamfer"])
 @pytest.mark.parametrize("turn", [TURNS[0], TURNS[2]])
 @pytest.mark.parametrize(

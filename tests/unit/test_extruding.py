@@ -57,9 +57,9 @@ def test_holes_lean_into_the_material() -> None:
     assert solid.genus == 1
 
 
-# Found: scaled extrusions of contours that cross, or with unequal scales, were vouched for though
-# their meshes crossed themselves, and had wrong or negative volumes; flat cones thinner than the
-# lattice were not empty.
+# Found: scaled extrusions of contours that cross, or with unequal scales, were marked as trusted
+# though their meshes crossed themselves, and had wrong or negative volumes; flat cones thinner than
+# the lattice were not empty.
 def test_contours_that_cross_are_united_as_they_shrink() -> None:
     two = [[(0, 0), (2, 0), (2, 2), (0, 2)], [(1, 1), (3, 1), (3, 3), (1, 3)]]
     bow = [(0, 0), (2, 2), (2, 0), (0, 2)]

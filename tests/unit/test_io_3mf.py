@@ -119,7 +119,7 @@ def test_refused_models(tmp_path: Path, old: str, new: str, code: str) -> None:
 MATERIALS = 'xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02"'
 
 
-# Found: what was wrong with an element was told twice, at line 1 and as a fault of its encoding.
+# Found: a fault of an element was reported twice, at line 1 and as a fault of the encoding.
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
@@ -153,7 +153,7 @@ def test_documents_that_are_refused_keep_their_line(tmp_path: Path, document: st
     assert message.count("3dmodel.model") == 1
 
 
-# Found: a colour that does not exist was told as damage of the archive.
+# Found: a reference to a colour that does not exist was reported as a damaged archive.
 @pytest.mark.parametrize(
     "group",
     [

@@ -15,7 +15,7 @@ from support.shapes import cube
 FORMS = [(suffix, False) for suffix in FORMATS] + [(".stl", True), (".ply", True)]
 
 
-# Found: it could not read its own empty file.
+# Found: `load` could not read the file that `save` had written of an empty solid.
 @pytest.mark.parametrize(("suffix", "text"), FORMS)
 def test_save_and_load(tmp_path: Path, suffix: str, text: bool) -> None:
     path = tmp_path / f"x{suffix}"

@@ -61,7 +61,7 @@ def refused_pointer(call: Callable[[], object], name: object) -> None:
     assert "git lfs pull" in caught.value.message
 
 
-# Found: a pointer of Git LFS was told as a mesh cut off, or as an OBJ without vertices.
+# Found: a pointer file of Git LFS was reported as a truncated mesh, or as an OBJ without vertices.
 @pytest.mark.parametrize("suffix", FORMATS)
 @pytest.mark.parametrize(
     "data", [POINTER, POINTER.replace(b"\n", b"\r\n"), POINTER.replace(b"git-lfs", b"hawser")]

@@ -87,7 +87,7 @@ def same(kind: Kind) -> list[Any]:
     ]
 
 
-# Found: regions were equal by identity only.
+# Found: regions compared by identity only.
 @every_kind
 def test_equal_sets_are_equal_however_they_were_made(kind: Kind) -> None:
     for a in same(kind):

@@ -242,7 +242,7 @@ def test_parameters_that_make_no_solid_are_refused(name: str) -> None:
     assert len(str(caught.value)) > 10
 
 
-# Found: half-spaces took spans of time for numbers.
+# Found: half-spaces accepted time spans as numbers.
 @pytest.mark.parametrize(
     "normal", [(0, 0, 0), (NAN, 0, 1), (1, 2), "up", 3, (0, 0, np.timedelta64(3))]
 )

@@ -196,7 +196,7 @@ def figure(script: str) -> Region:
     return found
 
 
-# Found: scripts with `text()` were refused.
+# Found: scripts with `text()` failed.
 def test_text_in_scripts_stands_as_close_as_openscads() -> None:
     # OpenSCAD 2021.01 measures advances in 1600ths of the size, and glyphs in 1562.5ths.
     own, plain = box(figure('text("HH");')), box(b.text("HH"))

@@ -236,7 +236,7 @@ def test_angles_are_numbers() -> None:
         b.cube(1).rotate(10, x=np.array([1, 2]))  # type: ignore[arg-type]
 
 
-# Found: the program of `last_operation` was the solid's own list.
+# Found: assigning to the program of `last_operation` changed the solid itself.
 def test_the_program_that_is_told_is_a_copy() -> None:
     part = b.half_space("z", 0) | b.cube(1)
     assert not part.is_bounded and part.last_operation is not None
