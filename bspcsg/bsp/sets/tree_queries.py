@@ -39,9 +39,15 @@ class TreeQueries(TreeSet):
         """
         array = point_rows(points, self.dimension)
         if not np.isfinite(array).all():
-            raise InvalidMeshError("Points must be finite.", "non_finite")
+            raise InvalidMeshError(
+                "The points have coordinates that are not finite numbers; remove these points.",
+                "non_finite",
+            )
         if self.is_empty or self.is_full:
-            raise invalid_parameter("A set without boundary has no nearest boundary point.")
+            raise invalid_parameter(
+                "The set is empty or all of space, so it has no boundary and no nearest boundary"
+                " point."
+            )
         nearest = self._nearest(array)
         return nearest, np.sqrt(((nearest - array) ** 2).sum(axis=1))
 

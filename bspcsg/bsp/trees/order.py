@@ -69,7 +69,7 @@ class Ordered(ABC):
 
     def _viewpoint(self, eye: Any, direction: Any) -> tuple[list[float], bool]:
         if (eye is None) == (direction is None):
-            raise invalid_parameter("Give either an eye or a direction.")
+            raise invalid_parameter("Give exactly one of eye and direction.")
         at_infinity = eye is None
         name = "direction" if at_infinity else "eye"
         refusal = invalid_parameter(f"The {name} must be {self.core.dimension} numbers.")
@@ -131,7 +131,9 @@ class Ordered(ABC):
     def visit(self, visitor: Visitor, order: Literal["pre", "in", "post"] = "pre") -> None:
         """Call ``visitor.node(node)`` or ``visitor.leaf(leaf)`` for each, in an order of `walk`."""
         if not (hasattr(visitor, "node") and hasattr(visitor, "leaf")):
-            raise invalid_parameter(f"visitor must have node() and leaf(), not {shown(visitor)}.")
+            raise invalid_parameter(
+                f"visitor must be an object with methods node() and leaf(), not {shown(visitor)}."
+            )
         for place in self.walk(order):
             if isinstance(place, Leaf):
                 visitor.leaf(place)
