@@ -12,7 +12,7 @@ from ..._core import ObjectTree as CoreTree
 from ..._types import FloatArray, SetOp, Vector
 from ...errors import LimitError, core_errors, invalid_parameter
 from ...geometry.polygon import convex_corners
-from ...parameters import number
+from ...parameters import number, shown
 from .flat_set import FlatSet
 from .loops import Outline, loop_segments
 from .objects import ObjectTree

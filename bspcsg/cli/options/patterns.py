@@ -94,7 +94,7 @@ def files_of(
                 skipped[path.suffix.lower()] += 1
     if not files:
         only = f", only {_counted(skipped)}" if skipped else ""
-        raise FormatError(f"{values[0]}: there is no mesh{only}.", "unreadable")
+        raise FormatError(f"{values[0]}: no mesh file was found{only}.", "unreadable")
     return files
 
 
@@ -128,7 +128,8 @@ def _counted(skipped: Counter[str]) -> str:
     )
     total = skipped.total()
     return (
-        f"{total} {'file that is no mesh' if total == 1 else 'files that are no meshes'}: {kinds}"
+        f"{total} {('file that is not a mesh' if total == 1 else 'files that are no meshes')}:"
+            f" {kinds}"s}"
     )
 
 

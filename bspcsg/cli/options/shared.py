@@ -62,7 +62,7 @@ class FilePath(click.Path):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """Return the path of a text; refuse the empty text, which would be the current folder."""
         if value == "":
-            self.fail("the name is empty, as of a shell variable that is not set.", param, ctx)
+            self.fail("the file name is empty; perhaps a shell variable is not set.", param, ctx)
         return super().convert(value, param, ctx)
 
 
@@ -79,7 +79,7 @@ class FiniteRange(click.FloatRange):
         """Return the number of a text."""
         number = float(super().convert(value, param, ctx))
         if not math.isfinite(number):
-            self.fail(f"{number} is not finite.", param, ctx)
+            self.fail(f"{number} is not a finite number.", param, ctx)
         return number
 
 
@@ -164,7 +164,9 @@ def _as_suffix(context: click.Context, option: click.Parameter, value: str | Non
     suffix = f".{value.lower().lstrip('.')}"
     if suffix not in FORMATS:
         known = ", ".join(name[1:] for name in sorted(FORMATS))
-        raise click.BadParameter(f"{value!r} is no format; known are {known}.", context, option)
+        raise click.BadParameter(
+            f"{value!r} is not a known format; known are {known}.", context, option
+        )
     return suffix
 
 
@@ -370,7 +372,7 @@ def numbers(what: str, names: str, example: str) -> Callable[..., tuple[float, .
             wanted = (
                 f"{spoken} numbers {names}, {zeros} all 0, as in {example}; x, y and z are axes"
             )
-            raise click.BadParameter(f"{value!r} is no {what}; it takes {wanted}.", context, option)
+            raise click.BadParameter(f"{value!r} is not a {what}; give {wanted}.", context, option)
         return found
 
     return as_numbers
