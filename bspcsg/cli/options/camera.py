@@ -97,7 +97,10 @@ def refuse_contradictions(settings: dict[str, Any]) -> None:
     given = ["eye"] if settings["eye"] is not None else []
     view = settings["view"] != "iso"
     if angles and (given or view):
-        raise click.UsageError(f"--{angles[0]} does not go with {'--eye' if given else '--view'}.")
+        raise click.UsageError(
+            f"--{angles[0]} cannot be combined with {'--eye' if given else '--view'}; leave one"
+            " out."
+        )
     if given and view:
         raise click.UsageError("--view cannot be combined with --eye; leave one out.")
     if settings["aim"] is not None and not given:

@@ -128,8 +128,9 @@ def _counted(skipped: Counter[str]) -> str:
     )
     total = skipped.total()
     return (
-        f"{total} {('file that is not a mesh' if total == 1 else 'files that are no meshes')}:"
-            f" {kinds}"s}"
+        f"{total}"
+        f" {('file that is not a mesh' if total == 1 else 'files that are not meshes')}:"
+        f" {kinds}"
     )
 
 
@@ -155,6 +156,9 @@ def _only_match(context: click.Context, option: click.Parameter, value: Path | N
         return value
     found = matches(value)
     if len(found) > 1:
-        message = f"{value} matches {len(found)} files; name one of them, as {found[0]}."
+        message = (
+            f"{value} matches {len(found)} files, but only one is allowed here; name one of them,"
+            f" such as {found[0]}."
+        )
         raise click.UsageError(message, context)
     return found[0]
