@@ -166,4 +166,4 @@ def _text(parts: list[_Part]) -> str:
 def _advice(part: _Part) -> str:
     """Return which part is missing and the command that installs it."""
     state = "incomplete" if part.found else "missing"
-    return f"{part.name} is {state}, needed for {part.purpose}. Try:\n  {part.remedy}"
+    return f"{part.name} is {state}; it is needed for {part.purpose}. Try:\n  {part.remedy}"

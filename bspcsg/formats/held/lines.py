@@ -53,7 +53,7 @@ class Lines:
     def check_last(self) -> None:
         """Refuse a file that does not end with them."""
         if size_of(self._file) != self.end():
-            raise ValueError("something follows its last line")
+            raise ValueError("there is data after its last line")
 
     def are(self, expected: npt.NDArray[Any]) -> bool:
         """Say whether the lines hold these rows."""
@@ -76,7 +76,7 @@ class Lines:
         while left:
             text, count = _first_lines(text_at(self._file, at, _BYTES_PER_READ), left)
             if not count:
-                raise ValueError(f"it ends at byte {at}")
+                raise ValueError(f"it ends too early, at byte {at}")
             yield text
             at, left = at + len(text), left - count
 
