@@ -31,7 +31,7 @@ _MAX_TRIANGLES = 10_000_000
 def refine(solid: Solid, n: Any = None, edge_length: Any = None) -> Solid:
     """Return the solid with smaller triangles (see `Solid.refine`)."""
     if (n is None) == (edge_length is None):
-        raise invalid_parameter("Say either n or edge_length.")
+        raise invalid_parameter("Give exactly one of n and edge_length.")
     mesh = solid.normalized().to_mesh()
     if len(mesh.faces) == 0:
         return solid
@@ -208,5 +208,8 @@ def refuse_many(count: int, about: str = "") -> None:
     """Raise `LimitError` for more triangles than a result may have; `about` precedes the number."""
     if count > _MAX_TRIANGLES:
         amount = f"{about}{count:,}" if count < _MAX_TRIANGLES**2 else "far too many"
-        message = f"The result would have {amount} triangles; {_MAX_TRIANGLES:,} are the most."
+        message = (
+            f"The result would have {amount} triangles, and at most {_MAX_TRIANGLES:,} are"
+            " allowed; choose larger triangles."
+        )
         raise LimitError(message, "too_large")
