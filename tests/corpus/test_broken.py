@@ -54,7 +54,7 @@ def hints(line: str, arguments: tuple[str, ...]) -> list[str]:
     if "the mesh is not closed" not in line:
         return []
     assert re.search(r"\d edges have no .* belongs to face \d+ and runs from \(.*\) to \(", line)
-    advice = "  --on-invalid repair fills it; --on-invalid warn goes on without it."
+    advice = "  --on-invalid repair closes the mesh; --on-invalid warn leaves it out."
     if arguments[0] == "run":
         return [advice]
     name = Path(next(word for word in arguments if f" {word}: " in line))

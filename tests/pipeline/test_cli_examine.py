@@ -169,7 +169,7 @@ def test_another_solid(folder: Path, capsys: Capture) -> None:
         (["a.off", "-o", "x.step"], 3, "STEP"),
         (["none.off", "-o", "x.off"], 3, "none.off"),
         (["a.off", "-o", "x.off", "--plane", "0,0,1,9"], 4, "on one side"),
-        (["inverted.off", "-o", "x.off"], 4, "nothing in it"),
+        (["inverted.off", "-o", "x.off"], 4, "no triangles are left"),
         (["a.off", "-o", "no/x.off"], 5, "no folder"),
     ],
 )
@@ -198,7 +198,7 @@ def test_nothing_is_not_repaired(folder: Path, capsys: Capture) -> None:
     Path("none.off").write_text("OFF\n0 0 0\n")
     code, out, err = ran(capsys, "repair", "none.off", "-o", "x.off")
     assert (code, out) == (4, "") and not Path("x.off").exists()
-    assert err == "bspcsg: error: none.off: there is nothing in it, so nothing was written.\n"
+    assert err == "bspcsg: error: none.off: no triangles are left, so nothing was written.\n"
 
 
 # Found: `repair` and `--on-invalid repair` lost all attributes in silence.
@@ -241,7 +241,7 @@ def test_a_folder_is_repaired(folder: Path, capsys: Capture) -> None:
     assert code == 3 and "error: in/bad.ply" in err and "skipped 1 file" in err
     assert out.splitlines() == [
         "new/out/open.off: a solid; 11 triangles became 12",
-        "new/out/stray.ply: a solid; 13 triangles became 12, 1 stray ones dropped",
+        "new/out/stray.ply: a solid; 13 triangles became 12, 1 stray ones removed",
     ]
     assert [b.load(f"new/out/{name}").volume for name in ("open.off", "stray.ply")] == [8, 8]
     code, out, _ = ran(capsys, "repair", "in", "--outdir", "new", "--to", "stl", "--json")
@@ -261,7 +261,7 @@ def test_two_inputs_of_one_output_are_refused_first(
     assert (code, out) == (2, "") and not Path("new").exists()
     assert "in/a.off and in/deep/a.off would both be written to new/a.off." in err
     code, _, err = ran(capsys, verb, "in", "--outdir", "in", "--to", "off")
-    assert code == 2 and "in/deep/a.off would be written to in/a.off, which is an input" in err
+    assert code == 2 and "in/deep/a.off would overwrite in/a.off, which is also an input" in err
 
 
 def test_repairs_of_inputs_tell_what_they_lose(folder: Path, capsys: Capture) -> None:
@@ -292,7 +292,7 @@ def test_what_cannot_be_repaired_is_code_1(folder: Path, capsys: Capture) -> Non
     ("arguments", "code", "words"),
     [
         (["a.off"], 2, "either -o FILE or --outdir DIR"),
-        (["a.off", "c.stl", "-o", "x.off"], 2, "or say --outdir"),
+        (["a.off", "c.stl", "-o", "x.off"], 2, "or give --outdir"),
         (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is no step"),
         (["a.off", "-o", "x.off", "--steps", ","], 2, "at least one"),
         (["a.off", "-o", "x.off", "--max-hole", "2"], 2, "--max-hole"),

@@ -73,7 +73,7 @@ def test_a_word_alone_is_a_text(
 def test_an_expression_is_no_word(folder: Path, capsys: Capture, text: str) -> None:
     Path("part.scad").write_text("cube(2);")
     code, _, err = ran(capsys, "run", "part.scad", "-o", "x.ply", "-D", f"word={text}")
-    assert code == 2 and "is no value" in err
+    assert code == 2 and "is not a value" in err
 
 
 def test_openscad_that_is_missing_is_code_6(
@@ -191,7 +191,7 @@ def test_nothing_is_refused_unless_allowed(folder: Path, capsys: Capture) -> Non
         (["none.csg", "-o", "x.off"], 3, "none.csg: cannot read"),
         (["none.scad", "-o", "x.off"], 3, "none.scad: cannot read"),
         (["none.py", "-o", "x.off"], 3, "none.py: cannot read"),
-        (["a.off", "-o", "x.off"], 3, "this is no script"),
+        (["a.off", "-o", "x.off"], 3, "the file is not a script"),
         (["bad.csg", "-o", "x.off"], 3, "bad.csg:1:"),
         (["flat.csg", "-o", "x.off"], 3, "linear_extrude"),
         (["bad.py", "-o", "x.off"], 3, "bad.py:2: ZeroDivisionError"),
@@ -200,7 +200,7 @@ def test_nothing_is_refused_unless_allowed(folder: Path, capsys: Capture) -> Non
         (["bad.py", "-o", "x.off", "--polish"], 2, "--polish is not for .py"),
         (["bad.py", "-o", "x.off", "--allow-path", "."], 2, "--allow-path is not for .py"),
         (["bad.csg", "-o", "x.off", "--allow-path", "no"], 2, "'no' does not exist"),
-        (["bad.csg", "-o", "x.off", "--timeout", "1"], 2, "--timeout is not for .csg"),
+        (["bad.csg", "-o", "x.off", "--timeout", "1"], 2, "--timeout cannot be used with .csg"),
         (["bad.csg", "-o", "x.off", "--timeout", "0"], 2, "--timeout"),
     ],
 )

@@ -78,7 +78,7 @@ def test_what_a_script_leaves_out_is_told_though_it_is_refused(
 ) -> None:
     Path("mixed.csg").write_text("union() { square(size = [1, 1]); cube(size = [1, 1, 1]); }")
     code, _, err = ran(capsys, "run", "mixed.csg", "-o", "x.stl")
-    assert code == 3 and "the model is a plane figure" in err
+    assert code == 3 and "the model is two-dimensional" in err
     assert "the solids among them are ignored" in err
 
 

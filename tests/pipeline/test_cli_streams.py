@@ -195,7 +195,7 @@ def test_no_permission(folder: Path, capsys: Capture) -> None:
     assert code == 3 and "Permission denied" in err
     folder.chmod(0o500)
     code, _, err = ran(capsys, "convert", "c.stl", "-o", "x.ply")
-    assert code == 5 and "can be written to" in err
+    assert code == 5 and "is not writable" in err
 
 
 def test_forbidden_files_as_the_system_tells_it(
@@ -283,7 +283,7 @@ def test_folders_that_are_forbidden(
     monkeypatch.setattr(os, "access", lambda *_: False)
     for arguments in (["convert", "a.off"], ["eval", "a.off"], ["split", "a.off"]):
         code, out, err = ran(capsys, *arguments, "-o", "x.ply")
-        assert (code, out) == (5, "") and "no folder . that can be written to" in err
+        assert (code, out) == (5, "") and "the folder . does not exist or is not writable" in err
 
 
 #: Whether Python's own streams hold bytes back.

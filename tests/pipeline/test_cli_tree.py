@@ -132,11 +132,15 @@ def test_trees_of_any_depth(folder: Path, capsys: Capture) -> None:
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["a.off"], 3, "this is no tree; known are .csg, .json, .scad"),
+        (
+            ["a.off"],
+            3,
+            "the file is not a script with a tree; its name must end in one of .csg, .json, .scad",
+        ),
         (["plate.csg", "-o", "x.stl"], 3, "must end in one of .csg, .json"),
         (["plate.csg", "-o", "no/x.csg"], 5, "no folder"),
         (["plate.csg", "--json", "--to", "csg"], 2, "cannot both go"),
-        (["plate.csg", "--timeout", "3"], 2, "--timeout is not for .csg"),
+        (["plate.csg", "--timeout", "3"], 2, "--timeout cannot be used with .csg"),
         (["none.csg"], 3, "none.csg: cannot read"),
         (["bad.csg"], 3, "bad.csg:1:6: expected"),
     ],

@@ -67,7 +67,7 @@ def test_a_cluster_without_workers_is_told(
     scheduler.scale(0)
     given = ["crosscheck", "a.off", "c.stl", "--results", "r.jsonl"]
     code, _, err = ran(capsys, *given, "--scheduler", scheduler.scheduler_address)
-    assert code == 6 and "the scheduler there has no workers" in err and "--resume" in err
+    assert code == 6 and "this scheduler has no workers" in err and "--resume" in err
 
 
 def test_workers_may_come_late(folder: Path, capsys: Capture, scheduler: Any) -> None:

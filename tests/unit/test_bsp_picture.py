@@ -272,7 +272,7 @@ def test_svg_needs_no_pillow(monkeypatch: pytest.MonkeyPatch) -> None:
     [
         ({"size": (0, 10)}, "width"),
         ({"size": (10, 2.5)}, "height"),
-        ({"size": 10}, "width and a height"),
+        ({"size": 10}, "pair .width, height."),
         ({"size": (10, 20000)}, "at most"),
         ({"style": "wire"}, "style"),
         ({"edges": "some"}, "edges"),

@@ -115,5 +115,5 @@ def test_figures_are_filled() -> None:
     assert region(f"fill() {{ {island} }}").area == 37
     assert region("fill() square(0);").is_empty
     assert csg.evaluate(csg.parse("fill();")) is None
-    with pytest.warns(csg.CsgWarning, match="solids are ignored"):
+    with pytest.warns(csg.CsgWarning, match="3D children are ignored"):
         assert csg.evaluate(csg.parse("fill() cube(1);")) is None

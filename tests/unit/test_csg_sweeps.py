@@ -120,7 +120,7 @@ def test_projections() -> None:
     assert region(f"projection() {ball}").area == 4
     assert region(f"projection(cut = true) {ball}").is_empty
     assert region("projection(cut = true) cube(2);").area == 4
-    with pytest.warns(csg.CsgWarning, match="plane figures are ignored"):
+    with pytest.warns(csg.CsgWarning, match="2D children are ignored"):
         assert csg.evaluate(csg.parse("projection() square(1);")) is None
 
 
@@ -129,7 +129,7 @@ def test_offsets() -> None:
     assert region("offset(delta = -0.5) square(2);").area == 1
     assert region("offset(delta = -5) square(2);").is_empty
     assert region("offset(r = 1, $fn = 4) square(2);").area == pytest.approx(4 + 8 + 2)
-    with pytest.warns(csg.CsgWarning, match="solids are ignored"):
+    with pytest.warns(csg.CsgWarning, match="3D children are ignored"):
         assert csg.evaluate(csg.parse("offset(r = 1) cube(1);")) is None
 
 
@@ -221,7 +221,7 @@ def test_offsets_that_cannot_be_counted_are_refused(text: str) -> None:
 
 # Found: `offset(r=…, delta=…)` took `delta`.
 def test_a_radius_goes_before_a_distance() -> None:
-    with pytest.warns(csg.CsgWarning, match="its delta does not count beside r"):
+    with pytest.warns(csg.CsgWarning, match="its delta is ignored in favour of r"):
         round_corners = region("offset(r = 2, delta = 1) square(10);")
     assert round_corners.equals(region("offset(r = 2) square(10);"))
 

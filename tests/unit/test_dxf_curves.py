@@ -192,9 +192,9 @@ def grid(space: Any) -> None:
 @pytest.mark.parametrize(
     ("draw", "words"),
     [
-        (in_itself, "contain each other"),
-        (many, "hold too much"),
-        (grid, "hold too much"),
+        (in_itself, "nested deeper"),
+        (many, "contain more than"),
+        (grid, "contain more than"),
         (lambda space: space.add_blockref("nothing", (0, 0)), "no block called “nothing”"),
         (lambda space: space.add_circle((0, 0), 1e12), "larger tolerance"),
     ],
@@ -276,5 +276,5 @@ def test_layers_that_a_file_lacks_are_refused(tmp_path: Path) -> None:
     with pytest.raises(b.FormatError, match=r"no layer 'nope'; it has .*'there'") as refusal:
         region_of(tmp_path, lambda space: square(space, layer="there"), layers=["there", "nope"])
     assert refusal.value.code == "unknown_name"
-    with pytest.warns(bsp.DrawingWarning, match="nothing to fill"):
+    with pytest.warns(bsp.DrawingWarning, match="no closed outline"):
         assert region_of(tmp_path, square, layers=["Defpoints"]).is_empty

@@ -289,7 +289,7 @@ def test_bytes_and_open_files(tmp_path: Path, suffix: str) -> None:
     [
         (b"OFF", None, "unknown_format", "one of .*, not None"),
         (b"OFF", "step", "unknown_format", "not 'step'"),
-        (io.StringIO("OFF"), "off", "unreadable", "mode 'rb'"),
+        (io.StringIO("OFF"), "off", "unreadable", r"open\(path, 'rb'\)"),
         (b"", "off", "empty_file", "<bytes>: the file is empty"),
         (b"OFF", "off", "syntax", "<bytes>"),
     ],

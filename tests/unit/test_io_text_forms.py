@@ -176,7 +176,7 @@ def test_ply_as_text(tmp_path: Path, text: str) -> None:
 def test_lines_of_a_header_that_are_no_statements_are_told(tmp_path: Path, line: str) -> None:
     raw = read_text(tmp_path / "x.ply", ply(f"{line}\n") + POINTS + FACES)
     assert is_cube(raw)
-    assert raw.passed_by == ("1 lines of the header are no statements, and were ignored.",)
+    assert raw.passed_by == ("1 lines of the header have no PLY keyword and were ignored.",)
     assert raw.findings[0].where == (3,)
 
 

@@ -100,7 +100,7 @@ def test_patterns_count_once_in_a_block() -> None:
         (lambda: b.linear_pattern(b.Region.circle(1), 2, (1, 0, 1)), "two numbers"),
         (lambda: b.polar_pattern(b.cube(1), 2, axis="w"), "axis"),
         (lambda: b.polar_pattern(b.cube(1), 2, angle=math.inf), "finite"),
-        (lambda: b.grid(b.cube(1), cast("Any", 3), cast("Any", 3)), "a number for each axis"),
+        (lambda: b.grid(b.cube(1), cast("Any", 3), cast("Any", 3)), "one number for each axis"),
         (lambda: b.grid(b.cube(1), (1, 2, 3), (1, 1)), "counts and steps"),
         (lambda: b.grid(b.Region.circle(1), (1, 2, 3), (1, 1, 1)), "counts and steps"),
     ],

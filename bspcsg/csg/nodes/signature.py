@@ -48,7 +48,7 @@ class Signature:
         values = dict(zip(names, (argument.value for argument in node.arguments), strict=True))
         for name, others in self.beside:
             if _asks(values.get(name)) and all(_asks(values.get(other)) for other in others):
-                yield f"its {name} is ignored, because {' and '.join(others)} is given"
+                yield f"its {name} is ignored in favour of {' and '.join(others)}"
 
     def _names(self, arguments: tuple[Argument, ...]) -> list[str | None]:
         """Return the names of arguments; None for positional ones beyond the end of `order`."""
