@@ -264,9 +264,9 @@ def no_options(options: Mapping[str, Any], solid: object) -> None:
     if options:
         given = ", ".join(options)
         raise invalid_parameter(
-            f"{given} can only be given when a mesh is read, but the argument is already a"
-            f" {type(solid).__name__}. Pass these options where the solid is made, or pass its"
-            " mesh instead."
+            f"{given} can only be given when a mesh is read, but the argument already is a"
+            f" solid, of type {type(solid).__name__}. Pass these options where the solid is"
+            " made, or pass its mesh instead."
         )
 
 

@@ -42,7 +42,7 @@ def _departure_in_dict(value: Any, kind: Any, place: str) -> str:
 
 def _departure_in_items(value: Any, container: type, kind: Any, place: str) -> str:
     if not isinstance(value, container):
-        return f"{place} is not a {container.__name__}"
+        return f"{place} is not of type {container.__name__}"
     given: Any = value
     items = given.items() if container is dict else enumerate(given)
     found = (departure(item, kind, f"{place}[{key!r}]") for key, item in items)
@@ -55,4 +55,4 @@ def _departure_of_scalar(value: Any, kind: Any, place: str) -> str:
     if kind is float:
         is_number = isinstance(value, (int, float)) and math.isfinite(value)
         return "" if is_number else f"{place} is not a finite number"
-    return "" if isinstance(value, kind) else f"{place} is not a {kind.__name__}"
+    return "" if isinstance(value, kind) else f"{place} is not of type {kind.__name__}"

@@ -120,5 +120,5 @@ def test_manifold_that_fails_is_overruled_by_pymeshlab(monkeypatch: Settle) -> N
     monkeypatch.setattr(oracle, "ask", fails)
     found = asked("union")
     assert found["verdict"] == "oracle failed"
-    assert "pymeshlab finds our set" in found["reason"]
+    assert "pymeshlab agrees with bspcsg" in found["reason"]
     assert found["hausdorff"] is None and found["bounds"] is None

@@ -158,7 +158,7 @@ def test_a_lenient_evaluation_drops_polyhedra_whose_faces_do_not_close() -> None
         assert csg.loads(text, name="part.csg", lenient=True).volume == 729
     assert found.is_empty
     assert str(told[-1].message).startswith(
-        "part.csg:2:3: polyhedron(): its faces do not close: 3 edges"
+        "part.csg:2:3: polyhedron(): its faces do not form a closed surface: 3 edges"
     )
     # Four faces at one edge are closed.
     pair = b.cube(1) | b.cube(1).translate(1, 1, 0)

@@ -180,7 +180,9 @@ def test_binary_dxf_is_refused_with_the_way_out(tmp_path: Path) -> None:
     document = ezdxf.new()
     square(document.modelspace())
     document.saveas(tmp_path / "a.dxf", fmt="bin")
-    with pytest.raises(b.FormatError, match=r"a\.dxf: this is a binary DXF; .* ezdxf\.readfile"):
+    with pytest.raises(
+        b.FormatError, match=r"a\.dxf: binary DXF files cannot be read; .* ezdxf\.readfile"
+    ):
         bsp.load_dxf(tmp_path / "a.dxf")
     ezdxf.readfile(tmp_path / "a.dxf").saveas(tmp_path / "b.dxf")
     assert bsp.load_dxf(tmp_path / "b.dxf").area == 9

@@ -273,7 +273,9 @@ def test_names_of_layers_in_any_letters_and_case(tmp_path: Path, version: str, n
 
 # Found: layers that a DXF has not gave the empty region in silence.
 def test_layers_that_a_file_lacks_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(b.FormatError, match=r"no layer 'nope'; it has .*'there'") as refusal:
+    with pytest.raises(
+        b.FormatError, match=r"no layer 'nope'; its layers are .*'there'"
+    ) as refusal:
         region_of(tmp_path, lambda space: square(space, layer="there"), layers=["there", "nope"])
     assert refusal.value.code == "unknown_name"
     with pytest.warns(bsp.DrawingWarning, match="no closed outline"):

@@ -128,9 +128,9 @@ def test_gaps_that_close_outwards(taper: float) -> None:
         (SLOTTED, {"taper": -60, "scale": 2}, "too large at the corner"),
         (SQUARE, {"taper": 90}, "taper must be"),
         (SQUARE, {"scale": -1}, "scale must be at least 0"),
-        (SQUARE, {"scale": (1, 2, 3)}, "scale must be one number or two"),
+        (SQUARE, {"scale": (1, 2, 3)}, "scale must be one number or a pair"),
         (SQUARE, {"slices": 0}, "slices must be"),
-        (SQUARE, {"twist": math.inf}, "twist must be finite"),
+        (SQUARE, {"twist": math.inf}, "twist must be a finite"),
         (SQUARE, {"twist": 1, "slices": 10**9}, "corners"),
     ],
 )

@@ -104,7 +104,7 @@ def test_truncated_header(tmp_path: Path, lines: int) -> None:
 
 def test_truncated_text(tmp_path: Path) -> None:
     text = header("ascii") + "end_header\n" + "\n".join(text_body().splitlines()[:-1])
-    assert "2 of 3" in refusal(tmp_path / "x.ply", text, "truncated")
+    assert "2 of the 3" in refusal(tmp_path / "x.ply", text, "truncated")
 
 
 @pytest.mark.parametrize(

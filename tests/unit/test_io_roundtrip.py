@@ -50,7 +50,7 @@ def test_names_that_are_gone_are_told(tmp_path: Path) -> None:
     write(mesh, tmp_path / "x.ply")
     lost = losses_between(mesh, read(tmp_path / "x.ply"))
     assert lost.names == ("lid", "body") and lost.any
-    assert lost.sentences() == ["names gone: “lid”, “body”"]
+    assert lost.sentences() == ["names of objects: “lid”, “body”"]
 
 
 def test_3mf_says_millimetres_and_nothing_else(tmp_path: Path) -> None:

@@ -100,7 +100,7 @@ def test_off_whose_numbers_of_vertices_are_floats(tmp_path: Path, old: str, new:
     message = refusal(
         tmp_path / "x.off", f"OFF\n8 12 0\n{POINTS}{FACES.replace(' 0 ', ' 0.5 ')}", "syntax"
     )
-    assert "whole numbers" in message
+    assert "integer vertex indices" in message
 
 
 def test_colours_of_off_with_its_numbers_beside_the_keyword(tmp_path: Path) -> None:

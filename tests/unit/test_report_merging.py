@@ -70,13 +70,16 @@ def test_what_is_no_results_file(tmp_path: Path, text: str, words: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"operands": {}}, "case.operands is no list"),
+        ({"operands": {}}, "case.operands is not of type list"),
         ({"operands": [{"name": "a"}]}, r"case.operands\[0\] has no 'file'"),
-        ({"seconds": 3}, "case.seconds is no object"),
+        ({"seconds": 3}, "case.seconds is not a JSON object"),
         ({"memory_mb": "much"}, "case.memory_mb is not a finite number"),
         ({"memory_mb": float("nan")}, "case.memory_mb is not a finite number"),
-        ({"verdict": None}, "case.verdict is no str"),
-        ({"hausdorff": {"forward": 0, "backward": 0, "samples": 1.5}}, "samples is no int"),
+        ({"verdict": None}, "case.verdict is not of type str"),
+        (
+            {"hausdorff": {"forward": 0, "backward": 0, "samples": 1.5}},
+            "samples is not of type int",
+        ),
     ],
 )
 def test_a_case_of_another_form_is_named(

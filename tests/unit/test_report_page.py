@@ -108,7 +108,7 @@ def test_views_are_simplified_or_left_out_to_stay_within_the_size(
     limit = 0.9 * len(roomy.model["data"])
     tight = card(pictures + limit)
     assert tight.model is not None and len(tight.model["data"]) < limit
-    assert "triangles instead of 5\u202f120, to fit on this page" in tight.note
+    assert "of 5\u202f120 triangles to fit on this page" in tight.note
     assert (
         card(1000).model is None
         and "a smaller number of cards leaves more space" in card(1000).note

@@ -229,7 +229,7 @@ def test_strain_of_a_hook_is_that_of_a_bent_beam() -> None:
             lambda: parts.threaded_rod("M3", 10, clearance=2),
             "clearance must be smaller than the pitch",
         ),
-        (lambda: parts.threaded_rod("M3", 10, segments=7), "from 8"),
+        (lambda: parts.threaded_rod("M3", 10, segments=7), "at least 8"),
         (lambda: parts.spur_gear(1, 5, 3), "teeth must be an integer of at least 6"),
         (lambda: parts.spur_gear(1, 12, 3, bore=9.5), "bore must be below 9.5"),
         (lambda: parts.spur_gear(1, 12, 3, backlash=1.6), "larger than the thickness of the teeth"),

@@ -218,8 +218,14 @@ def test_text_without_letters_or_size_is_empty() -> None:
 @pytest.mark.parametrize(
     ("script", "says"),
     [
-        ('text("a", font = "No Such Sans:style=Bold");', "“No Such Sans:style=Bold” is not there"),
-        ('text("a", font = "LiberationSans-Bold.ttf");', "is not there; Liberation Sans stands in"),
+        (
+            'text("a", font = "No Such Sans:style=Bold");',
+            "“No Such Sans:style=Bold” is not installed",
+        ),
+        (
+            'text("a", font = "LiberationSans-Bold.ttf");',
+            "is not installed; Liberation Sans is used",
+        ),
         ('text("日");', "no glyph for 日"),
         ('text("a", halign = "middle");', "its halign “middle” is none of left, center, right"),
         ('text("a", direction = "up");', "its direction “up” is none of"),
