@@ -204,7 +204,7 @@ def format_errors(name: str, what: str) -> Iterator[None]:
         raise
     except Exception as error:
         reason = f"{type(error).__name__}: {words_of(error)}"
-        message = f"{name}: the file cannot be read as {what}, and may be damaged ({reason})."
+        message = f"{name}: the file cannot be read as {what} ({reason})."
         raise FormatError(message, "malformed") from error
 
 

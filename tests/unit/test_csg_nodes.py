@@ -30,9 +30,9 @@ def test_nothing_first_leaves_nothing() -> None:
 
 
 def test_first_child_says_the_dimension() -> None:
-    with pytest.warns(csg.CsgWarning, match=r"<csg>:1:1: union\(\).*plane figures .* ignored"):
+    with pytest.warns(csg.CsgWarning, match=r"<csg>:1:1: union\(\).*2D children are ignored"):
         assert volume("union() { cube(1); square(5); }") == 1
-    with pytest.warns(csg.CsgWarning, match="solids among them are ignored"):
+    with pytest.warns(csg.CsgWarning, match="3D children are ignored"):
         assert region("union() { square(2); cube(1); }").area == 4
 
 

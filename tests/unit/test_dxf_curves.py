@@ -195,7 +195,7 @@ def grid(space: Any) -> None:
         (in_itself, "nested deeper"),
         (many, "contain more than"),
         (grid, "contain more than"),
-        (lambda space: space.add_blockref("nothing", (0, 0)), "no block called “nothing”"),
+        (lambda space: space.add_blockref("nothing", (0, 0)), "the block “nothing”"),
         (lambda space: space.add_circle((0, 0), 1e12), "larger tolerance"),
     ],
 )

@@ -249,7 +249,7 @@ def test_options_reach_the_solid() -> None:
 @pytest.mark.parametrize("solid", [b.cube(1), b.Assembly("", b.cube(1))])
 def test_options_are_refused_where_they_would_do_nothing(solid: Any) -> None:
     with pytest.raises(
-        b.InvalidParameterError, match=f"^pitch: .* of type {type(solid).__name__}\\."
+        b.InvalidParameterError, match=f"^pitch .* of type {type(solid).__name__}\\."
     ):
         b.Solid.from_mesh(solid, pitch=-6)
     assert b.Solid.from_mesh(solid).volume == 1

@@ -211,7 +211,7 @@ def test_what_there_is_nothing_to_take_away_from_is_told(tmp_path: Path) -> None
     (told,) = read(path).findings
     assert told.code == "ignored" and told.message.endswith("object 2 is not a mesh.")
     for make, kind in ((prusa, "NegativeVolume"), (bambu, "negative_part")):
-        with pytest.raises(b.InvalidMeshError, match=r"negative volumes .* there is nothing"):
+        with pytest.raises(b.InvalidMeshError, match=r"negative volumes .* there is no part"):
             b.load(make(tmp_path / "x.3mf", [(BODY, kind)]))
 
 

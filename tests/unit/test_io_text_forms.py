@@ -234,4 +234,4 @@ def test_bad_corners_of_strips_name_their_line(tmp_path: Path) -> None:
         rows = [*STRIPS, [0, 1, bad]]
         path = tmp_path / "x.ply"
         message = refusal(path, strips_ply("ascii", rows), "index_out_of_range")
-        assert f"vertex {bad} " in message and f":{9 + 8 + 7}: " in message
+        assert f"vertex index {bad} " in message and f":{9 + 8 + 7}: " in message

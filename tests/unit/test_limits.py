@@ -181,7 +181,7 @@ def test_whatever_a_parser_raises_names_the_file_and_keeps_its_cause(
 
     monkeypatch.setitem(MAKERS, ".off", lambda: Format(fails))
     with pytest.raises(
-        b.FormatError, match=r"part.off: .* as OFF, and may be damaged \("
+        b.FormatError, match=r"part.off: .* as OFF \("
     ) as caught:
         decoded("part.off", b"OFF", ".off")
     assert caught.value.code == "malformed" and caught.value.__cause__ is error
