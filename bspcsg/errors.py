@@ -329,7 +329,7 @@ def warn_of_losses(findings: Iterable[Finding]) -> None:
 
 def deprecated(old: str, new: str) -> None:
     """Warn the caller of this package about a name that the next version removes."""
-    message = f"{old} will be removed in the next version; use {new} instead."
+    message = f"{old} will be removed in the next version; use {new}."
     warnings.warn(message, DeprecationWarning, stacklevel=_levels_to_caller())
 
 
