@@ -307,7 +307,7 @@ class Journal:
             file.truncate(_end_of_last_line(self.path, size))
 
     def _unwritable(self, error: OSError) -> FormatError:
-        return FormatError(f"{self.path}: cannot write this file: {error.strerror}.", "unwritable")
+        return FormatError(f"{self.path}: cannot write: {error.strerror}.", "unwritable")
 
 
 def _end_of_last_line(path: Path, size: int) -> int:

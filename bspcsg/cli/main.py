@@ -183,7 +183,7 @@ def _answered(arguments: list[str]) -> int:
 def _unwritable(error: OSError) -> FormatError:
     """Return the error that names the file that could not be written."""
     name = "a file" if error.filename is None else os.fsdecode(error.filename)
-    return FormatError(f"{name}: cannot write this file: {error.strerror}.", "unwritable")
+    return FormatError(f"{name}: cannot write: {error.strerror}.", "unwritable")
 
 
 def _as_it_came(error: UnicodeError) -> tuple[str | bytes, int]:

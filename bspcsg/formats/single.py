@@ -189,8 +189,8 @@ def _mending(count: int) -> Finding:
 
 def _thickening(count: int, spacing: float) -> Finding:
     message = (
-        f"the whole mesh is so thin that it would vanish in single precision, so its {count}"
-        f" triangles were moved outwards by {spacing:.2g}{_REMEDY}"
+        "the whole mesh is so thin that it would vanish in single precision, so the surfaces"
+        f" of {count} triangles were moved outwards by {spacing:.2g}{_REMEDY}"
     )
     return Finding("thickened_in_single", "warning", message, (), count)
 

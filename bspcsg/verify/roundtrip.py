@@ -73,8 +73,7 @@ class Losses:
         elif self.shift:
             relative = self.shift / self.size if self.size else self.shift
             found.append(
-                f"coordinates changed by up to {self.shift:.2g} ({relative:.1g} of the size of"
-                " the mesh)"
+                f"coordinates changed by up to {self.shift:.2g} ({relative:.1g} of the size)"
             )
         if self.solid == (True, False):
             found.append("no longer a solid")

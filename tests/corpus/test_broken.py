@@ -105,7 +105,7 @@ def test_drawings(capsys: Capture, case: Broken) -> None:
     Path(f"in{case.suffix}").write_bytes(case.data)
     Path("in.csg").write_text(f'linear_extrude(height = 2) import(file = "in{case.suffix}");')
     line = refused(capsys, case.code, "run", "in.csg", "-o", "x.ply")
-    assert "in.csg:1:" in line or "x.ply: nothing is left" in line
+    assert "in.csg:1:" in line or "x.ply: the result is empty" in line
 
 
 # What looks odd and is right

@@ -105,7 +105,10 @@ def test_text_form(folder: Path, capsys: Capture) -> None:
 def test_quiet_and_verbose(folder: Path, capsys: Capture) -> None:
     put("third.off", cube(1 / 3))
     _, out, err = ran(capsys, "union", "third.off", "c.stl", "-o", "x.stl")
-    assert "note: x.stl: binary STL holds single precision" in err and out.count("\n") == 2
+    assert (
+        "note: x.stl: binary STL stores coordinates in single precision" in err
+        and out.count("\n") == 2
+    )
     assert ran(capsys, "union", "third.off", "c.stl", "-o", "x.stl", "-q")[2] == ""
     assert "combine:" in ran(capsys, "union", "third.off", "c.stl", "-o", "x.stl", "-v")[2]
 
@@ -310,7 +313,7 @@ def test_unknown_output_comes_before_any_work(folder: Path, capsys: Capture, nam
 
 def test_output_into_a_missing_folder(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "union", "a.off", "c.stl", "-o", "no/x.off")
-    assert code == 5 and "no folder" in err
+    assert code == 5 and "does not exist or is not writable" in err
 
 
 def test_output_that_is_a_folder(folder: Path, capsys: Capture) -> None:

@@ -183,7 +183,11 @@ def test_cases_without_their_data_are_left_out(capsys: Capture, tmp_path: Path) 
             2,
             "'blender' is not a known engine; known are manifold3d,",
         ),
-        (["--from", "pyproject.toml"], 3, "pyproject.toml: this is no record; bspcsg bench -o"),
+        (
+            ["--from", "pyproject.toml"],
+            3,
+            "pyproject.toml: the file is not a record of measurements",
+        ),
         (["--from", "missing.json"], 3, "missing.json: cannot read this file: No such file or"),
         (["cubes", "-o", "no/such/x.json"], 5, "no/such/x.json: the folder no/such"),
         (

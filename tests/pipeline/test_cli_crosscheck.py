@@ -127,7 +127,10 @@ def test_script_is_compared(folder: Path, capsys: Capture) -> None:
     assert code == 0
     cases = {case["case"]: case for case in lines()[1:]}
     assert cases["m.csg"]["verdict"] == "agree" and cases["m.csg"]["kind"] == "csg"
-    assert cases["flat.csg"]["verdict"] == "refused" and "plane" in cases["flat.csg"]["reason"]
+    assert (
+        cases["flat.csg"]["verdict"] == "refused"
+        and "two-dimensional" in cases["flat.csg"]["reason"]
+    )
 
 
 def test_meshes_are_kept_on_request(folder: Path, capsys: Capture) -> None:
@@ -149,7 +152,7 @@ def test_resume_asks_only_what_is_open(folder: Path, capsys: Capture) -> None:
         torn.write('{"schema": 1, "type": "ca')
     code, out, err = ran(capsys, *given, "--resume")
     assert code == 0 and "None of 4 cases failed." in out
-    assert "note: 1 case of 4 known from r.jsonl" in err
+    assert "note: 1 case of 4 already finished in r.jsonl" in err
     assert [line["type"] for line in lines()] == ["run", "case", "run", "case", "case", "case"]
     put("a.off", cuboid((0, 0, 0), (2, 2, 3)))
     ran(capsys, *given, "--resume")
@@ -164,7 +167,7 @@ def test_what_crashed_is_asked_again_if_wished(folder: Path, capsys: Capture) ->
     crashed = {**union, "verdict": "crash", "reason": "the process was ended by SIGKILL"}
     Path("r.jsonl").write_text("".join(json.dumps(one) + "\n" for one in (head, crashed, xor)))
     code, _, err = ran(capsys, *given, "--op", "union", "--op", "xor", "--resume")
-    assert code == 1 and "note: 2 cases of 2 known from r.jsonl" in err
+    assert code == 1 and "note: 2 cases of 2 already finished in r.jsonl" in err
     more = ["--op", "union", "--op", "xor", "--resume", "--retry-crashed"]
     code, out, err = ran(capsys, *given, *more)
     assert code == 0 and "None of 2 cases failed." in out

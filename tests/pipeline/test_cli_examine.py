@@ -161,16 +161,16 @@ def test_another_solid(folder: Path, capsys: Capture) -> None:
     ("arguments", "code", "words"),
     [
         (["a.off", "-o", "-"], 2, "standard output"),
-        (["a.off", "-o", "x.off", "--plane", "1,2,3"], 2, "is no plane"),
+        (["a.off", "-o", "x.off", "--plane", "1,2,3"], 2, "is not a plane"),
         (["a.off", "-o", "x.off", "--plane", "z:1"], 2, "x, y and z are axes"),
-        (["a.off", "-o", "x.off", "--plane", "0,0,0,1"], 2, "is no plane"),
-        (["a.off", "-o", "x.off", "--plane", "nan,0,1,1"], 2, "is no plane"),
-        (["a.off", "-o", "x.off", "--plane", "0,0,1,1", "--by", "c.stl"], 2, "exclude"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,0,1"], 2, "is not a plane"),
+        (["a.off", "-o", "x.off", "--plane", "nan,0,1,1"], 2, "is not a plane"),
+        (["a.off", "-o", "x.off", "--plane", "0,0,1,1", "--by", "c.stl"], 2, "cannot be combined"),
         (["a.off", "-o", "x.step"], 3, "STEP"),
         (["none.off", "-o", "x.off"], 3, "none.off"),
         (["a.off", "-o", "x.off", "--plane", "0,0,1,9"], 4, "on one side"),
-        (["inverted.off", "-o", "x.off"], 4, "no triangles are left"),
-        (["a.off", "-o", "no/x.off"], 5, "no folder"),
+        (["inverted.off", "-o", "x.off"], 4, "the solid is empty"),
+        (["a.off", "-o", "no/x.off"], 5, "does not exist or is not writable"),
     ],
 )
 def test_split_refusals(
@@ -259,7 +259,7 @@ def test_two_inputs_of_one_output_are_refused_first(
         put(f"{place}/a.off", cube(2))
     code, out, err = ran(capsys, verb, "in", "--outdir", "new", "--to", "off")
     assert (code, out) == (2, "") and not Path("new").exists()
-    assert "in/a.off and in/deep/a.off would both be written to new/a.off." in err
+    assert "in/a.off and in/deep/a.off would both be written to new/a.off;" in err
     code, _, err = ran(capsys, verb, "in", "--outdir", "in", "--to", "off")
     assert code == 2 and "in/deep/a.off would overwrite in/a.off, which is also an input" in err
 
@@ -293,12 +293,12 @@ def test_what_cannot_be_repaired_is_code_1(folder: Path, capsys: Capture) -> Non
     [
         (["a.off"], 2, "either -o FILE or --outdir DIR"),
         (["a.off", "c.stl", "-o", "x.off"], 2, "or give --outdir"),
-        (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is no step"),
+        (["a.off", "-o", "x.off", "--steps", "weld,polish"], 2, "'polish' is not a repair step"),
         (["a.off", "-o", "x.off", "--steps", ","], 2, "at least one"),
         (["a.off", "-o", "x.off", "--max-hole", "2"], 2, "--max-hole"),
         (["none.off", "-o", "x.off"], 3, "none.off"),
-        (["a.off", "-o", "no/x.off"], 5, "no folder"),
-        (["a.off", "-o", "x.off", "--timeout", "0.001"], 124, "longer than 0.001 s"),
+        (["a.off", "-o", "no/x.off"], 5, "does not exist or is not writable"),
+        (["a.off", "-o", "x.off", "--timeout", "0.001"], 124, "time limit of 0.001 s"),
     ],
 )
 def test_repair_refusals(
@@ -338,7 +338,7 @@ def test_doctor_names_what_is_missing(
     code, out, _ = ran(capsys, "doctor")
     assert code == 0 and "49 of 58 plug-ins" in out and "libgl1 libopengl0" in out
     # What is missing has the line to type below the sentence.
-    said = "meshio is missing, needed for VTK and VTU files. Try:\n  pip install"
+    said = "meshio is missing; it is needed for VTK and VTU files. Try:\n  pip install"
     assert f'{said} "bspcsg[vtk]"\n' in out
     assert "openscad is missing" in out and out.endswith("\n  apt-get install openscad\n")
 

@@ -154,7 +154,7 @@ def test_objects_of_one_file_of_another_name_clash(
 
 def test_one_object_cannot_clash(folder: Path, capsys: Capture) -> None:
     code, _, err = ran(capsys, "clash", "a.off")
-    assert code == 2 and "a.off is one object" in err
+    assert code == 2 and "a.off contains one object only" in err
     boxes().save("all.3mf")
     code, _, err = ran(capsys, "clash", "all.3mf", "--on-invalid", "repair")
     assert code == 2 and "several closed objects" in err

@@ -92,7 +92,7 @@ def test_names_of_objects_that_became_one_are_lost(near: Path, capsys: Capture) 
     write(replace(raw, objects=(("bump", 10), ("rest", len(raw.faces) - 10))), "x.obj")
     line = ["convert", "x.obj", "-o", "y.obj", "--simplify", "1um", "--fail-on-loss"]
     code, out, _ = ran(capsys, *line)
-    assert code == 1 and "lost: names gone: “rest”" in out
+    assert code == 1 and "lost: names of objects: “rest”" in out
 
 
 def test_open_meshes_are_refused(folder: Path, capsys: Capture) -> None:

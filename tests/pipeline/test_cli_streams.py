@@ -59,7 +59,10 @@ def test_files_without_a_suffix(folder: Path, capsys: Capture) -> None:
         (["union", "-", "-", "-o", "x.ply", "--from", "stl"], "only once"),
         (["union", "a.off", "c.stl", "-o", "-"], "--to"),
         (["union", "a.off", "c.stl", "-o", "-", "--to", "ply", "--json"], "--json"),
-        (["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"], "'step' is no format"),
+        (
+            ["union", "a.off", "c.stl", "-o", "x.ply", "--to", "step"],
+            "'step' is not a known format",
+        ),
         (["info", "-"], "--from"),
     ],
 )

@@ -122,7 +122,7 @@ def test_units_are_said(folder: Path, capsys: Capture) -> None:
         (["none.stl"], 3, "none.stl: cannot read"),
         (["part.step"], 3, "STEP"),
         (["a.off", "-o", "x.png"], 3, "must end in .html"),
-        (["a.off", "-o", "no/x.html"], 5, "no folder"),
+        (["a.off", "-o", "no/x.html"], 5, "does not exist or is not writable"),
         (["-"], 2, "--from stl"),
         ([], 2, "FILE"),
     ],

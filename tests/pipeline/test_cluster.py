@@ -49,7 +49,9 @@ def test_no_scheduler_is_told(
     monkeypatch.setattr(cluster, "_TIMEOUT", 0.2)
     given = ["crosscheck", "a.off", "c.stl", "--scheduler", "tcp://127.0.0.1:9"]
     code, _, err = ran(capsys, *given)
-    assert code == 6 and err.startswith("bspcsg: error: tcp://127.0.0.1:9: no scheduler answers")
+    assert code == 6 and err.startswith(
+        "bspcsg: error: tcp://127.0.0.1:9: no Dask scheduler answers"
+    )
 
 
 def test_dask_is_optional(folder: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

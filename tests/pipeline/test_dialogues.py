@@ -50,7 +50,7 @@ ERRORS = [
         "formula:8: expected a file name or “(”, found the end.\n  a.off -\n         ^\n"
         "  Try: bspcsg eval --help",
     ),
-    (["eval", " ", "-o", "x.ply"], 2, "formula:1: the formula is empty."),
+    (["eval", " ", "-o", "x.ply"], 2, "formula:1: the formula is empty;"),
     (
         ["union", "none.stl", "a.off", "-o", "x.ply"],
         3,
@@ -255,4 +255,6 @@ def test_a_stream_that_is_no_mesh(capsys: Capture, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(sys, "stdin", Stream())
     assert run(["info", "-", "--from", "stl"]) == 3
     said = capsys.readouterr()
-    assert said.out == "" and said.err.startswith("bspcsg: error: -: at byte 6: this is no STL")
+    assert said.out == "" and said.err.startswith(
+        "bspcsg: error: -: at byte 6: the file is not an STL"
+    )

@@ -141,7 +141,7 @@ def test_companions_of_meshes_are_skipped_and_counted(
         Path("in", name).touch()
     Path("in/deep/.hidden/b.off").touch()
     code, out, err = ran(capsys, "info", *meant.split(), "--json")
-    assert code == 0 and err == "note: skipped 2 files that are no meshes: 1 .mtl, 1 .png.\n"
+    assert code == 0 and err == "note: skipped 2 files that are not meshes: 1 .mtl, 1 .png.\n"
     files = json.loads(out)["files"]
     assert [Path(one["file"]) for one in files] == [Path("in/a.off"), Path("in/deep/c.stl")]
     assert ran(capsys, "info", *meant.split(), "-q")[2] == ""
@@ -156,7 +156,7 @@ def test_views_skip_companions_and_open_no_folders(folder: Path, capsys: Capture
         line = ["view", *meant.split(), "-o", "x.html", "--no-open", "--json"]
         code, out, err = ran(capsys, *line)
         assert code == 0 and json.loads(out)["files"] == ["a.off", "c.stl"]
-        assert "skipped 2 files that are no meshes" in err
+        assert "skipped 2 files that are not meshes" in err
         Path("x.html").unlink()
 
 
@@ -206,7 +206,7 @@ def test_scripts_come_from_standard_input(folder: Path, piped: Piped) -> None:
     code, _, err = piped("info", "-", "--from", "csg", given=b"cube(;")
     assert code == 3 and err.startswith(b"bspcsg: error: -:1:6: expected")
     code, _, err = piped("info", "-", "--from", "py", given=b"")
-    assert code == 2 and b"-: .py scripts are run by name; save it to a file." in err
+    assert code == 2 and b"-: .py scripts cannot be read from standard input" in err
 
 
 def test_scripts_may_have_any_suffix(folder: Path, capsys: Capture) -> None:

@@ -180,9 +180,7 @@ def test_whatever_a_parser_raises_names_the_file_and_keeps_its_cause(
         raise error
 
     monkeypatch.setitem(MAKERS, ".off", lambda: Format(fails))
-    with pytest.raises(
-        b.FormatError, match=r"part.off: .* as OFF \("
-    ) as caught:
+    with pytest.raises(b.FormatError, match=r"part.off: .* as OFF \(") as caught:
         decoded("part.off", b"OFF", ".off")
     assert caught.value.code == "malformed" and caught.value.__cause__ is error
     assert type(error).__name__ in str(caught.value)

@@ -227,7 +227,10 @@ def test_text_without_letters_or_size_is_empty() -> None:
             "is not installed; Liberation Sans is used",
         ),
         ('text("日");', "no glyph for 日"),
-        ('text("a", halign = "middle");', "its halign “middle” is unknown and ignored; known are left, center, right"),
+        (
+            'text("a", halign = "middle");',
+            "its halign “middle” is unknown and ignored; known are left, center, right",
+        ),
         ('text("a", direction = "up");', "its direction “up” is unknown"),
     ],
 )
