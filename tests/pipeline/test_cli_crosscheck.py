@@ -171,7 +171,7 @@ def test_what_crashed_is_asked_again_if_wished(folder: Path, capsys: Capture) ->
     more = ["--op", "union", "--op", "xor", "--resume", "--retry-crashed"]
     code, out, err = ran(capsys, *given, *more)
     assert code == 0 and "None of 2 cases failed." in out
-    assert "note: 1 case of 2 known from r.jsonl" in err
+    assert "note: 1 case of 2 already finished in r.jsonl" in err
     assert read_results(["r.jsonl"]).cases[union["key"]]["verdict"] == "agree"
 
 
@@ -329,7 +329,7 @@ def test_broken_file_costs_its_cases_only(folder: Path, capsys: Capture) -> None
         (["--results", "c.stl"], "--results would overwrite the input c.stl; choose another name."),
         (
             ["--results", "r.jsonl", "--junit", "./r.jsonl"],
-            "--junit would overwrite r.jsonl, which --results writes.",
+            "--junit would overwrite r.jsonl, which --results also writes;",
         ),
         (["-"], "crosscheck cannot read standard input; give the names of files."),
     ],

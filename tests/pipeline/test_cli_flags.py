@@ -317,7 +317,7 @@ def test_drawings_as_streams(
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["-o", "-"], "say the format: --to .svg or .png"),
+        (["-o", "-"], "give the format with --to .svg or .png"),
         (["-o", "-", "--to", "jpg"], "'jpg' is not a drawing format; use .svg or .png"),
         (["-o", "-", "--to", "svg", "--json"], "--json and a drawing cannot both"),
     ],

@@ -64,8 +64,8 @@ ERRORS = [
     (
         ["convert", "big.step", "-o", "out.stl"],
         3,
-        "big.step: STEP is a format of curved surfaces, and bspcsg reads meshes only. Make a mesh"
-        " of it first, for example with FreeCAD, Gmsh or the Python package cascadio.",
+        "big.step: STEP files contain curved surfaces, and bspcsg reads triangle meshes only."
+        " Convert the file to a mesh first, for example with FreeCAD, Gmsh or the Python package cascadio.",
     ),
     (
         ["union", "a.off", "open.stl", "-o", "x.ply"],
@@ -119,7 +119,7 @@ def test_an_open_file_gets_a_line_to_type(capsys: Capture) -> None:
         ),
         ("cube(1", "m.csg:1:7: expected “,” or “)”, found the end of the file."),
         ("cube(size = [1, 2]);", "m.csg:1:1: cube(): size must be 3 numbers"),
-        ("import(file = 3);", "m.csg:1:1: import(): file must be a str, not 3."),
+        ("import(file = 3);", "m.csg:1:1: import(): file must be a string, not 3."),
     ],
 )
 def test_scripts_name_line_and_column(capsys: Capture, script: str, said: str) -> None:

@@ -34,7 +34,7 @@ from support.scripts import moved
         ("linear_extrude(height = 1, v = [1, 0]) square(1);", "v must be 3 numbers"),
         ("sphere(r = 1, $fn = 1e9);", "more than 4,000,000 corners"),
         ("linear_extrude(height = 1, twist = 1, slices = 1e12) square(1);", "corners"),
-        ("text(text = 3);", "text must be a text"),
+        ("text(text = 3);", "text must be a string"),
         ('text("a", size = "b");', "size must be a number"),
         ("tent() square(1);", "tent() is not supported. Supported: circle color"),
     ],

@@ -74,7 +74,7 @@ class Arguments:
         """Return a text."""
         value = self._given(name, default)
         if not isinstance(value, str):
-            raise self._wrong(name, "a text", value)
+            raise self._wrong(name, "a string", value)
         return value
 
     def vector(
