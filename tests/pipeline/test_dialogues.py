@@ -64,8 +64,9 @@ ERRORS = [
     (
         ["convert", "big.step", "-o", "out.stl"],
         3,
-        "big.step: STEP files contain curved surfaces, and bspcsg reads triangle meshes only. Convert"
-        " the file to a mesh first, for example with FreeCAD, Gmsh or the Python package cascadio.",
+        "big.step: STEP files contain curved surfaces, and bspcsg reads triangle meshes only."
+        " Convert the file to a mesh first, for example with FreeCAD, Gmsh or the Python package"
+        " cascadio.",
     ),
     (
         ["union", "a.off", "open.stl", "-o", "x.ply"],
